@@ -1,0 +1,77 @@
+# For a newcomer: `make demo` plans and draws a mission, `make test` runs everything. `make help` lists the rest.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
+BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
+DEMO_MISSION ?= 31T-6R50
+
+.PHONY: demo test help check format stub sanitize study bench clean prerequisites
+
+demo: $(VENV)/installed
+	@mkdir -p demo
+	$(BIN)/muster solve $(DEMO_MISSION) --time-limit 2 --seed 1 -o demo/plan.json --plot demo/plan.png --gantt demo/gantt.png
+	$(BIN)/muster verify $(DEMO_MISSION) demo/plan.json
+	@echo
+	@echo "The picture of the plan: $(CURDIR)/demo/plan.png"
+	@echo "Its time chart:          $(CURDIR)/demo/gantt.png"
+	@echo "Next: $(BIN)/muster --help"
+
+test: $(VENV)/developed
+	$(BIN)/python -m pytest -n 2 $(PYTEST_FLAGS)
+
+help:
+	@echo "make demo       plan and draw a mission (DEMO_MISSION=$(DEMO_MISSION))"
+	@echo "make test       run all tests"
+	@echo "make check      formatters, linters, types, import contract"
+	@echo "make format     let the formatters change the files"
+	@echo "make stub       make the type stub of the core anew"
+	@echo "make sanitize   run the core's tests under the address and undefined-behaviour sanitizers"
+	@echo "make study      repeat section 3.3 of the TCF thesis, 10 seeds a case"
+	@echo "make bench      measure speed on this machine"
+
+check: $(VENV)/developed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/clang-format --dry-run --Werror $(CPP)
+
+format: $(VENV)/developed
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CPP)
+
+stub: $(VENV)/developed
+	$(BIN)/python -m nanobind.stubgen -m muster.core._core -o src/muster/core/_core.pyi
+
+sanitize: $(VENV)/developed
+	PYTHON=$(BIN)/python tools/sanitize.sh
+
+study: $(VENV)/developed
+	$(BIN)/muster study thesis-3.3
+
+bench: $(VENV)/developed
+	$(BIN)/muster bench
+
+# Two states of one environment: what a user has, and with the developers' tools.
+
+$(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
+	$(BIN)/pip install --quiet --editable '.[all]'
+	@touch $@
+
+$(VENV)/developed: $(VENV)/installed
+	$(BIN)/pip install --quiet --group dev
+	@touch $@
+
+$(VENV)/made: | prerequisites
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'
+	@touch $@
+
+prerequisites:
+	@PYTHON=$(PYTHON) tools/prerequisites.sh
+
+clean:
+	rm -rf $(VENV) build demo

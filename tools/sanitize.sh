@@ -1,0 +1,16 @@
+#!/bin/sh
+# Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
+# and runs the tests that exercise it. The first report of a sanitizer ends the run with an error.
+set -eu
+python=${PYTHON:-python3}
+environment=build/sanitized
+[ -d "$environment" ] || "$python" -m venv "$environment"
+"$environment/bin/pip" install --quiet --force-reinstall --no-deps \
+    -C cmake.define.MUSTER_SANITIZE=ON -C build-dir=build/sanitizing -C install.strip=false .
+"$environment/bin/pip" install --quiet '.[all]' pytest hypothesis jsonschema
+# The sanitizers must be loaded before Python, and libstdc++ beside them, or they miss C++ exceptions. Python itself
+# keeps memory until it ends, so leaks are not looked for.
+LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.so) $(g++ -print-file-name=libstdc++.so)" \
+ASAN_OPTIONS=detect_leaks=0 \
+UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
+    "$environment/bin/python" -m pytest -p no:cacheprovider tests/core tests/allocation
