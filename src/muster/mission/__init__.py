@@ -1,0 +1,1 @@
+"""The question and the answer as data: robots, tasks, missions, plans, and their files."""

@@ -1,0 +1,35 @@
+"""Time, as something that is passed in: nothing in Muster reads the wall clock for logic."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """Seconds from some fixed moment, never going back."""
+
+    def now(self) -> float: ...
+
+
+class SystemClock:
+    """The machine's monotonic clock."""
+
+    def now(self) -> float:
+        return time.perf_counter()
+
+
+class VirtualClock:
+    """A clock that goes on only when told to; `step_s` is added at each reading."""
+
+    def __init__(self, start_s: float = 0.0, step_s: float = 0.0) -> None:
+        self._now = start_s
+        self._step = step_s
+
+    def now(self) -> float:
+        now = self._now
+        self._now += self._step
+        return now
+
+    def advance(self, by_s: float) -> None:
+        self._now += by_s

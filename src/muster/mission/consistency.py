@@ -1,0 +1,209 @@
+"""What must hold between the parts of a mission, wherever it came from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+from muster.mission.kinds import Fault, Path, did_you_mean, shown
+from muster.mission.model import Mission, Point, Task
+
+
+def inconsistencies(mission: Mission) -> Iterator[Fault]:
+    """Every fault that lies between the parts of a mission."""
+    yield from _repeated_ids(mission)
+    yield from _prerequisites(mission)
+    yield from _cycles(mission)
+    yield from _locks(mission)
+    yield from _suitability(mission)
+    yield from _dimensions(mission)
+    yield from _travel(mission)
+    yield from _events(mission)
+
+
+def _repeated_ids(mission: Mission) -> Iterator[Fault]:
+    groups = (("robots", [r.id for r in mission.robots]), ("tasks", [t.id for t in mission.tasks]))
+    for group, ids in groups:
+        first: dict[str, int] = {}
+        for k, name in enumerate(ids):
+            if name in first:
+                yield Fault((group, k, "id"), shown(name), f"an id of its own: {group}[{first[name]}] has this one")
+            first.setdefault(name, k)
+
+
+def _unknown(name: str, known: Sequence[str], what: str) -> str:
+    return f"the id of a {what}{did_you_mean(name, known)}"
+
+
+def _prerequisites(mission: Mission) -> Iterator[Fault]:
+    ids = [t.id for t in mission.tasks]
+    known = set(ids)
+    for k, task in enumerate(mission.tasks):
+        seen: set[str] = set()
+        for p, name in enumerate(task.prerequisites):
+            at: Path = ("tasks", k, "prerequisites", p)
+            if name not in known:
+                yield Fault(at, shown(name), _unknown(name, ids, "task"))
+            elif name in seen:
+                yield Fault(at, shown(name), "each prerequisite once")
+            seen.add(name)
+
+
+def _cycles(mission: Mission) -> Iterator[Fault]:
+    """One cycle for each knot of prerequisites, named in the order in which the tasks wait."""
+    index = {t.id: k for k, t in reversed(list(enumerate(mission.tasks)))}
+    before = [[index[name] for name in task.prerequisites if name in index] for task in mission.tasks]
+    state = [0] * len(before)  # 0: not visited, 1: on the way, 2: done
+    for start in range(len(before)):
+        way, steps = [start], [iter(before[start])] if state[start] == 0 else []
+        while steps:
+            state[way[-1]] = 1
+            following = next(steps[-1], None)
+            if following is None:
+                state[way.pop()] = 2
+                steps.pop()
+            elif state[following] == 1:
+                yield _cycle(mission.tasks, way[way.index(following) :])
+            elif state[following] == 0:
+                way.append(following)
+                steps.append(iter(before[following]))
+
+
+def _cycle(tasks: Sequence[Task], knot: list[int]) -> Fault:
+    names = " -> ".join(tasks[k].id for k in [*knot, knot[0]])
+    return Fault(("tasks", knot[0], "prerequisites"), f"cycle {names}", "prerequisites without a cycle")
+
+
+def _locks(mission: Mission) -> Iterator[Fault]:
+    ids = [r.id for r in mission.robots]
+    joining = [e.robot_joins.id for e in mission.events if e.robot_joins]
+    for k, task in enumerate(mission.tasks):
+        for r, name in enumerate(task.only_robots or ()):
+            if name not in ids and name not in joining:
+                yield Fault(("tasks", k, "only_robots", r), shown(name), _unknown(name, ids, "robot"))
+
+
+def _suitability(mission: Mission) -> Iterator[Fault]:
+    if mission.suitability is None:
+        return
+    rows = list(mission.suitability)
+    columns = {kind for row in mission.suitability.values() for kind in row}
+    groups = (
+        ("robots", [r.type for r in mission.robots], rows, "a row"),
+        ("tasks", [t.type for t in mission.tasks], sorted(columns), "a column"),
+    )
+    for group, types, known, what in groups:
+        for k, name in enumerate(types):
+            expected = f"a type that has {what} in suitability ({', '.join(known)})"
+            if name is None:
+                yield Fault((group, k, "type"), "missing", expected)
+            elif name not in known:
+                yield Fault((group, k, "type"), shown(name), expected + did_you_mean(name, known))
+
+
+def _positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
+    for k, robot in enumerate(mission.robots):
+        yield ("robots", k, "position"), robot.position
+        if robot.end_position is not None:
+            yield ("robots", k, "end_position"), robot.end_position
+    for k, task in enumerate(mission.tasks):
+        yield from _places(("tasks", k), task)
+    for k, event in enumerate(mission.events):
+        if event.robot_joins is not None:
+            yield ("events", k, "robot_joins", "position"), event.robot_joins.position
+        if event.new_task is not None:
+            yield from _places(("events", k, "new_task"), event.new_task)
+        if event.move_task is not None:
+            yield ("events", k, "move_task", "position"), event.move_task.position
+
+
+def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
+    pickup = task.action.pickup if task.action else None
+    for name, point in (("position", task.position), ("entry", task.entry), ("exit", task.exit)):
+        if point is not None:
+            yield (*at, name), point
+    if pickup is not None:
+        yield (*at, "action", "pickup"), pickup
+
+
+def _dimensions(mission: Mission) -> Iterator[Fault]:
+    """Positions with z among positions without; the fewer of the two are the wrong ones."""
+    positions = list(_positions(mission))
+    flat = [item for item in positions if len(item[1]) == 2]
+    spatial = [item for item in positions if len(item[1]) == 3]
+    if flat and spatial:
+        wrong, expected = (flat, "[x, y, z]") if len(flat) <= len(spatial) else (spatial, "[x, y]")
+        for path, point in wrong:
+            yield Fault(path, shown(list(point)), f"{expected} as the other positions are")
+
+
+def _travel(mission: Mission) -> Iterator[Fault]:
+    if mission.travel_rule == "map" and mission.map is None:
+        yield Fault(("rules", "travel"), shown("map"), "a mission with a map, or another rule")
+    if mission.travel_rule != "matrix":
+        return
+    if mission.travel is None:
+        yield Fault(("travel",), "missing", "a travel table for each type of robot, with rules.travel: matrix")
+    elif not mission.travel_tables:
+        yield Fault(("travel",), "tables that were not read", "travel_tables, for a mission built in Python")
+    else:
+        yield from _types_without_table(mission)
+        yield from _table_faults(mission)
+    yield from _places_without_row(mission)
+
+
+def _types_without_table(mission: Mission) -> Iterator[Fault]:
+    types = mission.travel or {}
+    expected = f"a type that has a travel table ({', '.join(types)})"
+    for k, robot in enumerate(mission.robots):
+        if robot.type not in types:
+            yield Fault(("robots", k, "type"), "missing" if robot.type is None else shown(robot.type), expected)
+
+
+def _table_faults(mission: Mission) -> Iterator[Fault]:
+    robots, tasks = [r.id for r in mission.robots], [t.id for t in mission.tasks]
+    for name in sorted(set(robots) & set(tasks)):
+        at: Path = ("tasks", tasks.index(name), "id")
+        yield Fault(at, shown(name), "an id that no robot has: both are places of the travel tables")
+    for kind, table in mission.travel_tables.items():
+        rows = set(table.places)
+        missing = [name for name in (*robots, *tasks) if name not in rows]
+        if missing:
+            value = f"no row for {', '.join(missing[:5])}"
+            yield Fault(("travel", kind), value, "a row and a column for each robot and task")
+        if any(math.isnan(metres) or metres < 0 for row in table.metres for metres in row):
+            yield Fault(("travel", kind), "a negative distance or NaN", "distances of at least 0, or inf")
+
+
+def _places_without_row(mission: Mission) -> Iterator[Fault]:
+    places: list[tuple[Path, Point | None]] = [
+        (("robots", k, "end_position"), robot.end_position) for k, robot in enumerate(mission.robots)
+    ]
+    for k, task in enumerate(mission.tasks):
+        places += [(("tasks", k, "entry"), task.entry), (("tasks", k, "exit"), task.exit)]
+    for path, point in places:
+        if point is not None:
+            yield Fault(path, shown(list(point)), "nothing here: travel tables know robots and tasks alone")
+
+
+def _events(mission: Mission) -> Iterator[Fault]:
+    robots = [r.id for r in mission.robots] + [e.robot_joins.id for e in mission.events if e.robot_joins]
+    tasks = [t.id for t in mission.tasks] + [e.new_task.id for e in mission.events if e.new_task]
+    for k, event in enumerate(mission.events):
+        named: Iterable[tuple[Path, str | None, list[str], str]] = (
+            (("robot_fails",), event.robot_fails, robots, "robot"),
+            (("robot_silent",), event.robot_silent, robots, "robot"),
+            (("robot_returns",), event.robot_returns, robots, "robot"),
+            (("cancel_task",), event.cancel_task, tasks, "task"),
+            (("move_task", "task"), event.move_task.task if event.move_task else None, tasks, "task"),
+            (("delay_task", "task"), event.delay_task.task if event.delay_task else None, tasks, "task"),
+        )
+        for path, name, known, what in named:
+            if name is not None and name not in known:
+                yield Fault(("events", k, *path), shown(name), _unknown(name, known, what))
+        for group, name, known in (
+            ("robot_joins", event.robot_joins.id if event.robot_joins else None, robots),
+            ("new_task", event.new_task.id if event.new_task else None, tasks),
+        ):
+            if name is not None and known.count(name) > 1:
+                yield Fault(("events", k, group, "id"), shown(name), "an id of its own")

@@ -1,0 +1,91 @@
+"""The rows of CSV files with their lines; shared by the readers of task lists, robot lists and tables."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+
+from muster.mission.errors import Finding, MissionError
+from muster.mission.kinds import did_you_mean, shown
+from muster.mission.text_files import read_text
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of a CSV file; `cells` by column, spaces around them removed."""
+
+    line: int
+    cells: dict[str, str]
+
+
+def read_rows(path: FilePath, needed: Sequence[str], optional: Sequence[str] = ()) -> list[Row]:
+    """The rows of a CSV file with a head line.
+
+    Raises
+    ------
+    MissionError
+        if the file cannot be read, a needed column is absent, a column is unknown or a row has too many or few cells.
+    """
+    lines = _lines(path)
+    if not lines:
+        raise MissionError([Finding(str(path), 1, "", "empty", f"a head line: {','.join(needed)}")])
+    head = [name.strip() for name in lines[0][1]]
+    found = [
+        Finding(str(path), lines[0][0], name, "missing column", f"the columns {','.join([*needed, *optional])}")
+        for name in needed
+        if name not in head
+    ]
+    for name in head:
+        if name not in (*needed, *optional) or head.count(name) > 1:
+            hint = did_you_mean(name, [*needed, *optional])
+            found.append(
+                Finding(
+                    str(path),
+                    lines[0][0],
+                    name,
+                    "unknown or repeated column",
+                    f"the columns {','.join([*needed, *optional])}{hint}",
+                )
+            )
+    for line, cells in lines[1:]:
+        if len(cells) != len(head):
+            found.append(Finding(str(path), line, "", f"{len(cells)} cells", f"{len(head)}, one for each column"))
+    if found:
+        raise MissionError(found)
+    return [Row(line, dict(zip(head, (c.strip() for c in cells), strict=True))) for line, cells in lines[1:]]
+
+
+def read_table(path: FilePath) -> tuple[list[str], list[tuple[int, str, list[str]]]]:
+    """A CSV table with names in its first line and column: the columns' names; line, name and cells of each row."""
+    lines = _lines(path)
+    if not lines:
+        raise MissionError([Finding(str(path), 1, "", "empty", "a table with names in its first line and column")])
+    columns = [name.strip() for name in lines[0][1][1:]]
+    found = [
+        Finding(str(path), line, "", f"{len(cells)} cells", f"{len(columns) + 1}: a name and a value for each column")
+        for line, cells in lines[1:]
+        if len(cells) != len(columns) + 1
+    ]
+    if found:
+        raise MissionError(found)
+    return columns, [(line, cells[0].strip(), [c.strip() for c in cells[1:]]) for line, cells in lines[1:]]
+
+
+def number(text: str) -> object:
+    """The number in a cell, or the text itself where there is none (which its kind then refuses)."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _lines(path: FilePath) -> list[tuple[int, list[str]]]:
+    """The lines that hold something, with their numbers."""
+    reader = csv.reader(io.StringIO(read_text(path), newline=""))
+    try:
+        return [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
+    except csv.Error as error:
+        raise MissionError([Finding(str(path), reader.line_num, "", shown(str(error)), "CSV")]) from None

@@ -1,0 +1,74 @@
+"""Every exception that Muster raises on purpose.
+
+    MusterError
+    ├── InputError            something that came from outside is wrong; carries all findings
+    │   ├── MissionError      a mission, from a file or built in Python
+    │   └── PlanError         a plan file
+    ├── NotSupportedError     the mission is right, but asks for what this version cannot do
+    ├── ParameterError        a parameter of an algorithm or function is out of its range
+    └── MissingExtraError     an optional part of the installation is absent
+
+Outcomes that are to be expected (nobody can do a task, no admissible plan) are values, not exceptions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+
+class MusterError(Exception):
+    """Base of all exceptions that Muster raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is wrong with an input, and where.
+
+    `line` counts from 1 and is None where there are no lines (a mission built in Python).
+    """
+
+    file: str
+    line: int | None
+    field: str
+    value: str
+    expected: str
+
+    def __str__(self) -> str:
+        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        subject = f"{self.field}: " if self.field else ""
+        return f"{place}: {subject}{self.value}; expected {self.expected}"
+
+    def as_dict(self) -> dict[str, str | int | None]:
+        return asdict(self)
+
+
+class InputError(MusterError):
+    """An input is wrong. `findings` holds everything that was found, in the order of the file."""
+
+    def __init__(self, findings: Sequence[Finding]) -> None:
+        self.findings = tuple(findings)
+        super().__init__("\n".join(str(finding) for finding in self.findings))
+
+
+class MissionError(InputError):
+    """A mission is wrong."""
+
+
+class PlanError(InputError):
+    """A plan file is wrong."""
+
+
+class NotSupportedError(InputError):
+    """The mission is right, but asks for what this version of Muster cannot do."""
+
+
+class ParameterError(MusterError, ValueError):
+    """A parameter of an algorithm or function is out of its range."""
+
+
+class MissingExtraError(MusterError, ImportError):
+    """An optional part of the installation is absent; the message says what to install."""
+
+    def __init__(self, extra: str, purpose: str) -> None:
+        super().__init__(f"{purpose} needs an optional part: pip install 'muster-robotics[{extra}]'")

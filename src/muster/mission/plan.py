@@ -1,0 +1,253 @@
+"""The answer: routes, the tasks left out with the reasons, and the figures. Immutable; `schema: muster-plan/1`."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from muster.mission.errors import Finding, MissionError, PlanError
+from muster.mission.kinds import shown
+from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.text_files import read_text
+
+PLAN_SCHEMA = "muster-plan/1"
+REASONS = ("skill", "suitability", "lock", "capacity", "prerequisite", "unreachable", "not-chosen")
+
+
+@dataclass(frozen=True)
+class Route:
+    """One robot's ordered tasks; `usage` in the unit of the plan, None in a plan from elsewhere."""
+
+    robot: str
+    tasks: tuple[str, ...]
+    usage: float | None = None
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why one robot does not do a task; `reason` is one of REASONS."""
+
+    robot: str
+    reason: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class Unassigned:
+    """A task left out, and why each robot does not do it."""
+
+    task: str
+    reasons: tuple[Reason, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """The answer to a mission.
+
+    Figures are None in a plan from elsewhere that does not state them. Of those stated here, `elapsed_s` and the
+    seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
+    """
+
+    mission: str | None = None
+    allocator: str | None = None
+    seed: int | None = None
+    ignored: tuple[str, ...] = ()
+    objective: str | None = None
+    objective_value: float | None = None
+    usage_unit: str | None = None
+    total_cost: float | None = None
+    max_usage: float | None = None
+    makespan_s: float | None = None
+    equality_index: float | None = None
+    tasks_completed: int | None = None
+    tasks_total: int | None = None
+    weight_completed: float | None = None
+    lower_bound: float | None = None
+    elapsed_s: float | None = None
+    routes: tuple[Route, ...]
+    unassigned: tuple[Unassigned, ...] = ()
+    history: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether no task is left out."""
+        return not self.unassigned
+
+    def as_dict(self) -> dict[str, Any]:
+        """The plan as its file holds it."""
+        data: dict[str, Any] = {"schema": PLAN_SCHEMA}
+        for name, value in asdict(self).items():
+            if name == "objective":
+                data["objective"] = {"name": self.objective, "value": self.objective_value}
+            elif name != "objective_value":
+                data[name] = value
+        return data
+
+    def text(self) -> str:
+        """The plan as JSON; one line a route."""
+        return json_text(self.as_dict())
+
+    def save(self, path: str | Path) -> None:
+        """Write the plan as JSON."""
+        Path(path).write_text(self.text(), encoding="utf-8")
+
+
+def json_text(data: Mapping[str, Any]) -> str:
+    """A mapping as JSON: a line for each key, and for each item of a list of records."""
+    lines = []
+    for key, value in data.items():
+        if isinstance(value, list | tuple) and value and isinstance(value[0], dict | list | tuple):
+            items = ",\n  ".join(json.dumps(item, ensure_ascii=False) for item in value)
+            lines.append(f" {json.dumps(key)}: [\n  {items}]")
+        else:
+            lines.append(f" {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def read_plan(path: str | Path) -> Plan:
+    """Read a plan file. One from elsewhere needs only `schema` and `routes`.
+
+    Raises
+    ------
+    PlanError
+        with everything that is wrong with the file; whether the plan is admissible is for `verify` to say.
+    """
+    file = Path(path)
+    try:
+        data = json.loads(read_text(file))
+    except MissionError as error:
+        raise PlanError(error.findings) from None
+    except json.JSONDecodeError as error:
+        raise PlanError([Finding(str(file), error.lineno, "", error.msg, "a plan in JSON")]) from None
+    except (RecursionError, ValueError) as error:
+        raise PlanError([Finding(str(file), None, "", shown(str(error)), "a plan in JSON")]) from None
+    return _Reading(str(file)).plan(data)
+
+
+class _Reading:
+    """Plain data to a Plan, with all that is wrong in one go."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._found: list[Finding] = []
+
+    def plan(self, data: Any) -> Plan:
+        if not isinstance(data, dict):
+            raise PlanError(
+                [Finding(self._file, None, "", shown(data), f"a mapping with schema: {PLAN_SCHEMA} and routes")]
+            )
+        if data.get("schema") != PLAN_SCHEMA:
+            self._refuse("schema", data.get("schema", "missing"), PLAN_SCHEMA)
+        objective = self._given(data, "objective", dict, {})
+        ignored = self._names(data.get("ignored", []), "ignored")
+        for name in ignored:
+            if name not in IGNORABLE:
+                self._refuse("ignored", name, " or ".join(IGNORABLE))
+        if objective.get("name") not in (None, *OBJECTIVES):
+            self._refuse("objective.name", objective["name"], " or ".join(OBJECTIVES))
+        figures = (
+            "total_cost",
+            "max_usage",
+            "makespan_s",
+            "equality_index",
+            "weight_completed",
+            "lower_bound",
+            "elapsed_s",
+        )
+        plan = Plan(
+            mission=self._given(data, "mission", str),
+            allocator=self._given(data, "allocator", str),
+            seed=self._given(data, "seed", int),
+            ignored=ignored,
+            objective=self._given(objective, "name", str),
+            objective_value=self._number(objective, "value"),
+            usage_unit=self._given(data, "usage_unit", str),
+            tasks_completed=self._given(data, "tasks_completed", int),
+            tasks_total=self._given(data, "tasks_total", int),
+            routes=self._routes(data),
+            unassigned=self._unassigned(data),
+            history=self._history(data),
+            **{name: self._number(data, name) for name in figures},
+        )
+        if self._found:
+            raise PlanError(self._found)
+        return plan
+
+    def _refuse(self, field: str, value: object, expected: str) -> None:
+        self._found.append(Finding(self._file, None, field, shown(value), expected))
+
+    def _given(self, data: Mapping[str, Any], name: str, kind: type, default: Any = None) -> Any:
+        value = data.get(name)
+        if value is None:
+            return default
+        if not isinstance(value, kind) or isinstance(value, bool):
+            self._refuse(name, value, {str: "a text", int: "a whole number", dict: "a mapping", list: "a list"}[kind])
+            return default
+        return value
+
+    def _number(self, data: Mapping[str, Any], name: str) -> float | None:
+        value = data.get(name)
+        if value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            self._refuse(name, value, "a finite number")
+            return None
+        return value
+
+    def _names(self, value: object, field: str) -> tuple[str, ...]:
+        if not isinstance(value, list) or not all(
+            isinstance(name, str | int) and not isinstance(name, bool) for name in value
+        ):
+            self._refuse(field, value, "a list of ids")
+            return ()
+        return tuple(str(name) for name in value)
+
+    def _routes(self, data: Mapping[str, Any]) -> tuple[Route, ...]:
+        if "routes" not in data:
+            self._refuse("routes", "missing", "a list of routes")
+        routes = []
+        for k, route in enumerate(self._given(data, "routes", list, [])):
+            if not isinstance(route, dict) or not isinstance(route.get("robot"), str | int):
+                self._refuse(f"routes[{k}]", route, "a mapping with robot and tasks")
+                continue
+            tasks = self._names(route.get("tasks"), f"routes[{k}].tasks")
+            routes.append(Route(str(route["robot"]), tasks, self._number(route, "usage")))
+        return tuple(routes)
+
+    def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:
+        left_out = []
+        for k, item in enumerate(self._given(data, "unassigned", list, [])):
+            if not isinstance(item, dict) or not isinstance(item.get("task"), str | int):
+                self._refuse(f"unassigned[{k}]", item, "a mapping with task and reasons")
+                continue
+            left_out.append(Unassigned(str(item["task"]), self._reasons(item.get("reasons", []), k)))
+        return tuple(left_out)
+
+    def _reasons(self, data: object, k: int) -> tuple[Reason, ...]:
+        keys = ("robot", "reason", "detail")
+        if not isinstance(data, list) or not all(
+            isinstance(r, dict) and all(isinstance(r.get(x), str) for x in keys) for r in data
+        ):
+            self._refuse(f"unassigned[{k}].reasons", data, "a list of mappings with robot, reason and detail")
+            return ()
+        return tuple(Reason(r["robot"], r["reason"], r["detail"]) for r in data)
+
+    def _history(self, data: Mapping[str, Any]) -> tuple[tuple[float, float], ...]:
+        history = self._given(data, "history", list, [])
+        if not all(isinstance(p, list) and len(p) == 2 and all(isinstance(x, int | float) for x in p) for p in history):
+            self._refuse("history", history, "a list of [seconds, objective]")
+            return ()
+        return tuple((float(seconds), float(value)) for seconds, value in history)
+
+
+def tie_order(names: Sequence[str]) -> list[int]:
+    """Indices of ids in the order that breaks ties: numeric ids as numbers, then the others by code points."""
+    return sorted(range(len(names)), key=lambda k: _tie_key(names[k]))
+
+
+def _tie_key(name: str) -> tuple[int, int, str]:
+    return (0, int(name), name) if name.isascii() and name.isdecimal() and len(name) < 4000 else (1, 0, name)

@@ -1,0 +1,52 @@
+"""Plain data (from YAML, CSV, TSPLIB) to a Mission, with all that is wrong reported in one go.
+
+A value that is wrong is set aside and the rest is still checked, so that a misspelt speed does not hide an unknown
+prerequisite three tasks later.
+"""
+
+from __future__ import annotations
+
+from muster.mission.consistency import inconsistencies
+from muster.mission.errors import MissionError
+from muster.mission.kinds import Fault, Path, Record
+from muster.mission.model import Mission, findings
+from muster.mission.source import Source
+from muster.mission.travel_csv import read_travel_tables
+
+
+def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
+    """The mission that plain data describes.
+
+    Parameters
+    ----------
+    data
+        a mapping with the keys of `Mission`.
+    source
+        where the values came from; files named in the data are found from the folder of its file.
+    faults
+        what was wrong with the form of the file already.
+
+    Raises
+    ------
+    MissionError
+        with `faults` and everything else that was found.
+    """
+    mission: Mission = Record(Mission, "a mission").read(data, (), faults)
+    object.__setattr__(mission, "source", source)
+    if mission.travel_rule == "matrix" and mission.travel:
+        object.__setattr__(mission, "travel_tables", read_travel_tables(mission.travel, source, faults))
+    # Where a value is known to be wrong a filler stands in its place: nothing more is said of it.
+    wrong = {fault.path for fault in faults}
+    around = {start for path in wrong for start in _prefixes(path)}
+    faults.extend(
+        fault
+        for fault in inconsistencies(mission)
+        if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path))
+    )
+    if faults:
+        raise MissionError(findings(faults, source))
+    return mission
+
+
+def _prefixes(path: Path) -> list[Path]:
+    return [path[:length] for length in range(len(path) + 1)]

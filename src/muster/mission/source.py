@@ -1,0 +1,30 @@
+"""Where a mission came from: the file and line of each of its values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from muster.mission.kinds import Path
+
+Place = tuple[str, int | None]
+"""A file and a line of it, from 1; None where there are no lines."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A mission's main file, and the place of each value by the value's path."""
+
+    file: str
+    places: Mapping[Path, Place] = field(default_factory=dict)
+
+    def place(self, path: Path) -> Place:
+        """The place of a value, or of the nearest thing around it that has one."""
+        for length in range(len(path), -1, -1):
+            if path[:length] in self.places:
+                return self.places[path[:length]]
+        return self.file, None
+
+
+IN_PYTHON = Source("<mission>")
+"""The source of a mission that was built in Python."""

@@ -1,0 +1,21 @@
+"""The text of input files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from muster.mission.errors import Finding, MissionError
+
+
+def read_text(path: Path) -> str:
+    """The text of an input file; what stands in the way is a MissionError, not an OSError."""
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise MissionError(
+            [Finding(str(path), None, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
+        ) from None
+    except OSError as error:
+        raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
+    except ValueError as error:
+        raise MissionError([Finding(str(path), None, "", str(error), "a file to read")]) from None

@@ -1,0 +1,153 @@
+"""Task-list CSV beside robots CSV, as the TCF thesis keeps them (its section 5.2 and Appendix A1).
+
+Tasks: `index,x,y,type,actuation_cost,prerequisites`, the last as `"[1,18]"` or `1 18`; robots:
+`id,type,x,y,work_capacity`, empty or `inf` where unlimited; suitability: a table with robot types in its first column
+and task types in its first line. Both lists may have a column `z`.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping
+from pathlib import Path as FilePath
+
+from muster.mission.csv_files import Row, number, read_rows, read_table
+from muster.mission.errors import Finding, MissionError
+from muster.mission.kinds import Fault, Path
+from muster.mission.model import SCHEMA, Mission, Robot, Task
+from muster.mission.reading import mission_from
+from muster.mission.source import Place, Source
+
+TASK_COLUMNS = ("index", "x", "y", "type", "actuation_cost", "prerequisites")
+ROBOT_COLUMNS = ("id", "type", "x", "y", "work_capacity")
+_UNLIMITED = ("", "inf", "infinity", ".inf")
+
+
+def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = None) -> Mission:
+    """Read a mission from a task list, a robot list and, where types matter, a table of suitability.
+
+    Raises
+    ------
+    MissionError
+        with every finding: file, line, field, value, what was expected.
+    """
+    faults: list[Fault] = []
+    places: dict[Path, Place] = {}
+    task_rows = read_rows(tasks, TASK_COLUMNS, ("z",))
+    robot_rows = read_rows(robots, ROBOT_COLUMNS, ("z",))
+    data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
+    data["tasks"] = [_task(row, k, tasks, places) for k, row in enumerate(task_rows)]
+    data["robots"] = [_robot(row, k, robots, places) for k, row in enumerate(robot_rows)]
+    if suitability is not None:
+        data["suitability"] = _suitability(suitability, places)
+    return mission_from(data, Source(str(tasks), places), faults)
+
+
+def _place(at: Path, row: Row, file: FilePath, places: dict[Path, Place]) -> None:
+    places[at] = (str(file), row.line)
+
+
+def _position(row: Row) -> list[object]:
+    return [number(row.cells[axis]) for axis in ("x", "y", "z") if axis in row.cells]
+
+
+def _task(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[str, object]:
+    _place(("tasks", k), row, file, places)
+    cells = row.cells
+    task: dict[str, object] = {"id": cells["index"], "position": _position(row)}
+    task["prerequisites"] = (
+        re.split(r"[\s,;]+", cells["prerequisites"].strip("[] ")) if cells["prerequisites"].strip("[] ") else []
+    )
+    if cells["type"]:
+        task["type"] = cells["type"]
+    if cells["actuation_cost"]:
+        task["actuation_cost"] = number(cells["actuation_cost"])
+    return task
+
+
+def _robot(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[str, object]:
+    _place(("robots", k), row, file, places)
+    cells = row.cells
+    robot: dict[str, object] = {"id": cells["id"], "position": _position(row)}
+    if cells["type"]:
+        robot["type"] = cells["type"]
+    if cells["work_capacity"].lower() not in _UNLIMITED:
+        robot["work_capacity"] = number(cells["work_capacity"])
+    return robot
+
+
+def _suitability(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
+    columns, rows = read_table(path)
+    table: dict[str, dict[str, object]] = {}
+    for line, name, cells in rows:
+        if name in table:
+            raise MissionError([Finding(str(path), line, "suitability", f'"{name}" again', "each robot type once")])
+        places["suitability", name] = (str(path), line)
+        table[name] = {column: number(cell) for column, cell in zip(columns, cells, strict=True)}
+    return table
+
+
+def write_csv(mission: Mission, tasks: FilePath, robots: FilePath, suitability: FilePath | None = None) -> None:
+    """Write a mission as the three files that `read_csv` reads.
+
+    Raises
+    ------
+    MissionError
+        if the mission has something that these files cannot say; nothing is written then.
+    """
+    lost = [*_lost(mission, suitability is not None)]
+    if lost:
+        raise MissionError(lost)
+    z = ("z",) if mission.dimensions == 3 else ()
+    task_lines = [[*TASK_COLUMNS[:3], *z, *TASK_COLUMNS[3:]]] + [_task_cells(task) for task in mission.tasks]
+    robot_lines = [[*ROBOT_COLUMNS[:4], *z, *ROBOT_COLUMNS[4:]]] + [_robot_cells(robot) for robot in mission.robots]
+    _write(tasks, task_lines)
+    _write(robots, robot_lines)
+    if suitability is not None and mission.suitability is not None:
+        _write(suitability, _suitability_lines(mission.suitability))
+
+
+def _lost(mission: Mission, with_suitability: bool) -> list[Finding]:
+    plain_tasks = [
+        Task(id=t.id, position=t.position, type=t.type, actuation_cost=t.actuation_cost, prerequisites=t.prerequisites)
+        for t in mission.tasks
+    ]
+    plain_robots = [
+        Robot(id=r.id, position=r.position, type=r.type, work_capacity=r.work_capacity) for r in mission.robots
+    ]
+    plain = Mission(
+        name=mission.name,
+        robots=tuple(plain_robots),
+        tasks=tuple(plain_tasks),
+        suitability=mission.suitability if with_suitability else None,
+    )
+    names = ("origin_wgs84", "rules", "map", "travel", "suitability", "robots", "tasks", "events")
+    return [
+        Finding(mission.source.file, None, name, "more than CSV can say", "what read_csv reads; or write YAML")
+        for name in names
+        if getattr(plain, name) != getattr(mission, name)
+    ]
+
+
+def _task_cells(task: Task) -> list[str]:
+    x, y, *z = (repr(c) for c in task.position)
+    prerequisites = f"[{','.join(task.prerequisites)}]"
+    return [task.id, x, y, *z, task.type or "", repr(task.actuation_cost), prerequisites]
+
+
+def _robot_cells(robot: Robot) -> list[str]:
+    x, y, *z = (repr(c) for c in robot.position)
+    capacity = "inf" if robot.work_capacity is None else repr(robot.work_capacity)
+    return [robot.id, robot.type or "", x, y, *z, capacity]
+
+
+def _suitability_lines(suitability: Mapping[str, Mapping[str, float]]) -> list[list[str]]:
+    columns = list(dict.fromkeys(kind for row in suitability.values() for kind in row))
+    lines = [[name, *(repr(row.get(kind, 0.0)) for kind in columns)] for name, row in suitability.items()]
+    return [["robot_type", *columns], *lines]
+
+
+def _write(path: FilePath, lines: list[list[str]]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(lines)

@@ -1,0 +1,54 @@
+"""Travel tables: CSV with place ids in the first line and column; the cell is the distance from row to column."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path as FilePath
+
+from muster.mission.csv_files import number, read_table
+from muster.mission.errors import Finding, MissionError
+from muster.mission.kinds import Fault
+from muster.mission.model import TravelTable
+from muster.mission.source import Source
+
+
+def read_travel_tables(files: Mapping[str, str], source: Source, faults: list[Fault]) -> dict[str, TravelTable]:
+    """The travel table of each robot type; `files` are found from the folder of the mission's file.
+
+    A cell is metres, or `inf` where there is no way. What is wrong is appended to `faults`.
+    """
+    tables: dict[str, TravelTable] = {}
+    for kind, name in files.items():
+        try:
+            tables[kind] = read_travel_table(FilePath(source.file).parent / name)
+        except MissionError as error:
+            faults.extend(
+                Fault(("travel", kind), f"{finding.file}:{finding.line}: {finding.value}", finding.expected)
+                for finding in error.findings
+            )
+    return tables
+
+
+def read_travel_table(path: FilePath) -> TravelTable:
+    """One travel table.
+
+    Raises
+    ------
+    MissionError
+        if the file cannot be read or is not a square table of numbers.
+    """
+    columns, rows = read_table(path)
+    names = [name for _, name, _ in rows]
+    if names != columns or len(set(names)) != len(names):
+        raise _refusal(
+            path, 1, "rows and columns that differ or repeat", "the same places in rows and columns, each once"
+        )
+    for line, name, cells in rows:
+        for column, cell in zip(columns, cells, strict=True):
+            if not isinstance(number(cell), float):
+                raise _refusal(path, line, f"{cell!r} from {name} to {column}", "metres, or inf")
+    return TravelTable(tuple(names), tuple(tuple(float(cell) for cell in cells) for _, _, cells in rows))
+
+
+def _refusal(path: FilePath, line: int, value: str, expected: str) -> MissionError:
+    return MissionError([Finding(str(path), line, "", value, expected)])

@@ -1,0 +1,62 @@
+"""Missions as YAML: what `yaml_reader` reads back to an equal mission. Defaults are left out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from muster.mission.kinds import specified
+from muster.mission.model import Mission
+
+
+def yaml_text(mission: Mission) -> str:
+    """The mission as YAML of `schema: muster/1`; one line a robot and task."""
+    lines: list[str] = []
+    for f in specified(Mission):
+        value = getattr(mission, f.name)
+        if f.name != "schema" and value == f.default:
+            continue
+        data = plain(value)
+        if isinstance(data, list) and data:
+            lines += [f"{f.name}:", *(f"  - {_flow(item)}" for item in data)]
+        elif f.name == "suitability" and isinstance(data, dict):
+            lines += [f"{f.name}:", *(f"  {_word(name)}: {_flow(row)}" for name, row in data.items())]
+        else:
+            lines.append(f"{f.name}: {_flow(data)}")
+    return "\n".join(lines) + "\n"
+
+
+def plain(value: Any) -> Any:
+    """A value of the model as plain data; defaults of records are left out."""
+    if isinstance(value, tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if hasattr(value, "__dataclass_fields__"):
+        own = {f.name: (getattr(value, f.name), f.default) for f in specified(type(value))}
+        return {name: plain(item) for name, (item, default) in own.items() if item != default}
+    return value
+
+
+def _flow(data: Any) -> str:
+    if isinstance(data, dict):
+        return "{" + ", ".join(f"{_word(key)}: {_flow(item)}" for key, item in data.items()) + "}"
+    if isinstance(data, list):
+        return "[" + ", ".join(_flow(item) for item in data) + "]"
+    if isinstance(data, str):
+        return _word(data)
+    if isinstance(data, float) and data.is_integer() and abs(data) < 1e15:
+        return str(int(data))
+    return json.dumps(data)
+
+
+def _word(text: str) -> str:
+    """A text bare where it cannot be taken for anything else, otherwise quoted."""
+    bare = text.replace("_", "").replace("-", "").replace("/", "").replace("+", "").replace(".", "")
+    plain_word = bare.isascii() and bare.isalnum() and text[0].isalpha()
+    if text.isdecimal() and text.isascii() and (text == "0" or text[0] != "0") and len(text) < 18:
+        return text
+    return (
+        text if plain_word and text.lower() not in ("null", "true", "false") else json.dumps(text, ensure_ascii=False)
+    )
