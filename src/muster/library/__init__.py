@@ -1,0 +1,23 @@
+"""Missions and published tables that ship with the package, as data and by name."""
+
+from muster.library.shelf import (
+    MissionSummary,
+    as_corrected,
+    as_printed,
+    mission_names,
+    mission_path,
+    mission_summary,
+    published,
+    published_names,
+)
+
+__all__ = [
+    "MissionSummary",
+    "as_corrected",
+    "as_printed",
+    "mission_names",
+    "mission_path",
+    "mission_summary",
+    "published",
+    "published_names",
+]
