@@ -1,0 +1,136 @@
+"""What every allocator is, and how its routes become a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any, Protocol
+
+from muster import core
+from muster.allocation.explanations import unassigned
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+from muster.mission.plan import Plan, Route
+
+Routes = list[list[int]]
+
+
+class Allocator(Protocol):
+    """An algorithm that turns a problem into a plan.
+
+    `anytime` tells whether it goes on until it is stopped. The plan is admissible, and the same for the same problem,
+    parameters and seed if `stop` limits iterations and not time.
+    """
+
+    name: str
+    summary: str
+    anytime: bool
+    parameters: type[Any]
+
+    def solve(
+        self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
+    ) -> Plan: ...
+
+
+def routes_of(problem: Problem, plan: Plan) -> Routes:
+    """A plan's routes as indices of the problem's robots and tasks.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the problem does not have.
+    """
+    routes: Routes = [[] for _ in problem.robots]
+    for route in plan.routes:
+        if route.robot not in problem.robot_index:
+            raise ParameterError(f"start: robot {route.robot} is not in the mission")
+        for task in route.tasks:
+            if task not in problem.task_index:
+                raise ParameterError(f"start: task {task} is not in the mission")
+            routes[problem.robot_index[route.robot]].append(problem.task_index[task])
+    return routes
+
+
+def admissible_routes(problem: Problem, plan: Plan) -> Routes:
+    """The routes of a start plan.
+
+    Raises
+    ------
+    ParameterError
+        if they are not admissible.
+    """
+    routes = routes_of(problem, plan)
+    try:
+        draft = core.Draft(problem.core, routes)
+    except ValueError as error:
+        raise ParameterError(f"start: {error}") from None
+    forbidden = [
+        f"{problem.robots[i].id} may not do {problem.tasks[j].id}"
+        for i, route in enumerate(routes)
+        for j in route
+        if not problem.allowed[i, j]
+    ]
+    if forbidden or not draft.admissible:
+        raise ParameterError(f"start: {forbidden[0] if forbidden else 'the plan is not admissible'}")
+    return routes
+
+
+def finished_plan(problem: Problem, stop: Stop, routes: Sequence[Sequence[int]], *, allocator: str, seed: int) -> Plan:
+    """The plan with these routes, its figures, and the reasons for the tasks left out."""
+    elapsed = stop.elapsed_s
+    lists = [list(route) for route in routes]
+    draft = core.Draft(problem.core, lists)
+    usages = draft.usages
+    mission = problem.mission
+    done = [j for route in lists for j in route]
+    by_robot = {
+        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage)
+        for robot, route, usage in zip(problem.robots, lists, usages, strict=True)
+    }
+    return Plan(
+        mission=mission.name,
+        allocator=allocator,
+        seed=seed,
+        ignored=problem.ignored,
+        objective=problem.objective,
+        objective_value=draft.objective,
+        usage_unit=problem.usage_unit,
+        total_cost=sum(usages),
+        max_usage=max(usages),
+        makespan_s=draft.makespan,
+        equality_index=equality_index(usages),
+        tasks_completed=len(done),
+        tasks_total=len(problem.tasks),
+        weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
+        elapsed_s=elapsed,
+        routes=tuple(by_robot[robot.id] for robot in mission.robots),
+        unassigned=unassigned(problem, lists),
+        history=tuple(stop.history),
+    )
+
+
+def equality_index(usages: Sequence[float]) -> float:
+    """1 - Gini over all robots' usages, (3.28) and (3.29); 1 if all are 0."""
+    ordered, total, m = sorted(usages), sum(usages), len(usages)
+    if total == 0:
+        return 1.0
+    ranked = sum(rank * usage for rank, usage in enumerate(ordered, 1))
+    return 1.0 - (2.0 / m * ranked / total - (m + 1) / m)
+
+
+def make_parameters(allocator: Allocator, values: dict[str, Any]) -> Any:
+    """The allocator's parameters with some values given.
+
+    Raises
+    ------
+    ParameterError
+        for a name that it does not have, or a value out of range.
+    """
+    known = [f.name for f in fields(allocator.parameters)]
+    for name in values:
+        if name not in known:
+            hint = did_you_mean(name, known) or f"; it has {', '.join(known) or 'none'}"
+            raise ParameterError(f"{allocator.name} has no parameter {name}{hint}")
+    return allocator.parameters(**values)

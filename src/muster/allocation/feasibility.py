@@ -1,0 +1,92 @@
+"""Tasks that can never be done, whatever the plan, and why."""
+
+from __future__ import annotations
+
+import heapq
+import math
+
+import numpy as np
+
+from muster.allocation.problem import Floats, Problem
+from muster.mission.plan import Reason, Unassigned
+
+
+def impossible(problem: Problem) -> tuple[Unassigned, ...]:
+    """The tasks that no robot can do in any admissible plan, in mission order, each with a reason for every robot.
+
+    A task is impossible if no robot may do it, if it is out of every robot's reach, or if a prerequisite is impossible.
+    """
+    least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
+    possible = problem.allowed & np.isfinite(least) & (least <= problem.capacity[:, None])
+    lost = dict.fromkeys(np.flatnonzero(~possible.any(axis=0)).tolist(), "")
+    waiting = list(lost)
+    while waiting:
+        before = waiting.pop()
+        for j in problem.dependants[before]:
+            if j not in lost:
+                lost[j] = problem.tasks[before].id
+                waiting.append(j)
+    robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
+    order = [problem.task_index[task.id] for task in problem.mission.tasks]
+    return tuple(
+        Unassigned(problem.tasks[j].id, tuple(_reason(problem, i, j, float(least[i, j]), lost[j]) for i in robots))
+        for j in order
+        if j in lost
+    )
+
+
+def _reason(problem: Problem, i: int, j: int, least: float, lost_before: str) -> Reason:
+    robot, unit = problem.robots[i].id, problem.usage_unit
+    refusal = problem.refusal(i, j)
+    if refusal is not None:
+        return Reason(robot, *refusal)
+    if lost_before:
+        return Reason(robot, "prerequisite", f"{lost_before} comes before it and can never be done")
+    if math.isinf(least):
+        return Reason(robot, "unreachable", "there is no way to it")
+    detail = f"takes at least {least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
+    return Reason(robot, "capacity", detail)
+
+
+def least_usage(problem: Problem, i: int) -> Floats:
+    """(n,) the least usage of any route of robot i that holds the task; inf where there is none.
+
+    Where travel keeps the triangle inequality that is the straight way there, the work, and the way to the robot's end.
+    It does not where a travel table says otherwise or a task is left elsewhere than entered: ways through such tasks
+    are looked at too.
+    """
+    tasks = np.arange(len(problem.tasks))
+    through = [int(j) for j in problem.shortcuts() if problem.allowed[i, j]]
+    work = problem.work_usage(i)
+    there = problem.legs(i, [problem.start(i)], tasks)[0]
+    between = problem.legs(i, through, tasks)
+    arrival = _shortest(there[through], between[:, through] + work[through, None])
+    there = np.minimum(there, _via(arrival + work[through], between))
+    if problem.robots[i].place_at_end(problem.mission.rules) is None:
+        return np.asarray(there + work)
+    back = problem.legs(i, tasks, [problem.end(i)])[:, 0]
+    between = problem.legs(i, tasks, through)
+    departure = _shortest(back[through], (between[through] + work[through]).T)
+    back = np.minimum(back, _via(departure + work[through], between.T))
+    return np.asarray(there + work + back)
+
+
+def _via(first: Floats, then: Floats) -> Floats:
+    """(n,) least of first[k] + then[k, j] over k; inf if there is no k."""
+    return np.asarray((first[:, None] + then).min(axis=0, initial=math.inf))
+
+
+def _shortest(first: Floats, steps: Floats) -> Floats:
+    """Dijkstra: least cost to each node, entering at node k for first[k] and going on from a to b for steps[a, b]."""
+    best = first.copy()
+    queue = [(cost, k) for k, cost in enumerate(first.tolist()) if math.isfinite(cost)]
+    heapq.heapify(queue)
+    while queue:
+        cost, k = heapq.heappop(queue)
+        if cost > best[k]:
+            continue
+        onward = cost + steps[k]
+        for j in np.flatnonzero(onward < best).tolist():
+            best[j] = onward[j]
+            heapq.heappush(queue, (float(onward[j]), j))
+    return best

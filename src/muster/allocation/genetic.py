@@ -1,0 +1,108 @@
+"""GenTA: genetic task allocation.
+
+TCF thesis, section 3.2.2, Algorithm 3, with Algorithms 4 (mutation) and 5 (crossover); defaults of its Table A.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster import core
+from muster.allocation.allocator import Routes, admissible_routes, finished_plan
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.mission.errors import ParameterError
+from muster.mission.plan import Plan
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Parameters of the genetic algorithm.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    population_size: int = 10
+    mutation_probability: float = 0.7
+    crossover_probability: float = 0.7
+    replaced_share: float = 0.4
+    start_mutants: int = 4  # of a start plan, beside the plan itself; the thesis leaves their number open
+
+    def __post_init__(self) -> None:
+        if self.population_size < 1:
+            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 1")
+        for name in ("mutation_probability", "crossover_probability", "replaced_share"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to 1")
+        if self.start_mutants < 0:
+            raise ParameterError(f"start_mutants: {self.start_mutants}; expected a whole number of at least 0")
+
+
+class Genetic:
+    """A population of task allocations: the worst are replaced, all mutate and cross, the fittest stay."""
+
+    name = "genetic"
+    summary = "a population from random plans; GenTA of the TCF thesis"
+    anytime = True
+    parameters = Parameters
+
+    def solve(
+        self,
+        problem: Problem,
+        stop: Stop,
+        *,
+        seed: int = 0,
+        params: Parameters | None = None,
+        start: Plan | None = None,
+    ) -> Plan:
+        """The best plan found until `stop`; a start plan and mutants of it become members of the first population."""
+        routes = evolve(
+            problem, stop, seed, params or Parameters(), admissible_routes(problem, start) if start else None
+        )
+        return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
+
+
+def evolve(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+    """Algorithm 3; steps carry its numbers. The best plan ever seen is kept apart, as members can be replaced."""
+    population = core.Population(problem.core, params.population_size, seed)
+    first_population(population, params, start)  # 2
+    best = Best(stop)
+    best.note(population)
+    for _ in stop.iterations():
+        population.replace_worst(params.replaced_share)  # 4
+        population.mutate(params.mutation_probability)  # 5
+        population.cross(params.crossover_probability)  # 6
+        best.note(population)  # 8
+    return best.routes
+
+
+def first_population(population: core.Population, params: Parameters, start: Routes | None) -> None:
+    """Random admissible allocations; with a start plan it comes first, then its mutants (Algorithm 7, step 2)."""
+    for member in range(len(population)):
+        if start is None or member > params.start_mutants:
+            population.set_random(member)
+        elif member == 0:
+            population.set(0, start)
+        else:
+            population.set_mutant(member, 0)
+
+
+class Best:
+    """The best member seen so far."""
+
+    def __init__(self, stop: Stop) -> None:
+        self._stop = stop
+        self._value: tuple[float, float] | None = None
+        self.routes: Routes = []
+
+    def note(self, population: core.Population) -> None:
+        """Keep the population's best member if it is the best so far."""
+        member = population.best()
+        value = -population.weight(member), population.objective(member)
+        if self._value is None or value < self._value:
+            self._value = value
+            self.routes = population.routes(member)
+            self._stop.improved(-value[0], value[1])

@@ -1,0 +1,256 @@
+"""The compiled question: a mission, an objective and the rules that hold, as arrays for the core."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from muster import core
+from muster.allocation.travel import travel_table
+from muster.mission.errors import Finding, NotSupportedError, ParameterError
+from muster.mission.kinds import shown
+from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task, path_text
+from muster.mission.plan import tie_order
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What an allocator solves. Immutable.
+
+    Robots (m) and tasks (n) stand in the order that breaks ties, so that the lower index always wins one.
+
+    Parameters
+    ----------
+    mission
+        the question.
+    objective
+        one of OBJECTIVES; the mission's own by default.
+    ignored
+        rules that do not hold, of IGNORABLE.
+
+    Raises
+    ------
+    ParameterError
+        for an unknown objective or rule.
+    NotSupportedError
+        for a mission that asks for travel over a map, or for actions whose cost is to be computed.
+    """
+
+    mission: Mission
+    objective: str
+    ignored: tuple[str, ...]
+    robots: tuple[Robot, ...]
+    tasks: tuple[Task, ...]
+
+    @classmethod
+    def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
+        objective = mission.rules.objective if objective is None else objective
+        if objective not in OBJECTIVES:
+            raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
+        for rule in ignored:
+            if rule not in IGNORABLE:
+                raise ParameterError(f"ignore: {shown(rule)}; expected {' or '.join(IGNORABLE)}")
+        refused = list(_not_supported(mission))
+        if refused:
+            raise NotSupportedError(refused)
+        return cls(
+            mission=mission,
+            objective=objective,
+            ignored=tuple(rule for rule in IGNORABLE if rule in ignored),
+            robots=tuple(mission.robots[k] for k in tie_order([r.id for r in mission.robots])),
+            tasks=tuple(mission.tasks[k] for k in tie_order([t.id for t in mission.tasks])),
+        )
+
+    def ready(self) -> Problem:
+        """The problem itself, its arrays made, so that an allocator's own time does not hold that."""
+        assert self.core is not None
+        return self
+
+    def holds(self, rule: str) -> bool:
+        """Whether a rule of IGNORABLE holds."""
+        return rule not in self.ignored
+
+    @cached_property
+    def task_index(self) -> dict[str, int]:
+        return {task.id: j for j, task in enumerate(self.tasks)}
+
+    @cached_property
+    def robot_index(self) -> dict[str, int]:
+        return {robot.id: i for i, robot in enumerate(self.robots)}
+
+    @cached_property
+    def capacity(self) -> Floats:
+        """(m,) usable work capacity; inf where unlimited."""
+        usable = 1.0 - self.mission.rules.capacity_reserve
+        limited = self.holds("capacity")
+        return np.array(
+            [usable * r.work_capacity if limited and r.work_capacity is not None else math.inf for r in self.robots]
+        )
+
+    @cached_property
+    def prerequisites(self) -> list[list[int]]:
+        """For each task the indices of its prerequisites."""
+        if not self.holds("prerequisites"):
+            return [[] for _ in self.tasks]
+        return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def dependants(self) -> list[list[int]]:
+        """For each task the indices of the tasks that wait for it."""
+        waiting: list[list[int]] = [[] for _ in self.tasks]
+        for j, before in enumerate(self.prerequisites):
+            for k in before:
+                waiting[k].append(j)
+        return waiting
+
+    def refusal(self, i: int, j: int) -> tuple[str, str] | None:
+        """Why robot i may not do task j whatever its route (reason, detail); None if it may."""
+        robot, task = self.robots[i], self.tasks[j]
+        lacking = [skill for skill in task.requires if skill not in robot.skills]
+        if self.holds("skills") and lacking:
+            return "skill", f"lacks {', '.join(lacking)}"
+        least = self.mission.rules.min_suitability
+        if self.holds("suitability") and self.mission.suitability is not None:
+            score = self.mission.suitability[robot.type or ""].get(task.type or "", 0.0)
+            if score < least:
+                return "suitability", f"type {robot.type} scores {score:g} for {task.type}, below {least:g}"
+        if task.only_robots is not None and robot.id not in task.only_robots:
+            return "lock", f"only {', '.join(task.only_robots)} may do it"
+        return None
+
+    @cached_property
+    def allowed(self) -> Bools:
+        """(m, n) whether robot i may do task j: skills, suitability, locks. Rows of like robots are worked out once."""
+        rows: dict[tuple[object, ...], Bools] = {}
+        locked = {name for task in self.tasks for name in task.only_robots or ()}
+        for i, robot in enumerate(self.robots):
+            key = robot.type, frozenset(robot.skills), robot.id if robot.id in locked else None
+            if key not in rows:
+                rows[key] = self._allowed_row(i)
+        keys = [(r.type, frozenset(r.skills), r.id if r.id in locked else None) for r in self.robots]
+        return np.array([rows[key] for key in keys], dtype=np.bool_).reshape(len(self.robots), len(self.tasks))
+
+    def _allowed_row(self, i: int) -> Bools:
+        return np.array([self.refusal(i, j) is None for j in range(len(self.tasks))], dtype=np.bool_)
+
+    @cached_property
+    def core(self) -> core.Problem:
+        """The problem as the core holds it."""
+        table, classes = self.travel
+        return core.Problem(
+            objective=self.objective,
+            usage_is_time=self.mission.rules.usage == "time",
+            capacity=self.capacity,
+            speed=_floats(r.speed_mps for r in self.robots),
+            efficiency=_floats(r.efficiency for r in self.robots),
+            available_from=_floats(r.available_from_s for r in self.robots),
+            must_end=np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_),
+            actuation_cost=self._actuation_cost,
+            duration=self._duration,
+            priority=_floats(t.priority for t in self.tasks),
+            allowed=self.allowed,
+            prerequisites=self.prerequisites,
+            entry=self._entries,
+            exit=self._exits,
+            table=table,
+            travel_class=classes,
+        )
+
+    @cached_property
+    def travel(self) -> tuple[Floats, npt.NDArray[np.int32]]:
+        """Travel tables and each robot's table; empty where travel is straight (see `travel_table`)."""
+        return travel_table(self)
+
+    @cached_property
+    def _actuation_cost(self) -> Floats:
+        return _floats(t.actuation_cost for t in self.tasks)
+
+    @cached_property
+    def _duration(self) -> Floats:
+        return _floats(math.nan if (d := duration_s(t)) is None else d for t in self.tasks)
+
+    @cached_property
+    def _entries(self) -> Floats:
+        """(n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
+        return _coordinates([*(t.entry or t.position for t in self.tasks), *self._robots_places])
+
+    @cached_property
+    def _exits(self) -> Floats:
+        """(n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
+        return _coordinates([*(t.exit or t.position for t in self.tasks), *self._robots_places])
+
+    @property
+    def _robots_places(self) -> list[Point]:
+        ends = [r.place_at_end(self.mission.rules) or r.position for r in self.robots]
+        return [*(r.position for r in self.robots), *ends]
+
+    @property
+    def usage_unit(self) -> str:
+        return "s" if self.mission.rules.usage == "time" else "m"
+
+    def start(self, i: int) -> int:
+        """The place where robot i starts."""
+        return len(self.tasks) + i
+
+    def end(self, i: int) -> int:
+        """The place where robot i's route ends, if it must end somewhere."""
+        return len(self.tasks) + len(self.robots) + i
+
+    def legs(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) travel usage of robot i between places."""
+        table, classes = self.travel
+        if len(table):
+            metres = table[classes[i]][np.asarray(places)[:, None], np.asarray(to)[None]]
+        else:
+            metres = np.linalg.norm(self._exits[places][:, None] - self._entries[to][None], axis=2)
+        return np.asarray(metres / self.robots[i].speed_mps if self.usage_unit == "s" else metres)
+
+    def work_usage(self, i: int) -> Floats:
+        """(n,) usage of robot i for the work of each task."""
+        robot = self.robots[i]
+        if self.usage_unit == "m":
+            return self._actuation_cost
+        in_time = self._duration / robot.efficiency
+        return np.where(np.isnan(in_time), self._actuation_cost / robot.speed_mps, in_time)
+
+    def shortcuts(self) -> Indices:
+        """Tasks through which a way can be shorter than the direct one."""
+        if len(self.travel[0]):
+            return np.arange(len(self.tasks))
+        n = len(self.tasks)
+        return np.flatnonzero((self._entries[:n] != self._exits[:n]).any(axis=1))
+
+
+def duration_s(task: Task) -> float | None:
+    """Time a task takes a robot of efficiency 1, where one is given."""
+    return task.action.duration_s if task.action and task.action.duration_s is not None else task.duration_s
+
+
+def _floats(values: Iterable[float]) -> Floats:
+    return np.array(list(values), dtype=np.float64)
+
+
+def _coordinates(points: Sequence[Point]) -> Floats:
+    return np.array([(*p, 0.0)[:3] for p in points], dtype=np.float64).reshape(len(points), 3)
+
+
+def _not_supported(mission: Mission) -> Iterable[Finding]:
+    source = mission.source
+    if mission.travel_rule == "map":
+        path = ("rules", "travel")
+        expected = "euclidean or matrix: travel over a map cannot be planned yet"
+        yield Finding(*source.place(path), path_text(path), shown("map"), expected)
+    for k, task in enumerate(mission.tasks):
+        if task.action is not None and task.action.has_geometry:
+            expected = "go-to-goal or sensor-activation: costs of other actions cannot be computed yet"
+            at = ("tasks", k, "action", "name")
+            yield Finding(*source.place(at), path_text(at), shown(task.action.name), expected)

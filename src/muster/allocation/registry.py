@@ -1,0 +1,40 @@
+"""The allocators by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from muster.allocation.allocator import Allocator
+from muster.allocation.genetic import Genetic
+from muster.allocation.greedy import Greedy
+from muster.allocation.greedy_genetic import GreedyGenetic
+from muster.allocation.greedy_hill_climbing import GreedyHillClimbing
+from muster.allocation.hill_climbing import HillClimbing
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+
+_IMPLEMENTATIONS: tuple[Allocator, ...] = (
+    Greedy(),
+    HillClimbing(),
+    Genetic(),
+    GreedyHillClimbing(),
+    GreedyGenetic(),
+)
+
+ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
+DEFAULT_ALLOCATOR = "greedy+genetic"
+
+
+def allocator_named(name: str) -> Allocator:
+    """The allocator of that name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in ALLOCATORS:
+        hint = did_you_mean(name, ALLOCATORS)
+        raise ParameterError(f"allocator: {name}; expected {', '.join(ALLOCATORS)}{hint}")
+    return ALLOCATORS[name]

@@ -1,0 +1,96 @@
+"""When an algorithm stops, and what it had reached until then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far an algorithm is: seconds and iterations done, and the best plan's figures so far."""
+
+    elapsed_s: float
+    iterations: int
+    weight: float
+    objective: float
+
+
+class Stop:
+    """Ends an algorithm after a number of iterations, a time, or when it is interrupted; keeps the history.
+
+    Parameters
+    ----------
+    iterations, time_limit
+        at most so many iterations, and seconds; None: no limit of this kind.
+    clock
+        what time is measured with.
+    on_progress
+        called when the best plan improves, and every now and then between.
+    """
+
+    _REPORT_EVERY_S = 0.1
+
+    def __init__(
+        self,
+        *,
+        iterations: int | None = None,
+        time_limit: float | None = None,
+        clock: Clock | None = None,
+        on_progress: Callable[[Progress], None] | None = None,
+    ) -> None:
+        if iterations is not None and iterations < 0:
+            raise ParameterError(f"iterations: {iterations}; expected a whole number of at least 0")
+        if time_limit is not None and not time_limit >= 0:
+            raise ParameterError(f"time_limit: {time_limit:g}; expected seconds, at least 0")
+        self._iterations = iterations
+        self._time_limit = time_limit
+        self._clock = clock or SystemClock()
+        self._on_progress = on_progress
+        self._begin = self._clock.now()
+        self._reported = self._begin
+        self._interrupted = False
+        self.iterations_done = 0
+        self.best: tuple[float, float] | None = None
+        self.history: list[tuple[float, float]] = []
+
+    @property
+    def elapsed_s(self) -> float:
+        return self._clock.now() - self._begin
+
+    @property
+    def interrupted(self) -> bool:
+        return self._interrupted
+
+    def interrupt(self) -> None:
+        """End the algorithm at the next chance; it returns the best it has."""
+        self._interrupted = True
+
+    def due(self) -> bool:
+        """Whether time is up or the algorithm was interrupted."""
+        now = self._clock.now()
+        if self._on_progress is not None and now - self._reported > self._REPORT_EVERY_S:
+            self._report(now)
+        return self._interrupted or (self._time_limit is not None and now - self._begin >= self._time_limit)
+
+    def iterations(self) -> Iterator[int]:
+        """Count iterations until it is time to stop."""
+        while (self._iterations is None or self.iterations_done < self._iterations) and not self.due():
+            self.iterations_done += 1
+            yield self.iterations_done
+
+    def improved(self, weight: float, objective: float) -> None:
+        """Note the figures of a new best plan."""
+        now = self._clock.now()
+        self.best = weight, objective
+        self.history.append((now - self._begin, objective))
+        if self._on_progress is not None:
+            self._report(now)
+
+    def _report(self, now: float) -> None:
+        self._reported = now
+        if self._on_progress is not None and self.best is not None:
+            self._on_progress(Progress(now - self._begin, self.iterations_done, *self.best))

@@ -1,0 +1,131 @@
+"""The hot loops of Muster."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+class Problem:
+    """The compiled question: arrays that no algorithm changes."""
+
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+        """
+        Robots (m), tasks (n) and travel: `allowed` is (m, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
+        """
+
+    @property
+    def tasks(self) -> int: ...
+
+    @property
+    def robots(self) -> int: ...
+
+class Insertion:
+    """Where a task would go in a robot's route, and the robot's usage then."""
+
+    @property
+    def at(self) -> int: ...
+
+    @property
+    def usage(self) -> float: ...
+
+class Draft:
+    """A plan that is being worked on, with its figures."""
+
+    def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
+        """
+        One list of task indices for each robot. Raises ValueError if a task stands twice or does not exist.
+        """
+
+    @property
+    def admissible(self) -> bool:
+        """
+        Whether capacities hold, no prerequisite is left out and nothing deadlocks.
+        """
+
+    @property
+    def objective(self) -> float: ...
+
+    @property
+    def usages(self) -> list[float]: ...
+
+    @property
+    def makespan(self) -> float | None:
+        """Seconds; None if routes and prerequisites deadlock."""
+
+    def cheapest_insertion(self, robot: int, task: int) -> Insertion | None:
+        """
+        The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the capacity; None if there is no such place.
+        """
+
+class Matching:
+    """
+    One robot, one task, and the cost c_ij (3.8) of going there and doing it.
+    """
+
+    @property
+    def robot(self) -> int: ...
+
+    @property
+    def task(self) -> int: ...
+
+    @property
+    def cost(self) -> float: ...
+
+class Greedy:
+    """State and steps of greedy task allocation (TCF thesis, Algorithm 1)."""
+
+    def __init__(self, problem: Problem, balanced: bool) -> None:
+        """`balanced`: choose by c_ij + u_i (3.17), else by c_ij alone (3.27)."""
+
+    def select(self) -> Matching | None:
+        """Steps 2 to 5: the locally optimal admissible matching, or None."""
+
+    def assign(self, robot: int, task: int) -> None:
+        """Steps 6 to 8: append the task to the robot's route and go there."""
+
+    @property
+    def routes(self) -> list[list[int]]: ...
+
+class Population:
+    """Task allocations that evolve (TCF thesis, Algorithm 3)."""
+
+    def __init__(self, problem: Problem, size: int, seed: int) -> None:
+        """`size` empty allocations."""
+
+    def __len__(self) -> int: ...
+
+    def set_random(self, member: int) -> None:
+        """A random admissible allocation."""
+
+    def set(self, member: int, routes: Sequence[Sequence[int]]) -> None:
+        """Raises ValueError if the routes are not admissible."""
+
+    def set_mutant(self, member: int, of: int) -> None:
+        """A mutant of another member."""
+
+    def replace_worst(self, share: float) -> None:
+        """
+        Step 4: random admissible allocations for the worst share of the members.
+        """
+
+    def mutate(self, probability: float) -> None:
+        """
+        Step 5: task re-assignment (Algorithm 4); a mutant that is better stays.
+        """
+
+    def cross(self, probability: float) -> None:
+        """
+        Step 6: CM-PMX (Algorithm 5); the two best of parents and children stay.
+        """
+
+    def best(self) -> int:
+        """Index of the best member."""
+
+    def routes(self, member: int) -> list[list[int]]: ...
+
+    def weight(self, member: int) -> float:
+        """Weight of the tasks done."""
+
+    def objective(self, member: int) -> float: ...

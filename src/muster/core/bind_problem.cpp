@@ -1,0 +1,78 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "bindings.hpp"
+#include "problem.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muster {
+
+namespace {
+
+using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const bool, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const std::int32_t, nb::c_contig, nb::device::cpu>;
+
+std::vector<double> numbers(const Numbers& array) { return {array.data(), array.data() + array.size()}; }
+std::vector<char> flags(const Flags& array) { return {array.data(), array.data() + array.size()}; }
+
+Objective objective_of(const std::string& name) {
+  if (name == "total") return Objective::total;
+  if (name == "max") return Objective::max;
+  if (name == "total+max") return Objective::total_max;
+  if (name == "average") return Objective::average;
+  if (name == "makespan") return Objective::makespan;
+  throw std::invalid_argument("no such objective: " + name);
+}
+
+}  // namespace
+
+void bind_problem(nb::module_& m) {
+  nb::class_<Problem>(m, "Problem", "The compiled question: arrays that no algorithm changes.")
+      .def(
+          "__init__",
+          [](Problem* self, const std::string& objective, bool usage_is_time, Numbers capacity, Numbers speed,
+             Numbers efficiency, Numbers available_from, Flags must_end, Numbers actuation_cost, Numbers duration,
+             Numbers priority, Flags allowed, const std::vector<std::vector<int>>& prerequisites, Numbers entry,
+             Numbers exit, Numbers table, Indices travel_class) {
+            ProblemData data;
+            data.objective = objective_of(objective);
+            data.usage_is_time = usage_is_time;
+            data.capacity = numbers(capacity);
+            data.speed = numbers(speed);
+            data.efficiency = numbers(efficiency);
+            data.available_from = numbers(available_from);
+            data.must_end = flags(must_end);
+            data.actuation_cost = numbers(actuation_cost);
+            data.duration = numbers(duration);
+            data.priority = numbers(priority);
+            data.allowed = flags(allowed);
+            for (const auto& row : prerequisites) {
+              data.prerequisites.values.insert(data.prerequisites.values.end(), row.begin(), row.end());
+              data.prerequisites.first.push_back(static_cast<int>(data.prerequisites.values.size()));
+            }
+            data.entry = numbers(entry);
+            data.exit = numbers(exit);
+            data.table = numbers(table);
+            data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
+            new (self) Problem(std::move(data));
+          },
+          nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "efficiency"_a, "available_from"_a,
+          "must_end"_a, "actuation_cost"_a, "duration"_a, "priority"_a, "allowed"_a, "prerequisites"_a, "entry"_a,
+          "exit"_a, "table"_a, "travel_class"_a,
+          "Robots (m), tasks (n) and travel: `allowed` is (m, n); `entry` and `exit` are (n + 2m, 3) metres in the map "
+          "frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each "
+          "robot's "
+          "`travel_class`. Raises ValueError if shapes do not fit.")
+      .def_prop_ro("tasks", &Problem::tasks)
+      .def_prop_ro("robots", &Problem::robots);
+}
+
+}  // namespace muster

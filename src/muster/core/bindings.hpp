@@ -1,0 +1,13 @@
+// One function for each bound class; module.cpp calls them.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace muster {
+
+void bind_problem(nanobind::module_& m);
+void bind_draft(nanobind::module_& m);
+void bind_greedy(nanobind::module_& m);
+void bind_population(nanobind::module_& m);
+
+}  // namespace muster

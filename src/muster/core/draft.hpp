@@ -1,0 +1,89 @@
+// A plan that is being worked on.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "problem.hpp"
+
+namespace muster {
+
+// What drafts are compared by: first more weight of tasks done, then a lower objective.
+struct Value {
+  double weight = 0.0;
+  double objective = 0.0;
+
+  bool better_than(const Value& other) const {
+    constexpr double kNoise = 1e-12;
+    if (std::abs(weight - other.weight) > kNoise * (1.0 + weight)) return weight > other.weight;
+    return objective < other.objective - kNoise * (1.0 + std::abs(objective));
+  }
+};
+
+// Routes in one array, robot after robot, so that a copy is a few block moves. Figures are those of the last
+// evaluation.
+class Draft {
+ public:
+  explicit Draft(const Problem& problem)
+      : order_(), first_(problem.robots() + 1, 0), robot_of_(problem.tasks(), kNobody), figures_(problem.robots()) {}
+
+  static constexpr int kNobody = -1;
+
+  std::span<const int> route(int robot) const {
+    return {order_.data() + first_[robot], static_cast<std::size_t>(length(robot))};
+  }
+  int length(int robot) const { return first_[robot + 1] - first_[robot]; }
+  int done() const { return static_cast<int>(order_.size()); }
+  int robot_of(int task) const { return robot_of_[task]; }
+  const RouteFigures& figures(int robot) const { return figures_[robot]; }
+  const Value& value() const { return value_; }
+
+  void clear();
+  void insert(int task, int robot, int at);
+  void append(int task, int robot) { insert(task, robot, length(robot)); }
+  void remove(int robot, int at);
+  void swap(int robot, int at, int with);
+  // All routes at once: tasks[k] goes to robots[k], in the order given.
+  void assign(std::span<const int> tasks, std::span<const int> robots);
+
+ private:
+  friend class Evaluator;
+
+  std::vector<int> order_;
+  std::vector<int> first_;
+  std::vector<int> robot_of_;
+  std::vector<RouteFigures> figures_;
+  Value value_;
+};
+
+// Evaluates drafts. Holds the room that it needs for it, so that nothing is allocated in an algorithm's loop.
+class Evaluator {
+ public:
+  explicit Evaluator(const Problem& problem)
+      : problem_(problem), waiting_(problem.tasks()), next_(problem.tasks()), ends_(problem.tasks()) {
+    ready_.reserve(problem.tasks());
+  }
+
+  // Both set the draft's figures and value, and tell whether it is admissible; `changed` names the routes that differ
+  // from the last evaluation.
+  bool evaluate(Draft& draft);
+  bool evaluate(Draft& draft, std::span<const int> changed);
+
+  // Times at which tasks end, waiting included; false if routes and prerequisites deadlock. A prerequisite that is left
+  // out is not waited for: that it makes the draft inadmissible is for `evaluate` to say.
+  bool schedule(const Draft& draft);
+  double makespan(const Draft& draft) const;
+
+ private:
+  bool conclude(Draft& draft);
+  double objective(const Draft& draft) const;
+  void release(const Draft& draft, int task);
+
+  const Problem& problem_;
+  std::vector<int> waiting_;  // what a task still waits for: prerequisites, and the task before it in its route
+  std::vector<int> next_;     // the task after it in its route
+  std::vector<int> ready_;
+  std::vector<double> ends_;
+};
+
+}  // namespace muster

@@ -1,0 +1,150 @@
+#include "greedy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace muster {
+
+Greedy::Greedy(const Problem& problem, bool balanced)
+    : problem_(problem),
+      balanced_(balanced),
+      left_(problem.tasks()),
+      allocated_(problem.tasks(), 0),
+      waiting_(problem.tasks()),
+      place_in_list_(problem.tasks()),
+      surroundings_(problem.classes()),
+      preferred_(problem.robots()),
+      stale_(problem.robots(), 1),
+      usage_(problem.robots(), 0.0),
+      routes_(problem.robots()) {
+  for (int robot = 0; robot < problem.robots(); ++robot) position_.push_back(problem.start(robot));
+  for (auto& of_class : surroundings_) of_class.resize(problem.has_prerequisites() ? problem.tasks() : 0);
+  for (int task = 0; task < problem.tasks(); ++task) {
+    waiting_[task] = static_cast<int>(problem.prerequisites(task).size());
+    if (!problem.dependants(task).empty()) {
+      needed_.push_back(task);
+      survey(task);
+    }
+    if (waiting_[task] == 0) make_ready(task);
+  }
+}
+
+std::optional<Matching> Greedy::select() {
+  std::optional<Matching> chosen;
+  double lowest = 0.0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    if (stale_[robot]) {
+      preferred_[robot] = plain_preference(robot);
+      stale_[robot] = 0;
+    }
+    Preference best = preferred_[robot];
+    for (const int task : needed_ready_) {
+      consider(robot, task, dependency_coefficient(problem_.travel_class(robot), task), best);
+    }
+    if (best.task == Draft::kNobody) continue;
+    const double f = balanced_ ? best.cost + usage_[robot] : best.cost;
+    if (!chosen || f < lowest || (f == lowest && best.task < chosen->task)) {
+      chosen = Matching{robot, best.task, best.cost};
+      lowest = f;
+    }
+  }
+  return chosen;
+}
+
+void Greedy::assign(int robot, int task) {
+  if (robot < 0 || robot >= problem_.robots() || task < 0 || task >= problem_.tasks()) {
+    throw std::invalid_argument("no such robot or task");
+  }
+  if (allocated_[task]) throw std::invalid_argument("the task is allocated already");
+  allocated_[task] = 1;
+  --left_;
+  usage_[robot] += problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
+  position_[robot] = task;
+  routes_[robot].push_back(task);
+  stale_[robot] = 1;
+  const bool plain = problem_.dependants(task).empty();
+  if (waiting_[task] == 0) drop(plain ? plain_ready_ : needed_ready_, task);
+  if (!plain) std::erase(needed_, task);
+  for (int other = 0; other < problem_.robots(); ++other) {
+    if (preferred_[other].task == task) stale_[other] = 1;
+  }
+  for (int c = 0; c < problem_.classes(); ++c) {
+    for (const int needed : needed_) {
+      const double distance = problem_.distance(c, needed, task);
+      if (!std::isfinite(distance)) continue;
+      surroundings_[c][needed].sum_to_others -= distance;
+      --surroundings_[c][needed].others;
+    }
+  }
+  for (const int dependant : problem_.dependants(task)) {
+    if (--waiting_[dependant] == 0 && !allocated_[dependant]) make_ready(dependant);
+  }
+}
+
+void Greedy::make_ready(int task) {
+  const bool plain = problem_.dependants(task).empty();
+  auto& list = plain ? plain_ready_ : needed_ready_;
+  place_in_list_[task] = static_cast<int>(list.size());
+  list.push_back(task);
+  if (!plain) return;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    if (!stale_[robot]) consider(robot, task, 1.0, preferred_[robot]);
+  }
+}
+
+void Greedy::drop(std::vector<int>& tasks, int task) {
+  tasks[place_in_list_[task]] = tasks.back();
+  place_in_list_[tasks.back()] = place_in_list_[task];
+  tasks.pop_back();
+}
+
+Greedy::Preference Greedy::plain_preference(int robot) const {
+  Preference best;
+  for (const int task : plain_ready_) consider(robot, task, 1.0, best);
+  return best;
+}
+
+// Steps 3 and 4 for one matching: it is dropped if inadmissible, and kept if its debit is the least so far.
+void Greedy::consider(int robot, int task, double coefficient, Preference& best) const {
+  if (!problem_.allowed(robot, task)) return;
+  const double cost = problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
+  const double debit = coefficient * cost;
+  if (!best.after(debit, task)) return;
+  if (!problem_.fits(robot, usage_[robot] + cost + problem_.end_usage(robot, task))) return;
+  best = {debit, cost, task};
+}
+
+void Greedy::survey(int task) {
+  const auto dependants = problem_.dependants(task);
+  for (int c = 0; c < problem_.classes(); ++c) {
+    Surroundings& around = surroundings_[c][task];
+    int reached = 0;
+    for (const int dependant : dependants) {
+      const double distance = problem_.distance(c, task, dependant);
+      if (!std::isfinite(distance)) continue;
+      around.to_dependants += distance;
+      ++reached;
+    }
+    if (reached) around.to_dependants /= reached;
+    for (int other = 0; other < problem_.tasks(); ++other) {
+      const double distance = problem_.distance(c, task, other);
+      if (other == task || !std::isfinite(distance)) continue;
+      around.sum_to_others += distance;
+      ++around.others;
+    }
+  }
+}
+
+// Kp of (3.20), with N_T the number of tasks not yet allocated.
+double Greedy::dependency_coefficient(int travel_class, int task) const {
+  const int dependants = static_cast<int>(problem_.dependants(task).size());
+  if (dependants == left_ - 1) return 0.0;
+  const Surroundings& around = surroundings_[travel_class][task];
+  const double near = around.to_dependants;
+  const double all = around.others ? around.sum_to_others / around.others : 0.0;
+  const double share = near + all > 0.0 ? near / (near + all) : 0.5;
+  return 1.0 - static_cast<double>(dependants) / left_ * (1.0 - share);
+}
+
+}  // namespace muster

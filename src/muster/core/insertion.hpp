@@ -1,0 +1,35 @@
+// A draft as it stands, and what putting one more task into it would take: for figures and explanations.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "draft.hpp"
+#include "routes.hpp"
+
+namespace muster {
+
+struct Insertion {
+  int at;
+  double usage;
+};
+
+class Inspection {
+ public:
+  Inspection(const Problem& problem, const Routes& routes);
+
+  bool admissible() const { return admissible_; }
+  double objective() const { return draft_.value().objective; }
+  std::vector<double> usages() const;
+  std::optional<double> makespan() const { return makespan_; }
+  std::optional<Insertion> cheapest_insertion(int robot, int task);
+
+ private:
+  const Problem& problem_;
+  Evaluator evaluator_;
+  Draft draft_;
+  bool admissible_;
+  std::optional<double> makespan_;
+};
+
+}  // namespace muster

@@ -1,0 +1,11 @@
+#include <nanobind/nanobind.h>
+
+#include "bindings.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "The hot loops of Muster.";
+  muster::bind_problem(m);
+  muster::bind_draft(m);
+  muster::bind_greedy(m);
+  muster::bind_population(m);
+}

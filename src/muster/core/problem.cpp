@@ -1,0 +1,88 @@
+#include "problem.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace muster {
+
+namespace {
+
+// Straight-line tables up to this many places (32 MB); beyond it distances are computed as they are asked for.
+constexpr int kMostPlacesInTable = 2048;
+
+Rows transposed(const Rows& rows) {
+  Rows result;
+  result.first.assign(rows.first.size(), 0);
+  for (const int value : rows.values) ++result.first[value + 1];
+  for (std::size_t i = 1; i < result.first.size(); ++i) result.first[i] += result.first[i - 1];
+  result.values.resize(rows.values.size());
+  std::vector<int> at(result.first.begin(), result.first.end() - 1);
+  for (int i = 0; i < rows.size(); ++i) {
+    for (const int value : rows[i]) result.values[at[value]++] = i;
+  }
+  return result;
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+}  // namespace
+
+Problem::Problem(ProblemData data)
+    : data_(std::move(data)),
+      tasks_(static_cast<int>(data_.actuation_cost.size())),
+      robots_(static_cast<int>(data_.capacity.size())),
+      places_(tasks_ + 2 * robots_),
+      classes_(1) {
+  const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
+  const auto places = static_cast<std::size_t>(places_);
+  require(robots > 0, "a problem needs a robot");
+  require(data_.speed.size() == robots && data_.efficiency.size() == robots && data_.available_from.size() == robots &&
+              data_.must_end.size() == robots,
+          "arrays of robots differ in length");
+  require(data_.duration.size() == tasks && data_.priority.size() == tasks && data_.allowed.size() == robots * tasks,
+          "arrays of tasks differ in length");
+  require(data_.prerequisites.first.size() == tasks + 1, "prerequisites need a row for each task");
+  require(std::ranges::all_of(data_.prerequisites.values, [&](int j) { return 0 <= j && j < tasks_; }),
+          "a prerequisite is no task");
+  if (data_.table.empty()) {
+    require(data_.entry.size() == 3 * places && data_.exit.size() == 3 * places,
+            "coordinates need a row for each place");
+  } else {
+    require(data_.travel_class.size() == robots, "travel classes need a value for each robot");
+    require(std::ranges::all_of(data_.travel_class, [](int c) { return c >= 0; }), "a travel class is negative");
+    classes_ = 1 + *std::ranges::max_element(data_.travel_class);
+    require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
+  }
+  dependants_ = transposed(data_.prerequisites);
+  for (int task = 0; task < tasks_; ++task) {
+    for (int robot = 0; robot < robots_; ++robot) {
+      if (allowed(robot, task)) robots_allowed_.values.push_back(robot);
+    }
+    robots_allowed_.first.push_back(static_cast<int>(robots_allowed_.values.size()));
+  }
+  if (data_.table.empty() && places_ <= kMostPlacesInTable) {
+    std::vector<double> table(places * places);
+    for (int from = 0; from < places_; ++from) {
+      for (int to = 0; to < places_; ++to) table[from * places + to] = straight(from, to);
+    }
+    data_.table = std::move(table);
+  }
+}
+
+RouteFigures Problem::walk(int robot, std::span<const int> route) const {
+  RouteFigures figures;
+  int place = start(robot);
+  for (const int task : route) {
+    figures.usage += travel_usage(robot, place, task);
+    figures.arrivals += figures.usage;
+    figures.usage += work_usage(robot, task);
+    place = task;
+  }
+  if (!route.empty()) figures.usage += end_usage(robot, place);
+  return figures;
+}
+
+}  // namespace muster

@@ -1,0 +1,122 @@
+// The compiled question: arrays that no algorithm changes.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace muster {
+
+enum class Objective { total, max, total_max, average, makespan };
+
+// Rows of different lengths in one array: row i is values[first[i]] .. values[first[i + 1]].
+struct Rows {
+  std::vector<int> first{0};
+  std::vector<int> values;
+
+  std::span<const int> operator[](int i) const {
+    return {values.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
+  }
+  int size() const { return static_cast<int>(first.size()) - 1; }
+};
+
+// Everything a Problem is made from. Places are the tasks, then the robots' starts, then the robots' ends.
+struct ProblemData {
+  Objective objective = Objective::total_max;
+  bool usage_is_time = false;
+  // Robots.
+  std::vector<double> capacity;  // inf: unlimited
+  std::vector<double> speed;
+  std::vector<double> efficiency;
+  std::vector<double> available_from;
+  std::vector<char> must_end;  // the route goes on to the robot's end
+  // Tasks.
+  std::vector<double> actuation_cost;
+  std::vector<double> duration;  // NaN: not given
+  std::vector<double> priority;
+  std::vector<char> allowed;  // robots x tasks
+  Rows prerequisites;
+  // Travel: coordinates (places x 3), or a table (classes x places x places) with each robot's class.
+  std::vector<double> entry;
+  std::vector<double> exit;
+  std::vector<double> table;
+  std::vector<int> travel_class;
+};
+
+// Usage of a route, and the sum over its tasks of the usage on arrival (DESIGN: objective `average`).
+struct RouteFigures {
+  double usage = 0.0;
+  double arrivals = 0.0;
+};
+
+class Problem {
+ public:
+  explicit Problem(ProblemData data);
+
+  int tasks() const { return tasks_; }
+  int robots() const { return robots_; }
+  int classes() const { return classes_; }
+  Objective objective() const { return data_.objective; }
+  bool has_prerequisites() const { return !data_.prerequisites.values.empty(); }
+  std::span<const int> prerequisites(int task) const { return data_.prerequisites[task]; }
+  std::span<const int> dependants(int task) const { return dependants_[task]; }
+  std::span<const int> robots_allowed(int task) const { return robots_allowed_[task]; }
+  bool allowed(int robot, int task) const {
+    return data_.allowed[static_cast<std::size_t>(robot) * tasks_ + task] != 0;
+  }
+  double capacity(int robot) const { return data_.capacity[robot]; }
+  double available_from(int robot) const { return data_.available_from[robot]; }
+  double priority(int task) const { return data_.priority[task]; }
+  bool must_end(int robot) const { return data_.must_end[robot] != 0; }
+
+  int start(int robot) const { return tasks_ + robot; }
+  int end(int robot) const { return tasks_ + robots_ + robot; }
+  int travel_class(int robot) const { return data_.travel_class.empty() ? 0 : data_.travel_class[robot]; }
+
+  // Metres from the exit of one place to the entry of another.
+  double distance(int travel_class, int from, int to) const {
+    if (!data_.table.empty()) {
+      return data_.table[(static_cast<std::size_t>(travel_class) * places_ + from) * places_ + to];
+    }
+    return straight(from, to);
+  }
+
+  double travel_time(int robot, int from, int to) const {
+    return distance(travel_class(robot), from, to) / data_.speed[robot];
+  }
+  double work_time(int robot, int task) const {
+    const double duration = data_.duration[task];
+    return std::isnan(duration) ? data_.actuation_cost[task] / data_.speed[robot] : duration / data_.efficiency[robot];
+  }
+  double travel_usage(int robot, int from, int to) const {
+    return data_.usage_is_time ? travel_time(robot, from, to) : distance(travel_class(robot), from, to);
+  }
+  double work_usage(int robot, int task) const {
+    return data_.usage_is_time ? work_time(robot, task) : data_.actuation_cost[task];
+  }
+  // What the way from a place to the robot's end adds; 0 where the route may end anywhere.
+  double end_usage(int robot, int from) const { return must_end(robot) ? travel_usage(robot, from, end(robot)) : 0.0; }
+
+  bool fits(int robot, double usage) const { return std::isfinite(usage) && usage <= capacity(robot); }
+
+  RouteFigures walk(int robot, std::span<const int> route) const;
+
+ private:
+  double straight(int from, int to) const {
+    const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
+    const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];
+    const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
+    return std::sqrt(dx * dx + dy * dy + dz * dz);
+  }
+
+  ProblemData data_;
+  int tasks_;
+  int robots_;
+  int places_;
+  int classes_;
+  Rows dependants_;
+  Rows robots_allowed_;
+};
+
+}  // namespace muster
