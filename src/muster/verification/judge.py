@@ -1,0 +1,136 @@
+"""The judge: a plan recomputed from the mission alone, in time linear in tasks, robots and prerequisites."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from muster.mission.errors import Finding, NotSupportedError, PlanError
+from muster.mission.kinds import Fault, shown
+from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, findings
+from muster.mission.plan import Plan
+from muster.verification.admissibility import broken_rules, capacity_of, known_routes
+from muster.verification.measure import MeasuredRoute, equality_index, measured
+from muster.verification.schedule import Deadlock, Times, awaited_in, schedule
+from muster.verification.statements import false_statements
+from muster.verification.travel import Travel
+from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
+
+_LARGEST = "numbers whose sums are below 1.8e308"
+
+
+def verify(mission: Mission, plan: Plan) -> Verdict:
+    """Judge a plan: recompute its figures and find everything that is wrong with it (DESIGN section 4).
+
+    What does not exist or repeats is left out, and the rest is judged. A leg without a way counts nothing.
+
+    Raises
+    ------
+    NotSupportedError
+        if the mission cannot be judged yet: travel over a map, actions with geometry; or its numbers overflow.
+    PlanError
+        if the plan, built in Python, names an objective or an ignored rule that does not exist.
+    """
+    _refuse(mission, _unsupported(mission))
+    _refuse_unknown_words(plan)
+    tasks_of, violations = known_routes(mission, plan)
+    travel = Travel(mission)
+    routes = [measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots]
+    unit = "s" if mission.rules.usage == "time" else "m"
+    violations += broken_rules(mission, plan, routes, unit)
+    times = schedule(routes, awaited_in(routes, ignored="prerequisites" in plan.ignored))
+    if isinstance(times, Deadlock):
+        violations.append(Violation("deadlock", None, None, times.detail))
+    verdict = _verdict(mission, plan, routes, None if isinstance(times, Deadlock) else times, unit)
+    _refuse(mission, _overflow(verdict))
+    return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict)))
+
+
+def _verdict(
+    mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], times: Mapping[str, Times] | None, unit: str
+) -> Verdict:
+    """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
+    usages = [route.usage for route in routes]
+    steps = [step for route in routes for step in route.steps]
+    return Verdict(
+        violations=(),
+        objective_name=plan.objective or mission.rules.objective,
+        usage_unit=unit,
+        total_cost=sum(usages),  # thesis equation (3.11)
+        max_usage=max(usages),
+        average=sum(step.arrival_usage for step in steps) / len(steps) if steps else 0.0,
+        makespan_s=None if times is None else max((time.ends for time in times.values()), default=0.0),
+        equality_index=equality_index(usages),
+        tasks_completed=len(steps),
+        tasks_total=len(mission.tasks),
+        weight_completed=sum((step.task.priority for step in steps), start=0.0),
+        routes=tuple(_figures(route, capacity_of(mission, plan, route.robot), times) for route in routes),
+    )
+
+
+def _figures(route: MeasuredRoute, capacity: float | None, times: Mapping[str, Times] | None) -> RouteFigures:
+    visits = tuple(_visits(route, times)) if times is not None else ()
+    return RouteFigures(
+        robot=route.robot.id,
+        tasks=tuple(step.task.id for step in route.steps),
+        travel=route.travel,
+        work=route.work,
+        usage=route.usage,
+        capacity=capacity,
+        leaves_s=route.robot.available_from_s,
+        visits=visits,
+        back_s=visits[-1].ends_s + route.last_leg.seconds if visits and route.last_leg else None,
+    )
+
+
+def _visits(route: MeasuredRoute, times: Mapping[str, Times]) -> Iterator[Visit]:
+    for step in route.steps:
+        time = times[step.task.id]
+        yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)
+
+
+def _unsupported(mission: Mission) -> Iterator[Fault]:
+    """Find what this version cannot judge."""
+    if mission.travel_rule == "map":
+        expected = "travel: euclidean or matrix; travel over a map cannot be judged yet"
+        if mission.rules.travel is None:
+            yield Fault(("map",), "a map, and no rules.travel", expected)
+        else:
+            yield Fault(("rules", "travel"), shown("map"), expected)
+    for k, task in enumerate(mission.tasks):
+        if task.action is not None and task.action.has_geometry:
+            expected = "go-to-goal or sensor-activation; actions with geometry cannot be judged yet"
+            yield Fault(("tasks", k, "action"), shown(task.action.name), expected)
+
+
+def _overflow(verdict: Verdict) -> Iterator[Fault]:
+    """Find figures beyond float64. All parts are at least 0, so where these sums are finite everything is."""
+    figures = {
+        "usage": verdict.total_cost + verdict.max_usage,
+        "usage on arrival": verdict.average,
+        "time": max((verdict.makespan_s or 0.0, *(route.back_s or 0.0 for route in verdict.routes))),
+        "priority": verdict.weight_completed,
+    }
+    for name, figure in figures.items():
+        if not math.isfinite(figure):
+            yield Fault((), f"{name} beyond the largest number", _LARGEST)
+
+
+def _refuse(mission: Mission, faults: Iterator[Fault]) -> None:
+    found = findings(faults, mission.source)
+    if found:
+        raise NotSupportedError(found)
+
+
+def _refuse_unknown_words(plan: Plan) -> None:
+    """Refuse words that `read_plan` would have refused; a misspelt rule must not look as if it had been ignored."""
+    found = [
+        Finding("<plan>", None, "ignored", shown(name), " or ".join(IGNORABLE))
+        for name in plan.ignored
+        if name not in IGNORABLE
+    ]
+    if plan.objective is not None and plan.objective not in OBJECTIVES:
+        found.append(Finding("<plan>", None, "objective.name", shown(plan.objective), " or ".join(OBJECTIVES)))
+    if found:
+        raise PlanError(found)

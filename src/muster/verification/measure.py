@@ -1,0 +1,96 @@
+"""What each route costs: DESIGN section 4, thesis equations (3.8)-(3.10) and (3.28)-(3.29)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from muster.mission.model import Mission, Robot, Task
+from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The way to a place. A leg without a way counts nothing, so that the rest of the route can still be judged."""
+
+    exists: bool
+    usage: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """One task of a route: the way there, the usage on arrival, and the work in the unit of usage and in seconds."""
+
+    task: Task
+    leg: Leg
+    arrival_usage: float
+    work: float
+    work_s: float
+
+
+@dataclass(frozen=True)
+class MeasuredRoute:
+    """One robot's route with its costs; `last_leg` goes to where the route must end, if it must and has tasks."""
+
+    robot: Robot
+    steps: tuple[Step, ...]
+    last_leg: Leg | None
+    travel: float
+    work: float
+
+    @property
+    def usage(self) -> float:
+        """Travel plus work: u_i of thesis equation (3.10)."""
+        return self.travel + self.work
+
+
+def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task]) -> MeasuredRoute:
+    """Measure one robot's route."""
+    in_time = mission.rules.usage == "time"
+    steps: list[Step] = []
+    travelled = worked = 0.0
+    here = place_of_start(robot)
+    for task in tasks:
+        there = place_of_task(task)
+        leg = _leg(travel.metres(robot, here, there), robot, in_time)
+        travelled += leg.usage
+        seconds = work_seconds(robot, task)
+        work = seconds if in_time else task.actuation_cost
+        steps.append(Step(task, leg, arrival_usage=travelled + worked, work=work, work_s=seconds))
+        worked += work
+        here = there
+    end = place_at_end(robot, mission.rules) if steps else None
+    last_leg = None if end is None else _leg(travel.metres(robot, here, end), robot, in_time)
+    travelled += last_leg.usage if last_leg else 0.0
+    return MeasuredRoute(robot, tuple(steps), last_leg, travelled, worked)
+
+
+def _leg(metres: float | None, robot: Robot, in_time: bool) -> Leg:
+    if metres is None:
+        return Leg(exists=False, usage=0.0, seconds=0.0)
+    seconds = metres / robot.speed_mps
+    return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
+
+
+def work_seconds(robot: Robot, task: Task) -> float:
+    """Return how long the robot works on the task: duration by efficiency where one is given, else cost by speed."""
+    duration = task.duration_s
+    if duration is None and task.action is not None:
+        duration = task.action.duration_s
+    return task.actuation_cost / robot.speed_mps if duration is None else duration / robot.efficiency
+
+
+def equality_index(usages: Sequence[float]) -> float:
+    """Return 1 - Gini over the usages of all robots, thesis equations (3.28) and (3.29); 1 if all are 0.
+
+    From 1/M, where one of M robots has all the usage, to 1, where all have the same.
+    """
+    total = sum(usages)
+    if total == 0:
+        return 1.0
+    count = len(usages)
+    # A share first, then its weight: the sum of rank times usage may overflow where the index does not.
+    ranked = sum(rank * (usage / total) for rank, usage in enumerate(sorted(usages), start=1))
+    gini = 2 * ranked / count - (count + 1) / count
+    return 1 - gini

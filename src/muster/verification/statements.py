@@ -1,0 +1,99 @@
+"""What a plan says of itself against what is: its figures, and the tasks that are left out (DESIGN section 5)."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.verification.verdict import Verdict, Violation
+
+RELATIVE_TOLERANCE = 1e-6
+ABSOLUTE_TOLERANCE = 1e-9
+
+
+def false_statements(mission: Mission, plan: Plan, verdict: Verdict) -> Iterator[Violation]:
+    """Find everything that the plan states and that is not so. A plan that states only routes states nothing false."""
+    yield from _left_out(mission, plan)
+    yield from _figures(plan, verdict)
+    yield from _usages(plan, verdict)
+
+
+def _figures(plan: Plan, verdict: Verdict) -> Iterator[Violation]:
+    value = verdict.value()
+    figures = (
+        (f"objective {verdict.objective_name}", plan.objective_value, value),
+        ("usage_unit", plan.usage_unit, verdict.usage_unit),
+        ("total_cost", plan.total_cost, verdict.total_cost),
+        ("max_usage", plan.max_usage, verdict.max_usage),
+        ("makespan_s", plan.makespan_s, verdict.makespan_s),
+        ("equality_index", plan.equality_index, verdict.equality_index),
+        ("tasks_completed", plan.tasks_completed, verdict.tasks_completed),
+        ("tasks_total", plan.tasks_total, verdict.tasks_total),
+        ("weight_completed", plan.weight_completed, verdict.weight_completed),
+    )
+    for name, stated, found in figures:
+        if not _agrees(stated, found):
+            yield Violation("figure", None, None, f"{name}: the plan says {stated}, it is {found}")
+    bound = plan.lower_bound
+    if bound is not None and value is not None and not bound <= value and not _agrees(bound, value):
+        yield Violation("figure", None, None, f"lower_bound: the plan says {bound}, above its objective {value}")
+
+
+def _usages(plan: Plan, verdict: Verdict) -> Iterator[Violation]:
+    stated: dict[str, float | None] = {}
+    for route in plan.routes:
+        stated.setdefault(route.robot, route.usage)  # of two routes of one robot the first was judged
+    for figures in verdict.routes:
+        usage = stated.get(figures.robot)
+        if not _agrees(usage, figures.usage):
+            yield Violation("figure", figures.robot, None, f"usage: the plan says {usage}, it is {figures.usage}")
+
+
+def _agrees(stated: float | str | None, found: float | str | None) -> bool:
+    """Return whether a figure, if stated, is right: numbers to 1e-6 relative, counts and words exactly."""
+    if stated is None:
+        return True
+    if isinstance(stated, float | int) and isinstance(found, float):
+        return math.isclose(stated, found, rel_tol=RELATIVE_TOLERANCE, abs_tol=ABSOLUTE_TOLERANCE)
+    return stated == found
+
+
+def _left_out(mission: Mission, plan: Plan) -> Iterator[Violation]:
+    """Find where routes and the list `unassigned` contradict each other.
+
+    A plan from elsewhere may say nothing of what it leaves out. One that has such a list, or any figure, is read as
+    a full answer: each task is either in a route or left out.
+    """
+    in_route = {task: route.robot for route in plan.routes for task in route.tasks}
+    times_listed = Counter(item.task for item in plan.unassigned)
+    known = {task.id for task in mission.tasks}
+    for name, times in times_listed.items():
+        if name not in known:
+            yield Violation("unknown-task", None, name, "listed as unassigned, but no task of the mission")
+        elif name in in_route:
+            yield Violation("unassigned", in_route[name], name, "in a route, and listed as unassigned")
+        elif times > 1:
+            yield Violation("unassigned", None, name, f"listed as unassigned {times} times")
+    if times_listed or _states_figures(plan):
+        for task in mission.tasks:
+            if task.id not in in_route and task.id not in times_listed:
+                yield Violation("unassigned", None, task.id, "in no route, and not listed as unassigned")
+
+
+def _states_figures(plan: Plan) -> bool:
+    figures = (
+        plan.objective_value,
+        plan.total_cost,
+        plan.max_usage,
+        plan.makespan_s,
+        plan.equality_index,
+        plan.tasks_completed,
+        plan.tasks_total,
+        plan.weight_completed,
+        plan.lower_bound,
+        *(route.usage for route in plan.routes),
+    )
+    return any(figure is not None for figure in figures)

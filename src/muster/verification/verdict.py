@@ -1,0 +1,133 @@
+"""What the judge finds: the figures of a plan, recomputed, and everything that is wrong with it. Immutable."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import shown
+
+KINDS = (
+    "unknown-robot",
+    "unknown-task",
+    "repeated-robot",
+    "repeated-task",
+    "skill",
+    "suitability",
+    "lock",
+    "unreachable",
+    "capacity",
+    "prerequisite",
+    "deadlock",
+    "unassigned",
+    "figure",
+)
+"""The kinds of violation."""
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One thing that is wrong with a plan; `kind` is one of KINDS, robot and task are ids where they are meant."""
+
+    kind: str
+    robot: str | None
+    task: str | None
+    detail: str
+
+
+@dataclass(frozen=True)
+class Visit:
+    """One task of a route in time, seconds; and the usage when the robot arrives, the task's own cost not counted."""
+
+    task: str
+    arrives_s: float
+    starts_s: float
+    ends_s: float
+    arrival_usage: float
+
+
+@dataclass(frozen=True)
+class RouteFigures:
+    """One robot's route, recomputed.
+
+    `travel`, `work`, `usage` (their sum) and `capacity` are in the unit of usage. `capacity` is what the robot may
+    use, the reserve taken off; None where it is unlimited or ignored. `visits` is empty, and `back_s` None, where the
+    plan has no schedule because of a deadlock. `back_s` is when the robot is where its route must end; None where it
+    may end anywhere, or stays because it has no tasks.
+    """
+
+    robot: str
+    tasks: tuple[str, ...]
+    travel: float
+    work: float
+    usage: float
+    capacity: float | None
+    leaves_s: float
+    visits: tuple[Visit, ...]
+    back_s: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """The judgement of one plan.
+
+    `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` is None where routes and prerequisites
+    deadlock. `routes` holds every robot, in mission order. All numbers are finite.
+    """
+
+    violations: tuple[Violation, ...]
+    objective_name: str
+    usage_unit: str
+    total_cost: float
+    max_usage: float
+    average: float
+    makespan_s: float | None
+    equality_index: float
+    tasks_completed: int
+    tasks_total: int
+    weight_completed: float
+    routes: tuple[RouteFigures, ...]
+
+    @property
+    def valid(self) -> bool:
+        """Whether nothing is wrong with the plan."""
+        return not self.violations
+
+    def value(self, name: str | None = None) -> float | None:
+        """Return the value of an objective, the plan's own by default; None for the makespan of a plan that deadlocks.
+
+        Raises
+        ------
+        ParameterError
+            if there is no objective of that name.
+        """
+        values = {
+            "total": self.total_cost,
+            "max": self.max_usage,
+            "total+max": self.total_cost + self.max_usage,
+            "average": self.average,
+            "makespan": self.makespan_s,
+        }
+        name = self.objective_name if name is None else name
+        if name not in values:
+            raise ParameterError(f"objective: {shown(name)}; expected {' or '.join(values)}")
+        return values[name]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what `muster verify --format json` prints; `objective` is the value."""
+        return {
+            "valid": self.valid,
+            "violations": [asdict(violation) for violation in self.violations],
+            "objective_name": self.objective_name,
+            "objective": self.value(),
+            "usage_unit": self.usage_unit,
+            "total_cost": self.total_cost,
+            "max_usage": self.max_usage,
+            "average": self.average,
+            "makespan_s": self.makespan_s,
+            "equality_index": self.equality_index,
+            "tasks_completed": self.tasks_completed,
+            "tasks_total": self.tasks_total,
+            "weight_completed": self.weight_completed,
+        }
