@@ -1,0 +1,49 @@
+"""Muster plans missions of robot teams: who does what, in which order.
+
+import muster
+
+mission = muster.load("31T-6R50")
+plan = muster.solve(mission, time_limit=1.0)
+assert muster.verify(mission, plan).valid
+"""
+
+from importlib.metadata import version
+
+from muster._api import load, plot, solve, verify
+from muster.mission.errors import (
+    Finding,
+    InputError,
+    MissingExtraError,
+    MissionError,
+    MusterError,
+    NotSupportedError,
+    ParameterError,
+    PlanError,
+)
+from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.plan import Plan, Route, read_plan
+
+__version__ = version("muster-robotics")
+
+__all__ = [
+    "Finding",
+    "InputError",
+    "MissingExtraError",
+    "Mission",
+    "MissionError",
+    "MusterError",
+    "NotSupportedError",
+    "ParameterError",
+    "Plan",
+    "PlanError",
+    "Robot",
+    "Route",
+    "Rules",
+    "Task",
+    "__version__",
+    "load",
+    "plot",
+    "read_plan",
+    "solve",
+    "verify",
+]

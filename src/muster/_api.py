@@ -1,0 +1,143 @@
+"""Muster from Python: load, solve, verify, plot. Heavy parts are imported where they are used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from muster.library import mission_names, mission_path
+from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.kinds import did_you_mean
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from muster.allocation.stop import Progress
+    from muster.verification import Verdict
+
+
+def load(
+    path_or_name: str | Path,
+    *,
+    robots: str | Path | None = None,
+    suitability: str | Path | None = None,
+    salesmen: int | None = None,
+    depot: str = "1",
+) -> Mission:
+    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, or the name of a shipped mission.
+
+    Parameters
+    ----------
+    path_or_name
+        a file, or one of `muster missions`; a file of that name comes first.
+    robots, suitability
+        the CSV files that go with a task-list CSV.
+    salesmen, depot
+        how many robots, and the number of the node where they start and end, for TSPLIB.
+
+    Raises
+    ------
+    MissionError
+        with everything that is wrong: file, line, field, value, what was expected.
+    ParameterError
+        if a parameter is missing, or does not go with this kind of file.
+    """
+    path = _found(path_or_name)
+    _check_flags(path, robots=robots, suitability=suitability, salesmen=salesmen)
+    if path.suffix == ".csv":
+        from muster.mission.thesis_csv import read_csv
+
+        return read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability))
+    if path.suffix == ".tsp":
+        from muster.mission.tsplib import read_tsplib
+
+        return read_tsplib(path, salesmen or 0, depot)
+    from muster.mission.yaml_reader import read_yaml
+
+    return read_yaml(path)
+
+
+def _found(path_or_name: str | Path) -> Path:
+    path = Path(path_or_name)
+    shipped = mission_path(str(path_or_name))
+    if path.exists() or (shipped is None and path.suffix in (".yaml", ".yml", ".csv", ".tsp")):
+        return path
+    if shipped is None:
+        expected = f"a file, or the name of a shipped mission{did_you_mean(str(path_or_name), mission_names())}"
+        raise MissionError([Finding(str(path_or_name), None, "", "no such file or mission", expected)])
+    return shipped
+
+
+def _check_flags(path: Path, **given: object) -> None:
+    needed = {".csv": ("robots",), ".tsp": ("salesmen",)}.get(path.suffix, ())
+    possible = {".csv": ("robots", "suitability"), ".tsp": ("salesmen",)}.get(path.suffix, ())
+    for name in needed:
+        if given[name] is None:
+            raise ParameterError(f"{path}: {name} missing; expected --{name}, which a {path.suffix} file needs")
+    for name, value in given.items():
+        if value is not None and name not in possible:
+            raise ParameterError(f"{path}: --{name} given; expected no --{name} with this kind of file")
+
+
+def solve(
+    mission: Mission,
+    allocator: str = "greedy+genetic",
+    time_limit: float | None = None,
+    seed: int = 0,
+    on_progress: Callable[[Progress], None] | None = None,
+    *,
+    iterations: int | None = None,
+    objective: str | None = None,
+    ignore: Collection[str] = (),
+    start: Plan | None = None,
+    **parameters: Any,
+) -> Plan:
+    """Plan a mission.
+
+    Parameters
+    ----------
+    allocator
+        one of `muster.ALLOCATORS`.
+    time_limit, iterations
+        when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
+        plan.
+    objective
+        instead of the mission's own.
+    ignore
+        rules that do not hold: prerequisites, suitability, skills, capacity.
+    start
+        a plan to go on from.
+    parameters
+        of the allocator, such as `population_size`.
+
+    Raises
+    ------
+    ParameterError, NotSupportedError
+    """
+    from muster.allocation.allocator import make_parameters
+    from muster.allocation.problem import Problem
+    from muster.allocation.registry import allocator_named
+    from muster.allocation.stop import Stop
+
+    chosen = allocator_named(allocator)
+    params = make_parameters(chosen, parameters)
+    problem = Problem.compile(mission, objective, ignore).ready()
+    if time_limit is None and iterations is None and chosen.anytime:
+        time_limit = 5.0
+    stop = Stop(iterations=iterations, time_limit=time_limit, on_progress=on_progress)
+    return chosen.solve(problem, stop, seed=seed, params=params, start=start)
+
+
+def verify(mission: Mission, plan: Plan) -> Verdict:
+    """Judge a plan from scratch, by code that no allocator uses."""
+    from muster.verification import verify as judge
+
+    return judge(mission, plan)
+
+
+def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
+    """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
+    from muster.report import plot_routes
+
+    return plot_routes(mission, plan, verify(mission, plan), ax=ax)

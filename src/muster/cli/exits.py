@@ -1,0 +1,9 @@
+"""Exit codes of the command."""
+
+DONE = 0
+REJECTED = 1
+BAD_INPUT = 2
+INCOMPLETE = 3
+INTERNAL_ERROR = 70
+INTERRUPTED = 130
+BROKEN_PIPE = 141

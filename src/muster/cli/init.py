@@ -1,0 +1,61 @@
+"""`muster init`: a mission file to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from muster.mission.errors import ParameterError
+
+_TEMPLATE = """\
+# A mission for Muster: what is to be done, and by whom. Check it with `muster check {file}`, plan it with
+# `muster solve {file}`. Lengths are metres, x to the east, y to the north.
+schema: muster/1
+name: {name}
+rules:
+  objective: total+max        # or: total, max, average, makespan
+  return_to_start: false
+robots:
+  - {{id: r_0, position: [0, 0], work_capacity: 60, skills: [camera]}}
+  - {{id: r_1, position: [2, 0], work_capacity: 60, skills: [camera, gripper]}}
+tasks:
+  - {{id: look, position: [10, 5], requires: [camera]}}
+  - {{id: open, position: [12, 8], requires: [gripper], actuation_cost: 3}}
+  - {{id: enter, position: [15, 9], prerequisites: [open]}}
+  - {{id: patrol, position: [-6, 4], actuation_cost: 12}}
+"""
+
+
+@click.command()
+@click.argument("name", default="mission")
+@click.option("--from", "shipped", metavar="SHIPPED", help="Copy a mission that comes with Muster.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: NAME.yaml]")
+def command(name: str, shipped: str | None, output: Path | None) -> None:
+    """Write a mission file to start from: NAME.yaml in this folder.
+
+    An existing file is left alone.
+    """
+    stem = name.removesuffix(".yaml").removesuffix(".yml")
+    path = output or Path(f"{stem}.yaml")
+    text = _TEMPLATE.format(name=path.stem, file=path) if shipped is None else _shipped_text(shipped)
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except FileExistsError:
+        raise ParameterError(f"{path}: exists; expected the name of a new file") from None
+    click.echo(str(path))
+    click.echo(f"next: muster check {path}; muster solve {path}", err=True)
+
+
+def _shipped_text(shipped: str) -> str:
+    from muster.library import mission_names, mission_path
+    from muster.mission.kinds import did_you_mean
+
+    path = mission_path(shipped)
+    if path is None:
+        hint = did_you_mean(shipped, mission_names())
+        raise ParameterError(f"--from: no shipped mission {shipped}; expected one of `muster missions`{hint}")
+    if path.suffix != ".yaml":
+        raise ParameterError(f"--from: {shipped} is no YAML; use it as it is: muster solve {shipped} --salesmen 3")
+    return path.read_text(encoding="utf-8")

@@ -1,0 +1,122 @@
+"""The command's entry: finds the verb, and turns every expected failure into a line and an exit code.
+
+Exit codes: 0 done; 1 `verify` rejects the plan; 2 bad input, usage or a missing extra; 3 `--require-complete` and some
+task is left out or impossible; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+
+import click
+
+from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
+from muster.mission.errors import MusterError
+
+VERBS = ("missions", "init", "check", "solve", "verify", "explain", "study", "bench")
+
+
+class _Verbs(click.Group):
+    """The verbs, each in a file of its own that is imported only when it is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in VERBS:
+            return None
+        command: click.Command = importlib.import_module(f"muster.cli.{cmd_name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Verbs"):
+            formatter.write_dl([(verb, _SUMMARIES[verb]) for verb in VERBS])
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        from muster.mission.kinds import did_you_mean
+
+        if args and args[0] not in VERBS and not args[0].startswith("-"):
+            raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], VERBS)}", ctx)
+        return super().resolve_command(ctx, args)
+
+
+_SUMMARIES = {
+    "missions": "List the missions that come with Muster.",
+    "init": "Write a mission file to start from.",
+    "check": "Find what is wrong with a mission, and the tasks that can never be done.",
+    "solve": "Plan a mission.",
+    "verify": "Judge a plan from scratch.",
+    "explain": "Say why a task is done by this robot, not by that one, or left out.",
+    "study": "Repeat a published experiment beside its published numbers.",
+    "bench": "Measure speed on this machine.",
+}
+
+
+def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked and not ctx.resilient_parsing:
+        from importlib.metadata import version
+
+        click.echo(f"muster {version('muster-robotics')}")
+        ctx.exit()
+
+
+@click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version", is_flag=True, expose_value=False, is_eager=True, callback=_print_version, help="Print the version."
+)
+def muster() -> None:
+    r"""Plan missions of robot teams: who does what, in which order.
+
+    A MISSION is a file (mission YAML, a task-list CSV, TSPLIB) or the name of a mission that comes with Muster:
+
+    \b
+      muster solve 31T-6R50 --plot plan.png
+    """
+
+
+def main() -> None:
+    """Run the command and exit."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command; returns the exit code."""
+    try:
+        result = muster.main(arguments, prog_name="muster", standalone_mode=False)
+        sys.stdout.flush()
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except click.ClickException as error:
+        error.show(sys.stderr)
+        return BAD_INPUT
+    except MusterError as error:
+        return _fail(str(error))
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+    except OSError as error:
+        if error.filename is None:
+            return _internal(error)
+        return _fail(f"{error.filename}: {error.strerror}; expected a file that can be read or written")
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("interrupted", err=True)
+        return INTERRUPTED
+    except Exception as error:  # whatever happens, the user gets a line
+        return _internal(error)
+    return result if isinstance(result, int) else 0
+
+
+def _fail(message: str) -> int:
+    click.echo(message, err=True)
+    return BAD_INPUT
+
+
+def _internal(error: Exception) -> int:
+    if os.environ.get("MUSTER_DEBUG"):
+        raise error
+    click.echo(f"internal error: {type(error).__name__}: {error} (MUSTER_DEBUG=1 shows where)", err=True)
+    return INTERNAL_ERROR

@@ -1,0 +1,90 @@
+"""Arguments and options that verbs share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
+
+Verb = TypeVar("Verb", bound=Callable[..., Any])
+_FILE = click.Path(path_type=Path)
+
+
+def mission_argument(verb: Verb) -> Verb:
+    """MISSION, and the flags that some forms of it need; the verb gets them as `mission_flags`."""
+    options = (
+        click.argument("mission"),
+        click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
+        click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task-list CSV."),
+        click.option("--salesmen", type=click.IntRange(min=1), metavar="M", help="Robots of a TSPLIB mission."),
+        click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
+
+
+def load_mission(
+    mission: str, robots: Path | None, suitability: Path | None, salesmen: int | None, depot: str | None
+) -> Mission:
+    """The mission that the command names."""
+    from muster import load
+
+    if depot is not None and salesmen is None:
+        raise ParameterError("--depot given; expected it together with --salesmen")
+    return load(mission, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot or "1")
+
+
+def format_option(verb: Verb) -> Verb:
+    """--format."""
+    return click.option(
+        "--format",
+        "form",
+        type=click.Choice(["table", "json"]),
+        default="table",
+        show_default=True,
+        help="What is printed: for people, or for programs.",
+    )(verb)
+
+
+def quiet_option(verb: Verb) -> Verb:
+    """-q and -v."""
+    verb = click.option("-v", "--verbose", is_flag=True, help="Say more on standard error.")(verb)
+    return click.option("-q", "--quiet", is_flag=True, help="No progress and messages on standard error.")(verb)
+
+
+def ignore_option(verb: Verb) -> Verb:
+    """--ignore."""
+    return click.option(
+        "--ignore",
+        callback=_ignored,
+        metavar="RULES",
+        help=f"Rules that do not hold, separated by commas: {', '.join(IGNORABLE)}.",
+    )(verb)
+
+
+def objective_option(verb: Verb) -> Verb:
+    """--objective."""
+    return click.option("--objective", type=click.Choice(OBJECTIVES), help="Instead of the mission's own.")(verb)
+
+
+def require_complete_option(verb: Verb) -> Verb:
+    """--require-complete."""
+    return click.option("--require-complete", is_flag=True, help="Exit with 3 if a task is left out or impossible.")(
+        verb
+    )
+
+
+def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
+    names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
+    for name in names:
+        if name not in IGNORABLE:
+            hint = did_you_mean(name, IGNORABLE)
+            raise click.BadParameter(f"{name!r} is not one of {', '.join(IGNORABLE)}{hint}", param_hint="'--ignore'")
+    return names

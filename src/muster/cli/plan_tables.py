@@ -1,0 +1,51 @@
+"""A plan's figures on standard output; all of them are the judge's."""
+
+from __future__ import annotations
+
+import click
+
+from muster.cli.tables import number, print_table, sequence
+from muster.mission.plan import Plan
+from muster.verification import Verdict
+
+
+def print_plan(plan: Plan, verdict: Verdict) -> None:
+    """The routes, the figures, and what is left out."""
+    unit = verdict.usage_unit
+    limited = any(route.capacity is not None for route in verdict.routes)
+    columns = ["robot", "tasks in order", f"usage [{unit}]", *([f"capacity [{unit}]"] if limited else [])]
+    rows = [
+        [r.robot, sequence(r.tasks), number(r.usage), *([number(r.capacity)] if limited else [])]
+        for r in verdict.routes
+    ]
+    title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
+    print_table(columns, rows, title=title, right=columns[2:])
+    print_figures(verdict)
+    if plan.unassigned:
+        left_out = [item.task for item in plan.unassigned]
+        click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")
+    if plan.ignored:
+        click.echo(f"ignored           {', '.join(plan.ignored)}")
+
+
+def print_figures(verdict: Verdict) -> None:
+    """The figures, one a line."""
+    unit = verdict.usage_unit
+    own_unit = "s" if verdict.objective_name == "makespan" else unit
+    click.echo(f"objective         {number(verdict.value(), own_unit)}  ({verdict.objective_name})")
+    click.echo(f"tasks completed   {verdict.tasks_completed} of {verdict.tasks_total}")
+    click.echo(f"total cost        {number(verdict.total_cost, unit)}")
+    click.echo(f"greatest usage    {number(verdict.max_usage, unit)}")
+    click.echo(f"makespan          {number(verdict.makespan_s, 's')}")
+    click.echo(f"equality index    {number(verdict.equality_index)}")
+
+
+def print_verdict(verdict: Verdict) -> None:
+    """Whether a plan holds, and all that is wrong with it."""
+    print_figures(verdict)
+    if verdict.valid:
+        click.echo("valid             yes")
+        return
+    click.echo(f"valid             no: {len(verdict.violations)} violations")
+    rows = [(v.kind, v.robot or "-", v.task or "-", v.detail) for v in verdict.violations]
+    print_table(("kind", "robot", "task", "detail"), rows)

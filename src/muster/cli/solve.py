@@ -1,0 +1,195 @@
+"""`muster solve`: plan a mission."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.options import (
+    format_option,
+    ignore_option,
+    load_mission,
+    mission_argument,
+    objective_option,
+    quiet_option,
+    require_complete_option,
+)
+from muster.mission.errors import MusterError, ParameterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, read_plan
+
+if TYPE_CHECKING:
+    from muster.allocation.stop import Stop
+    from muster.verification import Verdict
+
+DEFAULT_TIME_LIMIT_S = 5.0
+_FILE = click.Path(path_type=Path)
+
+
+@click.command()
+@mission_argument
+@click.option(
+    "-a", "--allocator", default="greedy+genetic", show_default=True, metavar="A", help="`--list-allocators`."
+)
+@click.option(
+    "--list-allocators",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda *a: _list(*a),
+    help="List the allocators.",
+)
+@objective_option
+@ignore_option
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of all random choices.")
+@click.option(
+    "--time-limit", type=click.FloatRange(min=0), metavar="S", help="Seconds.  [default: 5, without --iterations]"
+)
+@click.option(
+    "--iterations", type=click.IntRange(min=0), metavar="N", help="Stop after so many; then a seed gives one plan."
+)
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter of the allocator.")
+@click.option("--start", type=_FILE, metavar="PLAN", help="A plan to go on from.")
+@require_complete_option
+@format_option
+@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
+@click.option("--plot", type=_FILE, metavar="FILE", help="Draw the routes (.png, .svg, .pdf).")
+@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw the time chart (.png, .svg, .pdf).")
+@quiet_option
+def command(
+    mission: str,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    allocator: str,
+    objective: str | None,
+    ignore: tuple[str, ...],
+    seed: int,
+    time_limit: float | None,
+    iterations: int | None,
+    settings: tuple[str, ...],
+    start: Path | None,
+    require_complete: bool,
+    form: str,
+    output: Path | None,
+    plot: Path | None,
+    gantt: Path | None,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Plan a MISSION: who does what, in which order.
+
+    Every plan is judged by `verify` before it is shown. Ctrl-C ends the search; the best plan so far is kept.
+    """
+    from muster.allocation.allocator import make_parameters
+    from muster.allocation.problem import Problem
+    from muster.allocation.registry import allocator_named
+    from muster.allocation.stop import Stop
+    from muster.cli.progress import progress_bar
+
+    _require_writable(output, plot, gantt)
+    chosen = allocator_named(allocator)
+    params = make_parameters(chosen, _settings(settings))
+    loaded = load_mission(mission, robots, suitability, salesmen, depot)
+    first = None if start is None else read_plan(start)
+    problem = Problem.compile(loaded, objective, ignore).ready()
+    if time_limit is None and iterations is None and chosen.anytime:
+        time_limit = DEFAULT_TIME_LIMIT_S
+    with progress_bar(not quiet and chosen.anytime, loaded, time_limit, iterations) as on_progress:
+        stop = Stop(iterations=iterations, time_limit=time_limit, on_progress=on_progress)
+        with _ctrl_c_interrupts(stop):
+            plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
+    _show(loaded, plan, form, output, plot, gantt)
+    if stop.interrupted:
+        if not quiet:
+            click.echo("interrupted: this is the best plan so far", err=True)
+        return INTERRUPTED
+    if verbose:
+        click.echo(f"{stop.iterations_done} iterations in {plan.elapsed_s:.3f} s", err=True)
+    return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    if not asked or ctx.resilient_parsing:
+        return
+    from dataclasses import fields
+
+    from muster.allocation.registry import ALLOCATORS
+    from muster.cli.tables import print_table
+
+    rows = [
+        (a.name, a.summary, ", ".join(f"{f.name}={f.default}" for f in fields(a.parameters)) or "-")
+        for a in ALLOCATORS.values()
+    ]
+    print_table(("allocator", "what it is", "parameters and defaults"), rows)
+    ctx.exit()
+
+
+def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        try:
+            values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
+        except ValueError:
+            raise ParameterError(f"--set: {setting}; expected NAME=NUMBER") from None
+        if not equals:
+            raise ParameterError(f"--set: {setting}; expected NAME=NUMBER")
+    return values
+
+
+def _require_writable(*files: Path | None) -> None:
+    """Find out before a long search, not after it, that its result cannot be written."""
+    for file in files:
+        if file is not None and (file.is_dir() or not file.parent.is_dir()):
+            raise ParameterError(f"{file}: cannot be written; expected a file in a folder that exists")
+
+
+@contextmanager
+def _ctrl_c_interrupts(stop: Stop) -> Iterator[None]:
+    """The first Ctrl-C ends the search and keeps its plan; the second ends everything."""
+
+    def interrupt(signum: int, frame: FrameType | None) -> None:
+        if stop.interrupted:
+            raise KeyboardInterrupt
+        stop.interrupt()
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _show(mission: Mission, plan: Plan, form: str, output: Path | None, plot: Path | None, gantt: Path | None) -> None:
+    from muster.cli.plan_tables import print_plan
+    from muster.verification import verify
+
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
+        raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
+    if output is not None:
+        plan.save(output)
+    _draw(mission, plan, verdict, plot, gantt)
+    if form == "json":
+        click.echo(plan.text(), nl=False)
+    else:
+        print_plan(plan, verdict)
+
+
+def _draw(mission: Mission, plan: Plan, verdict: Verdict, plot: Path | None, gantt: Path | None) -> None:
+    from muster.report import plot_gantt, plot_routes, save_figure
+
+    if plot is not None:
+        save_figure(plot_routes(mission, plan, verdict), plot)
+    if gantt is not None:
+        save_figure(plot_gantt(mission, verdict), gantt)

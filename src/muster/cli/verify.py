@@ -1,0 +1,40 @@
+"""`muster verify`: judge a plan from scratch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from muster.cli.exits import DONE, REJECTED
+from muster.cli.options import format_option, load_mission, mission_argument
+from muster.mission.plan import json_text, read_plan
+
+
+@click.command()
+@mission_argument
+@click.argument("plan", type=click.Path(path_type=Path))
+@format_option
+def command(
+    mission: str,
+    plan: Path,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    form: str,
+) -> int:
+    """Recompute a PLAN of a MISSION from scratch, by code that no allocator uses.
+
+    Exits with 1 if the plan is not admissible or a figure in it is wrong.
+    """
+    from muster.cli.plan_tables import print_verdict
+    from muster.verification import verify
+
+    loaded = load_mission(mission, robots, suitability, salesmen, depot)
+    verdict = verify(loaded, read_plan(plan))
+    if form == "json":
+        click.echo(json_text(verdict.as_dict()), nl=False)
+    else:
+        print_verdict(verdict)
+    return DONE if verdict.valid else REJECTED
