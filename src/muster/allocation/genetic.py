@@ -59,16 +59,27 @@ class Genetic:
         start: Plan | None = None,
     ) -> Plan:
         """The best plan found until `stop`; a start plan and mutants of it become members of the first population."""
-        routes = evolve(
-            problem, stop, seed, params or Parameters(), admissible_routes(problem, start) if start else None
-        )
-        return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
+        params = params or Parameters()
+        routes = admissible_routes(problem, start) if start else None
+        best = evolve(first_population(problem, seed, params, routes), stop, params)
+        return finished_plan(problem, stop, best, allocator=self.name, seed=seed)
 
 
-def evolve(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
-    """Algorithm 3; steps carry its numbers. The best plan ever seen is kept apart, as members can be replaced."""
+def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> core.Population:
+    """Random admissible allocations; with a start plan it comes first, then its mutants (Algorithm 7, step 2)."""
     population = core.Population(problem.core, params.population_size, seed)
-    first_population(population, params, start)  # 2
+    for member in range(params.population_size):
+        if start is None or member > params.start_mutants:
+            population.set_random(member)
+        elif member == 0:
+            population.set(0, start)
+        else:
+            population.set_mutant(member, 0)
+    return population
+
+
+def evolve(population: core.Population, stop: Stop, params: Parameters) -> Routes:
+    """Algorithm 3; steps carry its numbers. The best plan ever seen is kept apart, as members can be replaced."""
     best = Best(stop)
     best.note(population)
     for _ in stop.iterations():
@@ -77,17 +88,6 @@ def evolve(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
         population.cross(params.crossover_probability)  # 6
         best.note(population)  # 8
     return best.routes
-
-
-def first_population(population: core.Population, params: Parameters, start: Routes | None) -> None:
-    """Random admissible allocations; with a start plan it comes first, then its mutants (Algorithm 7, step 2)."""
-    for member in range(len(population)):
-        if start is None or member > params.start_mutants:
-            population.set_random(member)
-        elif member == 0:
-            population.set(0, start)
-        else:
-            population.set_mutant(member, 0)
 
 
 class Best:

@@ -6,7 +6,7 @@ TCF thesis, section 3.2.2, Algorithm 7: the greedy plan and mutants of it are me
 from __future__ import annotations
 
 from muster.allocation.allocator import admissible_routes, finished_plan
-from muster.allocation.genetic import Parameters, evolve
+from muster.allocation.genetic import Parameters, evolve, first_population
 from muster.allocation.greedy import allocate
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -32,5 +32,6 @@ class GreedyGenetic:
     ) -> Plan:
         """The best plan found until `stop`; with `start`, greedy goes on from its routes."""
         first = allocate(problem, stop, admissible_routes(problem, start) if start else None)
-        routes = evolve(problem, stop, seed, params or Parameters(), first)
-        return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
+        params = params or Parameters()
+        best = evolve(first_population(problem, seed, params, first), stop, params)
+        return finished_plan(problem, stop, best, allocator=self.name, seed=seed)

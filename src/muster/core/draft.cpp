@@ -56,15 +56,7 @@ bool Evaluator::conclude(Draft& draft) {
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (!problem_.fits(robot, draft.figures_[robot].usage)) return false;
   }
-  if (problem_.has_prerequisites()) {
-    for (const int task : draft.order_) {
-      for (const int before : problem_.prerequisites(task)) {
-        if (draft.robot_of(before) == Draft::kNobody) return false;
-      }
-    }
-  }
-  const bool timed = problem_.objective() == Objective::makespan;
-  if ((timed || problem_.has_prerequisites()) && !schedule(draft)) return false;
+  if (problem_.has_prerequisites() && !(prerequisites_done(draft) && order(draft))) return false;
   double weight = 0.0;
   for (int task = 0; task < problem_.tasks(); ++task) {
     if (draft.robot_of(task) != Draft::kNobody) weight += problem_.priority(task);
@@ -73,7 +65,15 @@ bool Evaluator::conclude(Draft& draft) {
   return true;
 }
 
-double Evaluator::objective(const Draft& draft) const {
+bool Evaluator::prerequisites_done(const Draft& draft) const {
+  if (draft.done() == problem_.tasks()) return true;
+  return std::ranges::all_of(draft.order_, [&](int task) {
+    return std::ranges::all_of(problem_.prerequisites(task),
+                               [&](int before) { return draft.robot_of(before) != Draft::kNobody; });
+  });
+}
+
+double Evaluator::objective(const Draft& draft) {
   double total = 0.0, most = 0.0, arrivals = 0.0;
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     total += draft.figures(robot).usage;
@@ -90,51 +90,50 @@ double Evaluator::objective(const Draft& draft) const {
     case Objective::average:
       return draft.done() ? arrivals / draft.done() : 0.0;
     case Objective::makespan:
-      return makespan(draft);
+      return *makespan(draft);
   }
   return total;
 }
 
-bool Evaluator::schedule(const Draft& draft) {
+bool Evaluator::order(const Draft& draft) {
   const auto done = [&draft](int task) { return draft.robot_of(task) != Draft::kNobody; };
-  ready_.clear();
+  sequence_.clear();
   for (int robot = 0; robot < problem_.robots(); ++robot) {
-    const auto route = draft.route(robot);
-    for (std::size_t k = 0; k < route.size(); ++k) {
-      const auto before = problem_.prerequisites(route[k]);
-      waiting_[route[k]] = (k > 0) + static_cast<int>(std::ranges::count_if(before, done));
-      next_[route[k]] = k + 1 < route.size() ? route[k + 1] : Draft::kNobody;
-      ends_[route[k]] = 0.0;  // until it is released: the time at which its robot arrives
+    int before_it = problem_.start(robot);
+    for (const int task : draft.route(robot)) {
+      const auto before = problem_.prerequisites(task);
+      const bool first = before_it >= problem_.tasks();
+      waiting_[task] = (first ? 0 : 1) + static_cast<int>(std::ranges::count_if(before, done));
+      if (!first) after_[before_it] = task;
+      before_[task] = before_it;
+      after_[task] = Draft::kNobody;
+      if (waiting_[task] == 0) sequence_.push_back(task);
+      before_it = task;
     }
-    if (route.empty()) continue;
-    ends_[route[0]] = problem_.available_from(robot) + problem_.travel_time(robot, problem_.start(robot), route[0]);
-    if (waiting_[route[0]] == 0) ready_.push_back(route[0]);
   }
-  int released = 0;
-  for (; released < static_cast<int>(ready_.size()); ++released) release(draft, ready_[released]);
-  return released == draft.done();
+  for (std::size_t k = 0; k < sequence_.size(); ++k) {
+    const int task = sequence_[k];
+    if (after_[task] != Draft::kNobody && --waiting_[after_[task]] == 0) sequence_.push_back(after_[task]);
+    for (const int dependant : problem_.dependants(task)) {
+      if (done(dependant) && --waiting_[dependant] == 0) sequence_.push_back(dependant);
+    }
+  }
+  return static_cast<int>(sequence_.size()) == draft.done();
 }
 
-void Evaluator::release(const Draft& draft, int task) {
-  const int robot = draft.robot_of(task);
-  double begin = ends_[task];
-  for (const int before : problem_.prerequisites(task)) {
-    if (draft.robot_of(before) != Draft::kNobody) begin = std::max(begin, ends_[before]);
-  }
-  ends_[task] = begin + problem_.work_time(robot, task);
-  const int following = next_[task];
-  if (following != Draft::kNobody) {
-    ends_[following] = ends_[task] + problem_.travel_time(robot, task, following);
-    if (--waiting_[following] == 0) ready_.push_back(following);
-  }
-  for (const int dependant : problem_.dependants(task)) {
-    if (draft.robot_of(dependant) != Draft::kNobody && --waiting_[dependant] == 0) ready_.push_back(dependant);
-  }
-}
-
-double Evaluator::makespan(const Draft& draft) const {
+std::optional<double> Evaluator::makespan(const Draft& draft) {
+  if (!order(draft)) return std::nullopt;
   double latest = 0.0;
-  for (const int task : draft.order_) latest = std::max(latest, ends_[task]);
+  for (const int task : sequence_) {
+    const int robot = draft.robot_of(task), from = before_[task];
+    const double leaves = from < problem_.tasks() ? ends_[from] : problem_.available_from(robot);
+    double begin = leaves + problem_.travel_time(robot, from, task);
+    for (const int before : problem_.prerequisites(task)) {
+      if (draft.robot_of(before) != Draft::kNobody) begin = std::max(begin, ends_[before]);
+    }
+    ends_[task] = begin + problem_.work_time(robot, task);
+    latest = std::max(latest, ends_[task]);
+  }
   return latest;
 }
 

@@ -1,6 +1,7 @@
 // A plan that is being worked on.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -60,8 +61,12 @@ class Draft {
 class Evaluator {
  public:
   explicit Evaluator(const Problem& problem)
-      : problem_(problem), waiting_(problem.tasks()), next_(problem.tasks()), ends_(problem.tasks()) {
-    ready_.reserve(problem.tasks());
+      : problem_(problem),
+        waiting_(problem.tasks()),
+        before_(problem.tasks()),
+        after_(problem.tasks()),
+        ends_(problem.tasks()) {
+    sequence_.reserve(problem.tasks());
   }
 
   // Both set the draft's figures and value, and tell whether it is admissible; `changed` names the routes that differ
@@ -69,20 +74,22 @@ class Evaluator {
   bool evaluate(Draft& draft);
   bool evaluate(Draft& draft, std::span<const int> changed);
 
-  // Times at which tasks end, waiting included; false if routes and prerequisites deadlock. A prerequisite that is left
-  // out is not waited for: that it makes the draft inadmissible is for `evaluate` to say.
-  bool schedule(const Draft& draft);
-  double makespan(const Draft& draft) const;
+  // Puts the tasks in an order in which they can be done; false if routes and prerequisites deadlock. A prerequisite
+  // that is left out is not waited for: that it makes the draft inadmissible is for `evaluate` to say.
+  bool order(const Draft& draft);
+  // The time at which the last task ends, waiting included; none if routes and prerequisites deadlock.
+  std::optional<double> makespan(const Draft& draft);
 
  private:
   bool conclude(Draft& draft);
-  double objective(const Draft& draft) const;
-  void release(const Draft& draft, int task);
+  bool prerequisites_done(const Draft& draft) const;
+  double objective(const Draft& draft);
 
   const Problem& problem_;
-  std::vector<int> waiting_;  // what a task still waits for: prerequisites, and the task before it in its route
-  std::vector<int> next_;     // the task after it in its route
-  std::vector<int> ready_;
+  std::vector<int> waiting_;   // what a task still waits for: prerequisites, and the task before it in its route
+  std::vector<int> before_;    // the place before it in its route
+  std::vector<int> after_;     // the task after it in its route
+  std::vector<int> sequence_;  // the order found
   std::vector<double> ends_;
 };
 

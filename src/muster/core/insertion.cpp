@@ -12,9 +12,8 @@ Inspection::Inspection(const Problem& problem, const Routes& routes)
     : problem_(problem),
       evaluator_(problem),
       draft_(draft_from(problem, routes)),
-      admissible_(evaluator_.evaluate(draft_)) {
-  if (evaluator_.schedule(draft_)) makespan_ = evaluator_.makespan(draft_);
-}
+      admissible_(evaluator_.evaluate(draft_)),
+      makespan_(evaluator_.makespan(draft_)) {}
 
 std::vector<double> Inspection::usages() const {
   std::vector<double> usages;
@@ -39,7 +38,7 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
   for (const Insertion& place : places) {
     Draft trial = draft_;
     trial.insert(task, robot, place.at);
-    if (!problem_.has_prerequisites() || evaluator_.schedule(trial)) return place;
+    if (!problem_.has_prerequisites() || evaluator_.order(trial)) return place;
   }
   return std::nullopt;
 }

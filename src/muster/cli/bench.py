@@ -1,0 +1,45 @@
+"""`muster bench`: speed on this machine."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import click
+
+from muster.cli.options import format_option, quiet_option
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+
+
+@click.command()
+@click.option("--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, start-up.")
+@click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
+@format_option
+@quiet_option
+def command(only: str | None, runs: int, form: str, quiet: bool, verbose: bool) -> None:
+    """Measure speed on this machine: medians over runs, with the range, beside what is aimed at."""
+    import json
+
+    from muster.cli.tables import print_table
+    from muster.studies.bench import BENCHES
+
+    names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
+    for name in names:
+        if name not in BENCHES:
+            raise ParameterError(f"--only: {name}; expected {', '.join(BENCHES)}{did_you_mean(name, BENCHES)}")
+    found = []
+    for name in names:
+        if not quiet:
+            click.echo(f"measuring {name} ...", err=True)
+        found += BENCHES[name](runs)
+    if form == "json":
+        click.echo(json.dumps([asdict(m) for m in found], indent=1))
+        return
+    rows = [
+        (m.name, _figure(m.median), f"{_figure(m.lowest)} - {_figure(m.highest)}", m.unit, m.aim, m.note) for m in found
+    ]
+    print_table(("what", "median", "range", "unit", "aim", "note"), rows, right=("median", "range"))
+
+
+def _figure(value: float) -> str:
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}"

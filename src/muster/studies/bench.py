@@ -1,0 +1,162 @@
+"""Speed on this machine: what `muster bench` measures."""
+
+from __future__ import annotations
+
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from muster._api import load, verify
+from muster.allocation.genetic import Parameters, evolve, first_population
+from muster.allocation.problem import Problem
+from muster.allocation.registry import ALLOCATORS
+from muster.allocation.stop import Stop
+from muster.mission.model import Mission, Robot, Task
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One line of the table: what was measured, the median and range over the runs, and the aim it stands against."""
+
+    name: str
+    unit: str
+    median: float
+    lowest: float
+    highest: float
+    runs: int
+    aim: str
+    note: str = ""
+
+
+def _over_runs(name: str, unit: str, values: list[float], aim: str, note: str = "") -> Measurement:
+    return Measurement(name, unit, statistics.median(values), min(values), max(values), len(values), aim, note)
+
+
+def greedy_small(runs: int) -> list[Measurement]:
+    """Greedy on eil51 with 5 salesmen, the problem compiled before."""
+    milliseconds = []
+    problem = Problem.compile(load("eil51-5-thesis")).ready()
+    for _ in range(runs):
+        begin = time.perf_counter()
+        plan = ALLOCATORS["greedy"].solve(problem, Stop())
+        milliseconds.append(1000 * (time.perf_counter() - begin))
+    value = verify(problem.mission, plan).value("total+max")
+    return [_over_runs("greedy, eil51-5-thesis, in process", "ms", milliseconds, "< 10", f"F = {value:.2f}")]
+
+
+def genetic_iterations(runs: int) -> list[Measurement]:
+    """Iterations of GenTA with a population of 10 per second of CPU, and the share of each step."""
+    found = []
+    for name, aim in (("eil51-5", ">= 20000"), ("eil51-5-thesis", "")):
+        problem = Problem.compile(load(name)).ready()
+        params = Parameters()
+        rates = []
+        for seed in range(runs):
+            population = first_population(problem, seed, params, None)
+            begin = time.process_time()
+            evolve(population, Stop(iterations=20_000), params)
+            rates.append(20_000 / (time.process_time() - begin))
+        found.append(_over_runs(f"genetic, {name}", "iterations / CPU s", rates, aim, _shares(problem, params)))
+    return found
+
+
+class _Timed:
+    """A population that measures the time in each of its verbs."""
+
+    def __init__(self, population: Any) -> None:
+        self._population = population
+        self.seconds: dict[str, float] = {}
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        verb = getattr(self._population, name)
+
+        def timed(*arguments: Any) -> Any:
+            begin = time.perf_counter()
+            result = verb(*arguments)
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begin
+            return result
+
+        return timed
+
+
+def _shares(problem: Problem, params: Parameters) -> str:
+    timed: Any = _Timed(first_population(problem, 0, params, None))
+    begin = time.perf_counter()
+    evolve(timed, Stop(iterations=20_000), params)
+    whole = time.perf_counter() - begin
+    steps = {name: timed.seconds[name] / whole for name in ("replace_worst", "mutate", "cross")}
+    steps["loop in Python"] = 1.0 - sum(steps.values())
+    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in steps.items())
+
+
+def large_mission(tasks: int, robots: int, seed: int = 0) -> Mission:
+    """Tasks and robots at random places of a square of 1000 m, without prerequisites."""
+    random = Random(seed)
+
+    def place() -> tuple[float, float]:
+        return random.uniform(0, 1000), random.uniform(0, 1000)
+
+    return Mission(
+        name=f"uniform-{tasks}-{robots}",
+        robots=tuple(Robot(id=f"r_{k}", position=place()) for k in range(robots)),
+        tasks=tuple(Task(id=str(k), position=place()) for k in range(tasks)),
+    )
+
+
+def greedy_large(runs: int) -> list[Measurement]:
+    """Greedy on 10,000 tasks and 200 robots, each run in a process of its own so that its memory can be told."""
+    code = "from muster.studies.bench import greedy_large_once as once; print(*once())"
+    seconds, megabytes, value = [], [], ""
+    for _ in range(min(runs, 3)):
+        words = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+        seconds.append(float(words[0]))
+        megabytes.append(float(words[1]))
+        value = words[2]
+    name = "greedy, 10,000 tasks x 200 robots"
+    return [
+        _over_runs(name, "s", seconds, "< 5", f"F = {value}"),
+        _over_runs(f"{name}, peak memory", "MB", megabytes, "< 500", "the whole process"),
+    ]
+
+
+def greedy_large_once() -> tuple[float, float, float]:
+    """Seconds, peak memory in MB and F of one run."""
+    problem = Problem.compile(large_mission(10_000, 200)).ready()
+    begin = time.perf_counter()
+    plan = ALLOCATORS["greedy"].solve(problem, Stop())
+    seconds = time.perf_counter() - begin
+    megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    value = verify(problem.mission, plan).value("total+max")
+    assert value is not None
+    return seconds, megabytes, value
+
+
+def start_up(runs: int) -> list[Measurement]:
+    """Whole processes: `import muster` and `muster --help`, with what Python itself takes."""
+    commands = (
+        ("import muster", [sys.executable, "-c", "import muster"], "< 0.3"),
+        ("muster --help", [sys.executable, "-m", "muster.cli", "--help"], "< 0.4"),
+        ("python alone", [sys.executable, "-c", "pass"], ""),
+    )
+    return [_over_runs(name, "s", [_seconds(command) for _ in range(runs)], aim) for name, command, aim in commands]
+
+
+def _seconds(command: list[str]) -> float:
+    begin = time.perf_counter()
+    subprocess.run(command, stdout=subprocess.DEVNULL, check=True, env=os.environ)
+    return time.perf_counter() - begin
+
+
+BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
+    "greedy-small": greedy_small,
+    "genetic": genetic_iterations,
+    "greedy-large": greedy_large,
+    "start-up": start_up,
+}
