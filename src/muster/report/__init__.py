@@ -1,0 +1,7 @@
+"""Pictures of what is given: routes on the ground, charts over time. Matplotlib is loaded only when one is drawn."""
+
+from muster.report.files import save_figure
+from muster.report.gantt import plot_gantt
+from muster.report.routes import plot_routes
+
+__all__ = ["plot_gantt", "plot_routes", "save_figure"]

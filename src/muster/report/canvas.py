@@ -1,0 +1,198 @@
+"""What all pictures share: axes, titles, legends, text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muster.mission.errors import MissingExtraError
+from muster.mission.plan import Plan
+from muster.report.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT
+from muster.verification import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LEGEND_ROWS = 24
+"""Robots that a legend names; of more than these it names the first 20."""
+_NAMED_OF_MANY = 20
+_LONGEST_TITLE = 60
+_LONGEST_NAME = 24
+
+
+def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axes:
+    """Make axes on a figure of their own, in inches, without pyplot and without a window.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    require_matplotlib()
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    if not spatial:
+        return figure.add_subplot()
+    with rc_context({"grid.color": GRID, "grid.linewidth": 0.6}):  # 3-D axes read these once, when they are made
+        axes: Axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    return axes
+
+
+def require_matplotlib() -> None:
+    """Raise MissingExtraError where matplotlib is not installed."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise MissingExtraError("plot", "drawing") from None
+
+
+def is_spatial(ax: Axes) -> bool:
+    """Tell whether the axes have a z axis."""
+    return hasattr(ax, "get_zlim")
+
+
+def quiet_frame(ax: Any) -> None:
+    """Draw frame and grid lightly, so that the data is what one sees."""
+    ax.tick_params(labelsize=8, color=FRAME)
+    ax.xaxis.label.set_size(9)
+    ax.yaxis.label.set_size(9)
+    if is_spatial(ax):
+        for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+            axis.set_pane_color((0.985, 0.985, 0.985))
+            axis.line.set_color(FRAME)
+        ax.zaxis.label.set_size(9)
+        return
+    for spine in ax.spines.values():
+        spine.set_color(FRAME)
+    ax.set_axisbelow(True)
+    ax.grid(visible=True, color=GRID, linewidth=0.6)
+
+
+def add_title(ax: Axes, name: str, facts: Sequence[str], alarm: str = "") -> None:
+    """Write the mission's name above the axes, and beneath it a line of facts."""
+    ax.set_title(
+        shortened(name, _LONGEST_TITLE),
+        loc="left",
+        fontsize=11,
+        fontweight="bold",
+        color=TEXT,
+        pad=20,
+        parse_math=False,
+    )
+    line: dict[str, Any] = {
+        "xycoords": "axes fraction",
+        "textcoords": "offset points",
+        "fontsize": 8.5,
+        "annotation_clip": False,
+        "parse_math": False,
+    }
+    text = ax.annotate(" · ".join(facts), (0, 1), (0, 7), color=QUIET_TEXT, gid="facts", **line)
+    if alarm:
+        beside = {**line, "xycoords": text, "va": "bottom"}
+        ax.annotate(f" · {alarm}", (1, 0), (0, 0), color=ALARM, gid="alarm", **beside)
+
+
+def shortened(name: str, longest: int = _LONGEST_NAME) -> str:
+    """Cut a name that would push everything else aside."""
+    return name if len(name) <= longest else name[: longest - 1] + "…"
+
+
+def facts_of(verdict: Verdict, plan: Plan | None = None) -> list[str]:
+    """Name the allocator, the objective with its value and unit, and the tasks done."""
+    value = verdict.value()
+    unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
+    shown = "none" if value is None else f"{value:.2f} {unit}"
+    done = f"tasks {verdict.tasks_completed}/{verdict.tasks_total}"
+    by = [plan.allocator] if plan is not None and plan.allocator else []
+    return [*by, f"{verdict.objective_name} {shown}", done]
+
+
+def alarm_of(verdict: Verdict) -> str:
+    """Say, beside the figures of a plan that is not admissible, that it is not."""
+    count = len(verdict.violations)
+    return "" if verdict.valid else f"not admissible: {count} violation{'s' if count > 1 else ''}"
+
+
+def named_rows(count: int) -> int:
+    """Return how many of `count` robots a legend names."""
+    return count if count <= LEGEND_ROWS else _NAMED_OF_MANY
+
+
+def add_legend(ax: Axes, entries: Sequence[tuple[Any, str]], title: str | None = None) -> None:
+    """Draw a legend outside the axes, on the right; entries are handles with their labels."""
+    legend = ax.legend(
+        [handle for handle, _ in entries],
+        ["?"] * len(entries),
+        title=title,
+        loc="upper left",
+        bbox_to_anchor=(_right_end(ax), 1.0),
+        borderaxespad=0.0,
+        frameon=False,
+        fontsize=8,
+        title_fontsize=8,
+        alignment="left",
+        handlelength=2.6,
+        labelspacing=0.55,
+    )
+    for text, (_, label) in zip(legend.get_texts(), entries, strict=True):
+        text.set_parse_math(False)  # an id may hold a dollar sign, or begin with an underscore, which hides an entry
+        text.set_text(label)
+
+
+def _right_end(ax: Any) -> float:
+    """Find where a legend may begin, as a share of the axes' width; 3-D axes write beyond their own box."""
+    if not is_spatial(ax):
+        return 1.01
+    settle(ax)
+    return float(ax.transAxes.inverted().transform(ax.get_tightbbox().max)[0]) + 0.06
+
+
+def write(
+    ax: Any,
+    point: Sequence[float],
+    text: str,
+    offset: Sequence[float] = (0.0, 0.0),
+    *,
+    halo: bool = False,
+    **style: Any,
+) -> Any:
+    """Write a text centred at a point of the data, shifted by an offset in points (1/72 inch); 2-D or 3-D.
+
+    A halo parts the text from lines that it crosses.
+    """
+    from matplotlib.patheffects import withStroke
+    from matplotlib.transforms import ScaledTranslation
+
+    shift = ScaledTranslation(offset[0] / 72, offset[1] / 72, ax.figure.dpi_scale_trans)
+    centred = {"ha": "center", "va": "center", "parse_math": False, "clip_on": True}
+    if halo:
+        style["path_effects"] = [withStroke(linewidth=1.6, foreground="white")]
+    return ax.text(*point, text, transform=ax.transData + shift, **{**centred, **style})
+
+
+def to_points(ax: Any, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find where places of the data `(n, 2 or 3)` are on the page: `(n, 2)`, in points; NaN stays NaN."""
+    if places.shape[1] == 3:
+        from mpl_toolkits.mplot3d import proj3d
+
+        x, y, _ = proj3d.proj_transform(*places.T, ax.get_proj())
+        places = np.column_stack([np.asarray(x), np.asarray(y)])
+    if not len(places):
+        return np.empty((0, 2))
+    points: NDArray[np.float64] = ax.transData.transform(places) * 72 / ax.figure.dpi
+    return points
+
+
+def settle(ax: Any) -> None:
+    """Lay the figure out, so that places on the page are as they will be drawn."""
+    if ax.figure.get_layout_engine() is not None:
+        ax.figure.canvas.figure.draw_without_rendering()  # the outermost one, also from a subfigure
+    else:
+        ax.apply_aspect()

@@ -1,0 +1,50 @@
+"""Pictures to files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from muster.mission.errors import Finding, InputError
+from muster.report.canvas import require_matplotlib
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_METADATA: dict[str, dict[str, Any]] = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+"""By suffix: what keeps the time of writing out of the file, so that the same picture gives the same bytes."""
+
+
+def check_suffix(path: str | Path) -> None:
+    """Raise InputError unless `save_figure` knows the suffix; to be asked before hours of work, not after."""
+    suffix = Path(path).suffix
+    if suffix.lower() not in _METADATA:
+        known = ", ".join(_METADATA)
+        raise InputError(
+            [Finding(str(path), None, "", f"suffix {suffix!r}" if suffix else "no suffix", f"one of {known}")]
+        )
+
+
+def save_figure(picture: Axes | Figure, path: str | Path) -> None:
+    """Write a figure, or the figure that axes are on, as PNG, SVG or PDF, by the path's suffix; 150 dots per inch.
+
+    Raises
+    ------
+    InputError
+        if the suffix is unknown or the file cannot be written.
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    check_suffix(path)
+    require_matplotlib()
+    from matplotlib import rc_context
+
+    figure: Any = picture.figure.canvas.figure  # the outermost one, also from a subfigure
+    metadata = _METADATA[Path(path).suffix.lower()]
+    try:
+        with rc_context({"svg.hashsalt": "muster"}):
+            figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.12, metadata=metadata)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError([Finding(str(path), None, "", reason, "a path that can be written")]) from None

@@ -1,0 +1,343 @@
+"""The routes of a plan on the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from muster.mission.model import Mission, Point, Task
+from muster.mission.plan import Plan
+from muster.report.canvas import (
+    add_legend,
+    add_title,
+    alarm_of,
+    facts_of,
+    is_spatial,
+    named_rows,
+    new_axes,
+    quiet_frame,
+    settle,
+    shortened,
+    to_points,
+    write,
+)
+from muster.report.ground import draw_map, draw_prerequisites, draw_stems, drawn_prerequisites
+from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
+from muster.report.traces import Places, Trace, left_out, places, traces
+from muster.verification import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_IDS = 60
+"""Tasks up to which each is named."""
+MOST_NUMBERS = 200
+"""Tasks up to which each bears its place in the route."""
+MOST_STARTS = 30
+"""Robots up to which starts are named."""
+_LONG_SIDE_IN = 6.6
+
+
+def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | None = None) -> Axes:
+    """Draw the routes of a plan.
+
+    Every robot has the colour that its place in the mission gives it, whatever the plan. Tasks bear their place in the
+    route and, beside the mark, their id; both are left away where there are too many to be read.
+
+    Parameters
+    ----------
+    mission, plan, verdict
+        the question, the answer, and what the judge says of it.
+    ax
+        axes to draw on; without them a new figure is made, with 3-D axes for a 3-D mission. On 2-D axes a 3-D mission
+        is seen from above.
+
+    Returns
+    -------
+    The axes, in metres of the map frame, equal in scale.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    if ax is None:
+        ax = _own_axes(mission)
+    scene = _scene(mission, verdict, is_spatial(ax))
+    _frame(ax, scene)
+    entries = _draw_ground(ax, scene)
+    for trace in scene.traces:
+        _draw_lines(ax, trace, scene.detail)
+    for trace in scene.traces:
+        _draw_tasks(ax, trace, scene.detail)
+    _draw_left_out(ax, scene)
+    _draw_starts(ax, scene)
+    limited = any(trace.figures.capacity is not None for trace in scene.traces)
+    entries = [*_robot_entries(scene, verdict.usage_unit), *_mark_entries(scene), *entries]
+    add_legend(ax, entries, "usage / work capacity" if limited else "usage")
+    add_title(ax, mission.name, facts_of(verdict, plan), alarm_of(verdict))
+    _name_places(ax, scene)
+    return ax
+
+
+@dataclass(frozen=True)
+class _Detail:
+    """How much is drawn of each task: size of marks and width of lines in points, and which texts."""
+
+    mark: float
+    line: float
+    numbers: bool
+    ids: bool
+
+
+@dataclass(frozen=True)
+class _Scene:
+    mission: Mission
+    traces: list[Trace]
+    left_out: list[Task]
+    dimensions: int
+    detail: _Detail
+
+    def places(self, points: Sequence[Point]) -> Places:
+        return places(points, self.dimensions)
+
+
+def _scene(mission: Mission, verdict: Verdict, spatial: bool) -> _Scene:
+    dimensions = 3 if spatial else 2
+    return _Scene(
+        mission=mission,
+        traces=traces(mission, verdict, dimensions),
+        left_out=left_out(mission, verdict),
+        dimensions=dimensions,
+        detail=_detail(len(mission.tasks)),
+    )
+
+
+def _detail(tasks: int) -> _Detail:
+    crowd = max(1.0, tasks / MOST_IDS)
+    smallest, greatest = (8.0, 11.0) if tasks <= MOST_NUMBERS else (1.5, 5.5)
+    return _Detail(
+        mark=float(np.clip(11.0 / crowd**0.5, smallest, greatest)),
+        line=float(np.clip(1.8 / crowd**0.25, 0.6, 1.8)),
+        numbers=tasks <= MOST_NUMBERS,
+        ids=tasks <= MOST_IDS,
+    )
+
+
+def _all_points(mission: Mission) -> list[Point]:
+    """List every place that the picture must hold."""
+    points = [robot.position for robot in mission.robots]
+    points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
+    for task in mission.tasks:
+        points += [task.position, task.entry or task.position, task.exit or task.position]
+    if mission.map is not None:
+        points += mission.map.boundary or ()
+        points += [corner for zone in mission.map.zones for corner in zone.polygon]
+    return points
+
+
+def _limits(mission: Mission, dimensions: int) -> tuple[Places, Places]:
+    """Find lower and upper corner of the picture, metres: all places and a margin; no side is very short."""
+    points = places(_all_points(mission), dimensions)
+    low, high = points.min(axis=0), points.max(axis=0)
+    longest = float((high - low).max()) or 1.0
+    missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2
+    margin = 0.06 * longest
+    return low - missing - margin, high + missing + margin
+
+
+def _own_axes(mission: Mission) -> Axes:
+    rows = named_rows(len(mission.robots)) + 6
+    legend_height = 0.19 * rows + 0.6
+    if mission.dimensions == 3:
+        return new_axes(8.8, max(6.8, legend_height), spatial=True)
+    low, high = _limits(mission, 2)
+    width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
+    return new_axes(width + 2.6, max(height + 1.0, legend_height))
+
+
+def _frame(ax: Any, scene: _Scene) -> None:
+    low, high = _limits(scene.mission, scene.dimensions)
+    for axis, start, end in zip("xyz", low, high, strict=False):
+        getattr(ax, f"set_{axis}lim")(start, end)
+        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
+    ax.set_aspect("equal", adjustable="box")
+    quiet_frame(ax)
+
+
+def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:
+    mission, spatial = scene.mission, scene.dimensions == 3
+    if spatial and scene.detail.ids:
+        tops = scene.places([task.position for task in mission.tasks])
+        draw_stems(ax, tops, float(ax.get_zlim()[0]))
+    place_of = {task.id: scene.places([task.position])[0] for task in mission.tasks}
+    entries = draw_prerequisites(ax, mission, place_of, scene.detail.mark / 2 + 1)
+    return [*entries, *(draw_map(ax, mission.map, spatial=spatial) if mission.map is not None else ())]
+
+
+def _stroke(style: Style, width: float) -> dict[str, Any]:
+    """Return the keywords of a line in a robot's style."""
+    from matplotlib.patheffects import Normal, Stroke
+
+    if style.stroke != "hollow":
+        return {"color": style.color, "linewidth": width, "linestyle": style.stroke}
+    core = [Normal(), Stroke(linewidth=0.5 * width, foreground="white")]
+    return {"color": style.color, "linewidth": 1.25 * width, "linestyle": "-", "path_effects": core}
+
+
+def _draw_lines(ax: Any, trace: Trace, detail: _Detail) -> None:
+    """Draw travel in the robot's stroke, the leg to the end dashed, work from entry to exit dotted."""
+    style, name = robot_style(trace.index), trace.robot.id
+    thin = {"color": style.color, "linewidth": 0.75 * detail.line, "zorder": 2}
+    if len(trace.travel):
+        stroke = _stroke(style, detail.line)
+        ax.plot(*trace.travel.T, gid=f"travel-{name}", zorder=2, solid_joinstyle="round", **stroke)
+    if len(trace.work):
+        ax.plot(*trace.work.T, gid=f"work-{name}", linestyle=(0, (1, 1)), **thin)
+    if len(trace.end):
+        ax.plot(*trace.end.T, gid=f"end-{name}", linestyle=DASHED, **thin)
+        if trace.robot.end_position is not None:
+            mark = {"marker": "v", "markersize": 0.7 * detail.mark, "markerfacecolor": "white", **thin, "zorder": 3}
+            ax.plot(*trace.end[-1:].T, gid=f"end-place-{name}", linestyle="none", **mark)
+
+
+def _draw_tasks(ax: Any, trace: Trace, detail: _Detail) -> None:
+    """Draw the tasks of a route, numbered from 1. Marks of a later robot lie wholly above those of an earlier one."""
+    style, zorder = robot_style(trace.index), 3 + trace.index * 1e-5
+    if not trace.tasks:
+        return
+    size = detail.mark * (0.88 if style.marker in "sD" else 1.0)
+    edge = 0.8 if detail.numbers else 0.0
+    mark = {"marker": style.marker, "markersize": size, "color": style.color, "markeredgecolor": "white"}
+    ax.plot(
+        *trace.positions.T, gid=f"tasks-{trace.robot.id}", linestyle="none", markeredgewidth=edge, zorder=zorder, **mark
+    )
+    if detail.numbers:
+        look: dict[str, Any] = {"color": style.ink, "fontweight": "bold", "zorder": zorder + 0.5e-5}
+        for order, (task, place) in enumerate(zip(trace.tasks, trace.positions, strict=True), 1):
+            font = detail.mark * (0.6 if order < 10 else 0.53 if order < 100 else 0.43)
+            write(ax, place, str(order), gid=f"order-{task.id}", fontsize=font, **look)
+
+
+def _draw_left_out(ax: Any, scene: _Scene) -> None:
+    if scene.left_out:
+        where = scene.places([task.position for task in scene.left_out])
+        size = max(0.65 * scene.detail.mark, 3.0)
+        mark = {"marker": "x", "markersize": size, "markeredgewidth": 1.6, "color": LEFT_OUT}
+        ax.plot(*where.T, gid="left-out", linestyle="none", zorder=2.9, **mark)
+
+
+def _starts(scene: _Scene) -> list[tuple[Point, list[int]]]:
+    """Find where robots start, and the indices of those that do."""
+    groups: dict[Point, list[int]] = {}
+    for index, robot in enumerate(scene.mission.robots):
+        groups.setdefault(robot.position, []).append(index)
+    return list(groups.items())
+
+
+def _start_size(scene: _Scene) -> float:
+    return 9.0 if len(scene.mission.robots) <= MOST_STARTS else 5.0
+
+
+def _draw_starts(ax: Any, scene: _Scene) -> None:
+    """Draw a triangle in the robot's colour; a dark one where several robots start."""
+    for position, group in _starts(scene):
+        color = robot_style(group[0]).color if len(group) == 1 else TEXT
+        mark = {"marker": "^", "markersize": _start_size(scene), "color": color, "markeredgecolor": "white"}
+        mark |= {"gid": f"start-{scene.mission.robots[group[0]].id}", "markeredgewidth": 0.8}
+        ax.plot(*scene.places([position]).T, linestyle="none", zorder=2.95, **mark)
+
+
+def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
+    """Make the legend's line for each robot: stroke and mark, id, usage, capacity."""
+    from matplotlib.lines import Line2D
+
+    entries: list[tuple[Any, str]] = []
+    shown = named_rows(len(scene.traces))
+    for trace in scene.traces[:shown]:
+        style = robot_style(trace.index)
+        mark = Line2D([], [], color=style.color, marker=style.marker, markersize=5.5, linestyle="none")
+        line = Line2D([], [], **_stroke(style, 1.6))
+        entries.append(((line, mark), f"{shortened(trace.robot.id)}  {_usage_text(trace, unit)}"))
+    if shown < len(scene.traces):
+        entries.append((Line2D([], [], linestyle="none"), f"... and {len(scene.traces) - shown} more"))
+    return entries
+
+
+def _usage_text(trace: Trace, unit: str) -> str:
+    usage, capacity = trace.figures.usage, trace.figures.capacity
+    if capacity is None:
+        return f"{usage:.2f} {unit}"
+    limit = f"{capacity:.2f}".rstrip("0").rstrip(".")
+    return f"{usage:.2f} / {limit} {unit}"
+
+
+def _mark_entries(scene: _Scene) -> list[tuple[Any, str]]:
+    """Make the legend's lines for the marks that are in the picture."""
+    from matplotlib.lines import Line2D
+
+    def entry(label: str, **look: Any) -> tuple[Any, str]:
+        return Line2D([], [], **{"color": QUIET_TEXT, "linestyle": "none", **look}), label
+
+    entries = []
+    if scene.left_out:
+        label = f"left out ({len(scene.left_out)})"
+        entries.append(entry(label, marker="x", color=LEFT_OUT, markersize=6, markeredgewidth=1.6))
+    entries.append(entry("start", marker="^", markersize=7))
+    ends = [trace for trace in scene.traces if len(trace.end)]
+    if ends:
+        label = "way to end" if any(trace.robot.end_position is not None for trace in ends) else "way back"
+        entries.append(entry(label, linestyle=DASHED, linewidth=1.3))
+    if any(len(trace.work) for trace in scene.traces):
+        entries.append(entry("work", linestyle=(0, (1, 1)), linewidth=1.3))
+    return entries
+
+
+def _name_places(ax: Any, scene: _Scene) -> None:
+    """Write ids beside starts and tasks, where they cover least; none where there are too many to be read."""
+    names: list[tuple[Point, str, dict[str, Any]]] = []
+    if len(scene.mission.robots) <= MOST_STARTS:
+        look = {"fontsize": 7.5, "color": TEXT, "fontweight": "bold", "zorder": 4}
+        for position, group in _starts(scene):
+            gid = f"start-name-{scene.mission.robots[group[0]].id}"
+            names.append((position, _group_name(scene.mission, group), {**look, "gid": gid}))
+    if scene.detail.ids:
+        look = {"fontsize": 6.5, "color": QUIET_TEXT, "zorder": 4}
+        names += [(task.position, task.id, {**look, "gid": f"name-{task.id}"}) for task in scene.mission.tasks]
+    if not names:
+        return
+    settle(ax)
+    anchors = scene.places([point for point, _, _ in names])
+    sizes = np.array([text_size(shortened(text), look["fontsize"]) for _, text, look in names])
+    offsets = place_labels(
+        to_points(ax, anchors), sizes, scene.detail.mark / 2 + 1.5, _obstacles(ax, scene), _bounds(ax)
+    )
+    for place, (_, text, look), offset in zip(anchors, names, offsets, strict=True):
+        write(ax, place, shortened(text), offset, halo=True, **look)
+
+
+def _group_name(mission: Mission, group: list[int]) -> str:
+    ids = [mission.robots[index].id for index in group]
+    return ", ".join(ids) if len(ids) <= 3 else f"{len(ids)} robots"
+
+
+def _obstacles(ax: Any, scene: _Scene) -> Places:
+    """Collect what names should not cover: routes, marks of tasks, starts."""
+    radius = scene.detail.mark / 2
+    tasks = to_points(ax, scene.places([task.position for task in scene.mission.tasks]))
+    starts = to_points(ax, scene.places([robot.position for robot in scene.mission.robots]))
+    lines = [line for trace in scene.traces for line in (trace.travel, trace.work, trace.end) if len(line)]
+    at = {task.id: task.position for task in scene.mission.tasks}
+    lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission)]
+    routes = [line_obstacles(to_points(ax, line)) for line in lines]
+    return np.vstack([mark_obstacles(tasks, radius), mark_obstacles(starts, radius), *routes])
+
+
+def _bounds(ax: Any) -> Places:
+    corners = ax.get_window_extent().get_points()
+    bounds: Places = corners * 72 / ax.figure.dpi
+    return bounds

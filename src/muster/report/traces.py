@@ -1,0 +1,92 @@
+"""Where the robots of a plan go, as lines to be drawn. No drawing here.
+
+All places are metres in the map frame, `(n, d)` with d 2 or 3 as the picture has dimensions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muster.mission.model import Mission, Point, Robot, Task
+from muster.verification import RouteFigures, Verdict
+
+Places = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One robot's way.
+
+    `travel` runs from the start through the tasks, from exit to entry; `work` from the entry of a task through its
+    position to its exit, where these differ. Both are polylines, parted by rows of NaN. `end` is the leg from the last
+    task to where the route must end, two rows or none.
+    """
+
+    index: int
+    robot: Robot
+    figures: RouteFigures
+    tasks: tuple[Task, ...]
+    positions: Places
+    travel: Places
+    work: Places
+    end: Places
+
+
+def traces(mission: Mission, verdict: Verdict, dimensions: int) -> list[Trace]:
+    """Trace the ways of all robots, in mission order."""
+    tasks = {task.id: task for task in mission.tasks}
+    found = []
+    for index, (robot, figures) in enumerate(zip(mission.robots, verdict.routes, strict=True)):
+        route = tuple(tasks[name] for name in figures.tasks)
+        found.append(_trace(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions))
+    return found
+
+
+def _trace(
+    index: int, robot: Robot, figures: RouteFigures, tasks: tuple[Task, ...], end: Point | None, dimensions: int
+) -> Trace:
+    travel, work, here = [[robot.position]], [], robot.position
+    for task in tasks:
+        entry, leaving = task.entry or task.position, task.exit or task.position
+        travel[-1].append(entry)
+        if entry != task.position or leaving != task.position:
+            work.append([entry, task.position, leaving])
+        if entry != leaving:
+            travel.append([leaving])
+        here = leaving
+    return Trace(
+        index=index,
+        robot=robot,
+        figures=figures,
+        tasks=tasks,
+        positions=places((task.position for task in tasks), dimensions),
+        travel=_polylines(travel, dimensions),
+        work=_polylines(work, dimensions),
+        end=places([here, end] if end is not None and tasks else [], dimensions),
+    )
+
+
+def left_out(mission: Mission, verdict: Verdict) -> list[Task]:
+    """List the tasks in no route, in mission order."""
+    done = {name for route in verdict.routes for name in route.tasks}
+    return [task for task in mission.tasks if task.id not in done]
+
+
+def places(points: Iterable[Point], dimensions: int) -> Places:
+    """Turn points into `(n, dimensions)`; z is 0 where a point has none."""
+    rows = [(*point, 0.0)[:dimensions] for point in points]
+    return np.array(rows, dtype=np.float64).reshape(-1, dimensions)
+
+
+def _polylines(lines: Sequence[Sequence[Point]], dimensions: int) -> Places:
+    """Put lines of at least two points below one another, parted by rows of NaN."""
+    gap = np.full((1, dimensions), np.nan)
+    parts: list[Places] = []
+    for line in lines:
+        if len(line) > 1:
+            parts += [gap, places(line, dimensions)] if parts else [places(line, dimensions)]
+    return np.vstack(parts) if parts else np.empty((0, dimensions))
