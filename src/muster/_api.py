@@ -44,7 +44,7 @@ def load(
         if a parameter is missing, or does not go with this kind of file.
     """
     path = _found(path_or_name)
-    _check_flags(path, robots=robots, suitability=suitability, salesmen=salesmen)
+    _check_flags(path_or_name, path.suffix, robots=robots, suitability=suitability, salesmen=salesmen)
     if path.suffix == ".csv":
         from muster.mission.thesis_csv import read_csv
 
@@ -69,15 +69,17 @@ def _found(path_or_name: str | Path) -> Path:
     return shipped
 
 
-def _check_flags(path: Path, **given: object) -> None:
-    needed = {".csv": ("robots",), ".tsp": ("salesmen",)}.get(path.suffix, ())
-    possible = {".csv": ("robots", "suitability"), ".tsp": ("salesmen",)}.get(path.suffix, ())
-    for name in needed:
-        if given[name] is None:
-            raise ParameterError(f"{path}: {name} missing; expected --{name}, which a {path.suffix} file needs")
+_FLAGS = {".csv": ("robots", "suitability"), ".tsp": ("salesmen",)}
+_NEEDED_FLAGS = {".csv": "robots", ".tsp": "salesmen"}
+
+
+def _check_flags(named: str | Path, suffix: str, **given: object) -> None:
+    needed = _NEEDED_FLAGS.get(suffix)
+    if needed is not None and given[needed] is None:
+        raise ParameterError(f"{named}: --{needed} missing; expected with a {suffix} file")
     for name, value in given.items():
-        if value is not None and name not in possible:
-            raise ParameterError(f"{path}: --{name} given; expected no --{name} with this kind of file")
+        if value is not None and name not in _FLAGS.get(suffix, ()):
+            raise ParameterError(f"{named}: --{name} given; expected no --{name} with this kind of mission")
 
 
 def solve(
@@ -118,14 +120,15 @@ def solve(
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
     from muster.allocation.registry import allocator_named
-    from muster.allocation.stop import Stop
+    from muster.allocation.stop import Stop, usual_time_limit
 
+    if not 0 <= seed < 2**64:
+        raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
     problem = Problem.compile(mission, objective, ignore).ready()
-    if time_limit is None and iterations is None and chosen.anytime:
-        time_limit = 5.0
-    stop = Stop(iterations=iterations, time_limit=time_limit, on_progress=on_progress)
+    limit = usual_time_limit(chosen.anytime, time_limit, iterations)
+    stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
     return chosen.solve(problem, stop, seed=seed, params=params, start=start)
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.random_missions import random_mission
 
 import muster
 from muster.allocation.problem import Problem
@@ -13,7 +14,6 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import REASONS
-from tests.random_missions import random_mission
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
 RULES = ("prerequisites", "suitability", "skills", "capacity")

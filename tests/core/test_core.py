@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.random_missions import random_mission
 
 import muster
 from muster import core
@@ -10,7 +11,6 @@ from muster.allocation.allocator import finished_plan, routes_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.plan import Plan, Route
-from tests.random_missions import random_mission
 
 seeds = st.integers(0, 10**6)
 STEPS = {
@@ -91,7 +91,7 @@ def test_cheapest_insertion_is_the_cheapest_of_all_places(seed, tasks):
     routes = muster.solve(mission, "genetic", seed=seed, iterations=1)
     routes = routes_of(problem, routes)
     done = {j for route in routes for j in route}
-    draft = core.Draft(problem.core, routes)
+    inspection = core.Inspection(problem.core, routes)
     unlimited = Problem.compile(mission, ignored=("capacity",))
     for j in sorted(set(range(len(problem.tasks))) - done):
         if any(k not in done for k in problem.prerequisites[j]):
@@ -105,7 +105,7 @@ def test_cheapest_insertion_is_the_cheapest_of_all_places(seed, tasks):
                 if not any(v.kind in ("deadlock", "prerequisite") for v in verdict.violations):
                     robot = [route.robot for route in verdict.routes].index(problem.robots[i].id)
                     usages.append(verdict.routes[robot].usage)
-            found = draft.cheapest_insertion(i, j)
+            found = inspection.cheapest_insertion(i, j)
             assert (found.usage if found else None) == (pytest.approx(min(usages)) if usages else None)
 
 
@@ -119,14 +119,14 @@ def test_evaluation_agrees_with_the_judge_on_any_routes(seed, order):
         allowed = [i for i in range(len(routes)) if problem.allowed[i, j]]
         if allowed and order.random() < 0.8:
             routes[order.choice(allowed)].append(j)
-    draft = core.Draft(problem.core, routes)
+    inspection = core.Inspection(problem.core, routes)
     verdict = muster.verify(problem.mission, plan_of(problem, routes))
-    assert draft.admissible == verdict.valid
-    assert (draft.makespan is None) == any(v.kind == "deadlock" for v in verdict.violations)
+    assert inspection.admissible == verdict.valid
+    assert (inspection.makespan is None) == any(v.kind == "deadlock" for v in verdict.violations)
     usage = {route.robot: route.usage for route in verdict.routes}
-    assert draft.usages == pytest.approx([usage[robot.id] for robot in problem.robots])
+    assert inspection.usages == pytest.approx([usage[robot.id] for robot in problem.robots])
     if verdict.valid:
-        assert draft.objective == pytest.approx(verdict.value())
+        assert inspection.objective == pytest.approx(verdict.value())
         plan = finished_plan(problem, Stop(), routes, allocator="test", seed=0)
         assert muster.verify(problem.mission, plan).valid
 
@@ -146,7 +146,7 @@ def small_problem():
 )
 def test_routes_that_cannot_be_are_refused(routes, message):
     with pytest.raises(ValueError, match=message):
-        core.Draft(small_problem(), routes)
+        core.Inspection(small_problem(), routes)
 
 
 def test_indices_out_of_range_are_refused():
@@ -155,9 +155,9 @@ def test_indices_out_of_range_are_refused():
     for call in (population.routes, population.weight, population.objective, population.set_random):
         with pytest.raises(IndexError):
             call(2)
-    draft = core.Draft(problem, [[], [], []])
+    inspection = core.Inspection(problem, [[], [], []])
     with pytest.raises(ValueError, match="no such robot or task"):
-        draft.cheapest_insertion(3, 0)
+        inspection.cheapest_insertion(3, 0)
     greedy = core.Greedy(problem, balanced=True)
     with pytest.raises(ValueError, match="no such robot or task"):
         greedy.assign(0, 99)

@@ -63,7 +63,7 @@ def admissible_routes(problem: Problem, plan: Plan) -> Routes:
     """
     routes = routes_of(problem, plan)
     try:
-        draft = core.Draft(problem.core, routes)
+        inspection = core.Inspection(problem.core, routes)
     except ValueError as error:
         raise ParameterError(f"start: {error}") from None
     forbidden = [
@@ -72,7 +72,7 @@ def admissible_routes(problem: Problem, plan: Plan) -> Routes:
         for j in route
         if not problem.allowed[i, j]
     ]
-    if forbidden or not draft.admissible:
+    if forbidden or not inspection.admissible:
         raise ParameterError(f"start: {forbidden[0] if forbidden else 'the plan is not admissible'}")
     return routes
 
@@ -81,8 +81,8 @@ def finished_plan(problem: Problem, stop: Stop, routes: Sequence[Sequence[int]],
     """The plan with these routes, its figures, and the reasons for the tasks left out."""
     elapsed = stop.elapsed_s
     lists = [list(route) for route in routes]
-    draft = core.Draft(problem.core, lists)
-    usages = draft.usages
+    inspection = core.Inspection(problem.core, lists)
+    usages = inspection.usages
     mission = problem.mission
     done = [j for route in lists for j in route]
     by_robot = {
@@ -95,11 +95,11 @@ def finished_plan(problem: Problem, stop: Stop, routes: Sequence[Sequence[int]],
         seed=seed,
         ignored=problem.ignored,
         objective=problem.objective,
-        objective_value=draft.objective,
+        objective_value=inspection.objective,
         usage_unit=problem.usage_unit,
         total_cost=sum(usages),
         max_usage=max(usages),
-        makespan_s=draft.makespan,
+        makespan_s=inspection.makespan,
         equality_index=equality_index(usages),
         tasks_completed=len(done),
         tasks_total=len(problem.tasks),

@@ -12,17 +12,18 @@ from muster.mission.plan import Reason, Unassigned
 
 def unassigned(problem: Problem, routes: Sequence[Sequence[int]]) -> tuple[Unassigned, ...]:
     """The tasks that a plan leaves out, in mission order, each with a reason for every robot."""
-    draft = core.Draft(problem.core, [list(route) for route in routes])
+    inspection = core.Inspection(problem.core, [list(route) for route in routes])
     done = {j for route in routes for j in route}
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
     left_out = sorted((j for j in range(len(problem.tasks)) if j not in done), key=lambda j: order[problem.tasks[j].id])
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
     return tuple(
-        Unassigned(problem.tasks[j].id, tuple(_reason(problem, draft, done, i, j) for i in robots)) for j in left_out
+        Unassigned(problem.tasks[j].id, tuple(_reason(problem, inspection, done, i, j) for i in robots))
+        for j in left_out
     )
 
 
-def _reason(problem: Problem, draft: core.Draft, done: set[int], i: int, j: int) -> Reason:
+def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:
     """Why robot i does not do task j, which the plan leaves out."""
     robot = problem.robots[i].id
     refusal = problem.refusal(i, j)
@@ -32,7 +33,7 @@ def _reason(problem: Problem, draft: core.Draft, done: set[int], i: int, j: int)
     if missing:
         return Reason(robot, "prerequisite", f"left out before it: {', '.join(missing)}")
     unit = problem.usage_unit
-    insertion = draft.cheapest_insertion(i, j)
+    insertion = inspection.cheapest_insertion(i, j)
     if insertion is None:
         if problem.prerequisites[j] or problem.dependants[j]:
             return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
@@ -56,20 +57,21 @@ class Alternative:
 def alternatives(problem: Problem, routes: Sequence[Sequence[int]], j: int) -> tuple[Alternative, ...]:
     """For every robot, in mission order, what giving it task j instead would do, the rest of the plan as it is."""
     rest = [[k for k in route if k != j] for route in routes]
-    draft = core.Draft(problem.core, rest)
+    inspection = core.Inspection(problem.core, rest)
     done = {k for route in rest for k in route}
     return tuple(
-        _alternative(problem, draft, rest, done, problem.robot_index[robot.id], j) for robot in problem.mission.robots
+        _alternative(problem, inspection, rest, done, problem.robot_index[robot.id], j)
+        for robot in problem.mission.robots
     )
 
 
 def _alternative(
-    problem: Problem, draft: core.Draft, rest: list[list[int]], done: set[int], i: int, j: int
+    problem: Problem, inspection: core.Inspection, rest: list[list[int]], done: set[int], i: int, j: int
 ) -> Alternative:
-    why = _reason(problem, draft, done, i, j)
-    insertion = draft.cheapest_insertion(i, j) if why.reason == "not-chosen" else None
+    why = _reason(problem, inspection, done, i, j)
+    insertion = inspection.cheapest_insertion(i, j) if why.reason == "not-chosen" else None
     if insertion is None:
         return Alternative(why.robot, None, None, why)
     routes = [list(route) for route in rest]
     routes[i].insert(insertion.at, j)
-    return Alternative(why.robot, insertion.at + 1, core.Draft(problem.core, routes).objective, None)
+    return Alternative(why.robot, insertion.at + 1, core.Inspection(problem.core, routes).objective, None)

@@ -38,8 +38,8 @@ class Greedy:
     ) -> Plan:
         """A plan that goes on from the routes of `start`, if given, until no admissible matching is left."""
         routes = allocate(problem, stop, admissible_routes(problem, start) if start else None)
-        draft = core.Draft(problem.core, routes)
-        stop.improved(sum(problem.tasks[j].priority for route in routes for j in route), draft.objective)
+        inspection = core.Inspection(problem.core, routes)
+        stop.improved(sum(problem.tasks[j].priority for route in routes for j in route), inspection.objective)
         return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
 
 

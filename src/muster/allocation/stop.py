@@ -8,6 +8,13 @@ from dataclasses import dataclass
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
 
+DEFAULT_TIME_LIMIT_S = 5.0
+
+
+def usual_time_limit(anytime: bool, time_limit: float | None, iterations: int | None) -> float | None:
+    """The time limit of a run: as given; the default for an anytime allocator that nothing else stops."""
+    return DEFAULT_TIME_LIMIT_S if anytime and time_limit is None and iterations is None else time_limit
+
 
 @dataclass(frozen=True)
 class Progress:

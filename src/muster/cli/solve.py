@@ -29,14 +29,18 @@ if TYPE_CHECKING:
     from muster.allocation.stop import Stop
     from muster.verification import Verdict
 
-DEFAULT_TIME_LIMIT_S = 5.0
 _FILE = click.Path(path_type=Path)
 
 
 @click.command()
 @mission_argument
 @click.option(
-    "-a", "--allocator", default="greedy+genetic", show_default=True, metavar="A", help="`--list-allocators`."
+    "-a",
+    "--allocator",
+    default="greedy+genetic",
+    show_default=True,
+    metavar="A",
+    help="The algorithm; --list-allocators says which there are.",
 )
 @click.option(
     "--list-allocators",
@@ -48,7 +52,7 @@ _FILE = click.Path(path_type=Path)
 )
 @objective_option
 @ignore_option
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of all random choices.")
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), metavar="S", help="Seconds.  [default: 5, without --iterations]"
 )
@@ -92,19 +96,19 @@ def command(
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
     from muster.allocation.registry import allocator_named
-    from muster.allocation.stop import Stop
+    from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
     _require_writable(output, plot, gantt)
+    _require_drawable(plot, gantt)
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, _settings(settings))
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore).ready()
-    if time_limit is None and iterations is None and chosen.anytime:
-        time_limit = DEFAULT_TIME_LIMIT_S
-    with progress_bar(not quiet and chosen.anytime, loaded, time_limit, iterations) as on_progress:
-        stop = Stop(iterations=iterations, time_limit=time_limit, on_progress=on_progress)
+    limit = usual_time_limit(chosen.anytime, time_limit, iterations)
+    with progress_bar(not quiet and chosen.anytime, loaded, limit, iterations) as on_progress:
+        stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
     _show(loaded, plan, form, output, plot, gantt)
@@ -151,6 +155,14 @@ def _require_writable(*files: Path | None) -> None:
     for file in files:
         if file is not None and (file.is_dir() or not file.parent.is_dir()):
             raise ParameterError(f"{file}: cannot be written; expected a file in a folder that exists")
+
+
+def _require_drawable(*files: Path | None) -> None:
+    from muster.report.files import check_suffix
+
+    for file in files:
+        if file is not None:
+            check_suffix(file)
 
 
 @contextmanager

@@ -30,8 +30,10 @@ class Insertion:
     @property
     def usage(self) -> float: ...
 
-class Draft:
-    """A plan that is being worked on, with its figures."""
+class Inspection:
+    """
+    Routes with their figures, and what putting one more task into them would take.
+    """
 
     def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
         """

@@ -7,8 +7,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "draft.hpp"
-#include "insertion.hpp"
+#include "inspection.hpp"
 #include "routes.hpp"
 
 namespace nb = nanobind;
@@ -16,11 +15,12 @@ using namespace nb::literals;
 
 namespace muster {
 
-void bind_draft(nb::module_& m) {
+void bind_inspection(nb::module_& m) {
   nb::class_<Insertion>(m, "Insertion", "Where a task would go in a robot's route, and the robot's usage then.")
       .def_ro("at", &Insertion::at)
       .def_ro("usage", &Insertion::usage);
-  nb::class_<Inspection>(m, "Draft", "A plan that is being worked on, with its figures.")
+  nb::class_<Inspection>(m, "Inspection",
+                         "Routes with their figures, and what putting one more task into them would take.")
       .def(nb::init<const Problem&, const Routes&>(), "problem"_a, "routes"_a, nb::keep_alive<1, 2>(),
            "One list of task indices for each robot. Raises ValueError if a task stands twice or does not exist.")
       .def_prop_ro("admissible", &Inspection::admissible,

@@ -17,9 +17,9 @@ namespace {
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 
 // A population with the problem it belongs to, and bounds checked where Python passes indices.
-class Bound : public Population {
+class Evolving : public Population {
  public:
-  Bound(const Problem& problem, int size, std::uint64_t seed) : Population(problem, size, seed), problem_(problem) {}
+  Evolving(const Problem& problem, int size, std::uint64_t seed) : Population(problem, size, seed), problem_(problem) {}
 
   void set_routes(int k, const Routes& routes) {
     if (!set(checked(k), draft_from(problem_, routes))) throw std::invalid_argument("the routes are not admissible");
@@ -42,23 +42,23 @@ class Bound : public Population {
 }  // namespace
 
 void bind_population(nb::module_& m) {
-  nb::class_<Bound>(m, "Population", "Task allocations that evolve (TCF thesis, Algorithm 3).")
+  nb::class_<Evolving>(m, "Population", "Task allocations that evolve (TCF thesis, Algorithm 3).")
       .def(nb::init<const Problem&, int, std::uint64_t>(), "problem"_a, "size"_a, "seed"_a, nb::keep_alive<1, 2>(),
            "`size` empty allocations.")
-      .def("__len__", &Bound::size)
-      .def("set_random", &Bound::randomize, "member"_a, Unlocked(), "A random admissible allocation.")
-      .def("set", &Bound::set_routes, "member"_a, "routes"_a, "Raises ValueError if the routes are not admissible.")
-      .def("set_mutant", &Bound::derive, "member"_a, "of"_a, Unlocked(), "A mutant of another member.")
-      .def("replace_worst", &Bound::replace_worst, "share"_a, Unlocked(),
+      .def("__len__", &Evolving::size)
+      .def("set_random", &Evolving::randomize, "member"_a, Unlocked(), "A random admissible allocation.")
+      .def("set", &Evolving::set_routes, "member"_a, "routes"_a, "Raises ValueError if the routes are not admissible.")
+      .def("set_mutant", &Evolving::derive, "member"_a, "of"_a, Unlocked(), "A mutant of another member.")
+      .def("replace_worst", &Evolving::replace_worst, "share"_a, Unlocked(),
            "Step 4: random admissible allocations for the worst share of the members.")
-      .def("mutate", &Bound::mutate, "probability"_a, Unlocked(),
+      .def("mutate", &Evolving::mutate, "probability"_a, Unlocked(),
            "Step 5: task re-assignment (Algorithm 4); a mutant that is better stays.")
-      .def("cross", &Bound::cross, "probability"_a, Unlocked(),
+      .def("cross", &Evolving::cross, "probability"_a, Unlocked(),
            "Step 6: CM-PMX (Algorithm 5); the two best of parents and children stay.")
-      .def("best", &Bound::best, "Index of the best member.")
-      .def("routes", &Bound::routes, "member"_a)
-      .def("weight", &Bound::weight, "member"_a, "Weight of the tasks done.")
-      .def("objective", &Bound::objective, "member"_a);
+      .def("best", &Evolving::best, "Index of the best member.")
+      .def("routes", &Evolving::routes, "member"_a)
+      .def("weight", &Evolving::weight, "member"_a, "Weight of the tasks done.")
+      .def("objective", &Evolving::objective, "member"_a);
 }
 
 }  // namespace muster

@@ -6,7 +6,7 @@
 namespace muster {
 
 void bind_problem(nanobind::module_& m);
-void bind_draft(nanobind::module_& m);
+void bind_inspection(nanobind::module_& m);
 void bind_greedy(nanobind::module_& m);
 void bind_population(nanobind::module_& m);
 

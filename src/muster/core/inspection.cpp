@@ -1,4 +1,4 @@
-#include "insertion.hpp"
+#include "inspection.hpp"
 
 #include <algorithm>
 #include <cmath>

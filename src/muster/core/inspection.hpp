@@ -1,4 +1,4 @@
-// A draft as it stands, and what putting one more task into it would take: for figures and explanations.
+// Routes as they stand, and what putting one more task into them would take: for figures and explanations.
 #pragma once
 
 #include <optional>

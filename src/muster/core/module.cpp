@@ -5,7 +5,7 @@
 NB_MODULE(_core, m) {
   m.doc() = "The hot loops of Muster.";
   muster::bind_problem(m);
-  muster::bind_draft(m);
+  muster::bind_inspection(m);
   muster::bind_greedy(m);
   muster::bind_population(m);
 }
