@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
@@ -17,21 +17,39 @@ from muster.mission.plan import Plan, Route
 Routes = list[list[int]]
 
 
-class Allocator(Protocol):
+class Algorithm(Protocol):
+    """The part of an allocator that differs: routes for a problem, from the routes of a start plan if there is one."""
+
+    def __call__(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Routes: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Allocator:
     """An algorithm that turns a problem into a plan.
 
-    `anytime` tells whether it goes on until it is stopped. The plan is admissible, and the same for the same problem,
-    parameters and seed if `stop` limits iterations and not time.
+    `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
+    itself when made and has the published defaults.
     """
 
     name: str
     summary: str
     anytime: bool
     parameters: type[Any]
+    algorithm: Algorithm
 
     def solve(
         self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
-    ) -> Plan: ...
+    ) -> Plan:
+        """An admissible plan; the same for the same problem, parameters and seed if `stop` limits no time.
+
+        Raises
+        ------
+        ParameterError
+            if `start` is not an admissible plan of this problem.
+        """
+        routes = None if start is None else admissible_routes(problem, start)
+        routes = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
+        return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
 
 
 def routes_of(problem: Problem, plan: Plan) -> Routes:

@@ -8,11 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster import core
-from muster.allocation.allocator import Routes, admissible_routes, finished_plan
+from muster.allocation.allocator import Allocator, Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
-from muster.mission.plan import Plan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,28 +40,9 @@ class Parameters:
             raise ParameterError(f"start_mutants: {self.start_mutants}; expected a whole number of at least 0")
 
 
-class Genetic:
-    """A population of task allocations: the worst are replaced, all mutate and cross, the fittest stay."""
-
-    name = "genetic"
-    summary = "a population from random plans; GenTA of the TCF thesis"
-    anytime = True
-    parameters = Parameters
-
-    def solve(
-        self,
-        problem: Problem,
-        stop: Stop,
-        *,
-        seed: int = 0,
-        params: Parameters | None = None,
-        start: Plan | None = None,
-    ) -> Plan:
-        """The best plan found until `stop`; a start plan and mutants of it become members of the first population."""
-        params = params or Parameters()
-        routes = admissible_routes(problem, start) if start else None
-        best = evolve(first_population(problem, seed, params, routes), stop, params)
-        return finished_plan(problem, stop, best, allocator=self.name, seed=seed)
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+    """Algorithm 3, from a random population; a start plan and mutants of it become members of it (Algorithm 7)."""
+    return evolve(first_population(problem, seed, params, start), stop, params)
 
 
 def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> core.Population:
@@ -106,3 +86,12 @@ class Best:
             self._value = value
             self.routes = population.routes(member)
             self._stop.improved(-value[0], value[1])
+
+
+GENETIC = Allocator(
+    name="genetic",
+    summary="a population from random plans; GenTA of the TCF thesis",
+    anytime=True,
+    parameters=Parameters,
+    algorithm=allocate,
+)

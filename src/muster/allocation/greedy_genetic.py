@@ -5,33 +5,23 @@ TCF thesis, section 3.2.2, Algorithm 7: the greedy plan and mutants of it are me
 
 from __future__ import annotations
 
-from muster.allocation.allocator import admissible_routes, finished_plan
-from muster.allocation.genetic import Parameters, evolve, first_population
-from muster.allocation.greedy import allocate
+from muster.allocation import genetic, greedy
+from muster.allocation.allocator import Allocator, Routes
+from muster.allocation.genetic import Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.plan import Plan
 
 
-class GreedyGenetic:
-    """Greedy task allocation makes a good plan at once; the genetic algorithm goes on from it."""
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+    """Algorithm 7."""
+    first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start)  # 1
+    return genetic.allocate(problem, stop, seed, params, first)  # 2 and 3
 
-    name = "greedy+genetic"
-    summary = "greedy, then a population around it; GrdGenTA of the TCF thesis"
-    anytime = True
-    parameters = Parameters
 
-    def solve(
-        self,
-        problem: Problem,
-        stop: Stop,
-        *,
-        seed: int = 0,
-        params: Parameters | None = None,
-        start: Plan | None = None,
-    ) -> Plan:
-        """The best plan found until `stop`; with `start`, greedy goes on from its routes."""
-        first = allocate(problem, stop, admissible_routes(problem, start) if start else None)
-        params = params or Parameters()
-        best = evolve(first_population(problem, seed, params, first), stop, params)
-        return finished_plan(problem, stop, best, allocator=self.name, seed=seed)
+GREEDY_GENETIC = Allocator(
+    name="greedy+genetic",
+    summary="greedy, then a population around it; GrdGenTA of the TCF thesis",
+    anytime=True,
+    parameters=Parameters,
+    algorithm=allocate,
+)

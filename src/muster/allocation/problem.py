@@ -168,7 +168,7 @@ class Problem:
     @cached_property
     def travel(self) -> tuple[Floats, npt.NDArray[np.int32]]:
         """Travel tables and each robot's table; empty where travel is straight (see `travel_table`)."""
-        return travel_table(self)
+        return travel_table(self.mission, self.robots, self.tasks)
 
     @cached_property
     def _actuation_cost(self) -> Floats:
@@ -192,6 +192,11 @@ class Problem:
     def _robots_places(self) -> list[Point]:
         ends = [r.place_at_end(self.mission.rules) or r.position for r in self.robots]
         return [*(r.position for r in self.robots), *ends]
+
+    def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
+        """Weight completed and objective of routes."""
+        weight = sum(self.tasks[j].priority for j in sorted(j for route in routes for j in route))
+        return weight, core.Inspection(self.core, [list(route) for route in routes]).objective
 
     @property
     def usage_unit(self) -> str:

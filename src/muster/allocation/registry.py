@@ -6,21 +6,15 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from muster.allocation.allocator import Allocator
-from muster.allocation.genetic import Genetic
-from muster.allocation.greedy import Greedy
-from muster.allocation.greedy_genetic import GreedyGenetic
-from muster.allocation.greedy_hill_climbing import GreedyHillClimbing
-from muster.allocation.hill_climbing import HillClimbing
+from muster.allocation.genetic import GENETIC
+from muster.allocation.greedy import GREEDY
+from muster.allocation.greedy_genetic import GREEDY_GENETIC
+from muster.allocation.greedy_hill_climbing import GREEDY_HILL_CLIMBING
+from muster.allocation.hill_climbing import HILL_CLIMBING
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import did_you_mean
 
-_IMPLEMENTATIONS: tuple[Allocator, ...] = (
-    Greedy(),
-    HillClimbing(),
-    Genetic(),
-    GreedyHillClimbing(),
-    GreedyGenetic(),
-)
+_IMPLEMENTATIONS = (GREEDY, HILL_CLIMBING, GENETIC, GREEDY_HILL_CLIMBING, GREEDY_GENETIC)
 
 ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
 DEFAULT_ALLOCATOR = "greedy+genetic"

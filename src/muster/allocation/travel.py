@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
-    from muster.allocation.problem import Problem
+from muster.mission.model import Mission, Robot, Task
 
 
-def travel_table(problem: Problem) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+def travel_table(
+    mission: Mission, robots: Sequence[Robot], tasks: Sequence[Task]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
     """Travel tables and each robot's class.
 
     Returns
@@ -22,16 +23,15 @@ def travel_table(problem: Problem) -> tuple[npt.NDArray[np.float64], npt.NDArray
     classes
         (m,) index of each robot's table; empty where travel is straight.
     """
-    mission = problem.mission
     if mission.travel_rule == "euclidean":
         return np.empty(0), np.empty(0, dtype=np.int32)
-    types = sorted({robot.type or "" for robot in problem.robots})
-    robots = [robot.id for robot in problem.robots]
-    names = [*(task.id for task in problem.tasks), *robots, *robots]  # a robot ends, if anywhere, where it started
+    types = sorted({robot.type or "" for robot in robots})
+    starts = [robot.id for robot in robots]
+    names = [*(task.id for task in tasks), *starts, *starts]  # a robot ends, if anywhere, where it started
     tables = []
     for kind in types:
         given = mission.travel_tables[kind]
         index = {place: k for k, place in enumerate(given.places)}
         rows = [index[name] for name in names]
         tables.append(np.array(given.metres, dtype=np.float64)[np.ix_(rows, rows)])
-    return np.array(tables), np.array([types.index(robot.type or "") for robot in problem.robots], dtype=np.int32)
+    return np.array(tables), np.array([types.index(robot.type or "") for robot in robots], dtype=np.int32)

@@ -158,11 +158,13 @@ def _require_writable(*files: Path | None) -> None:
 
 
 def _require_drawable(*files: Path | None) -> None:
+    from muster.report.canvas import require_matplotlib
     from muster.report.files import check_suffix
 
     for file in files:
         if file is not None:
             check_suffix(file)
+            require_matplotlib()
 
 
 @contextmanager

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from muster.mission.kinds import Fault, Path, did_you_mean, shown
-from muster.mission.model import Mission, Point, Task
+
+if TYPE_CHECKING:
+    from muster.mission.model import Mission, Point, Task
 
 
 def inconsistencies(mission: Mission) -> Iterator[Fault]:

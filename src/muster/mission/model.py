@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from muster.mission.consistency import inconsistencies
 from muster.mission.errors import Finding, MissionError
 from muster.mission.kinds import (
     Choice,
@@ -323,8 +324,6 @@ class Mission(_Checked):
     source: Source = field(default=IN_PYTHON, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        from muster.mission.consistency import inconsistencies  # it reads missions, and this makes one
-
         super().__post_init__()
         faults = list(inconsistencies(self))
         if faults:
