@@ -5,12 +5,16 @@ set -eu
 python=${PYTHON:-python3}
 environment=build/sanitized
 [ -d "$environment" ] || "$python" -m venv "$environment"
-"$environment/bin/pip" install --quiet --force-reinstall --no-deps \
-    -C cmake.define.MUSTER_SANITIZE=ON -C build-dir=build/sanitizing -C install.strip=false .
-"$environment/bin/pip" install --quiet '.[all]' pytest hypothesis jsonschema
+"$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C build-dir=build/sanitizing \
+    -C install.strip=false '.[all]' pytest hypothesis
+core=$(find "$environment" -name '_core*.so')
+if ! ldd "$core" | grep -q libasan; then
+    echo "the core in $environment was built without the sanitizers" >&2
+    exit 1
+fi
 # The sanitizers must be loaded before Python, and libstdc++ beside them, or they miss C++ exceptions. Python itself
 # keeps memory until it ends, so leaks are not looked for.
 LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.so) $(g++ -print-file-name=libstdc++.so)" \
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
-    "$environment/bin/python" -m pytest -p no:cacheprovider tests/core tests/allocation
+    "$environment/bin/python" -m pytest -p no:cacheprovider tests/core/test_core.py tests/allocation tests/conformance
