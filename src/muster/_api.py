@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 
+DEFAULT_ALLOCATOR = "greedy+genetic"
+
+
 def load(
     path_or_name: str | Path,
     *,
@@ -84,7 +87,7 @@ def _check_flags(named: str | Path, suffix: str, **given: object) -> None:
 
 def solve(
     mission: Mission,
-    allocator: str = "greedy+genetic",
+    allocator: str = DEFAULT_ALLOCATOR,
     time_limit: float | None = None,
     seed: int = 0,
     on_progress: Callable[[Progress], None] | None = None,
@@ -100,7 +103,7 @@ def solve(
     Parameters
     ----------
     allocator
-        one of `muster.ALLOCATORS`.
+        one of `muster solve --list-allocators`.
     time_limit, iterations
         when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
         plan.

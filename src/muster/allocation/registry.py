@@ -17,7 +17,6 @@ from muster.mission.kinds import did_you_mean
 _IMPLEMENTATIONS = (GREEDY, HILL_CLIMBING, GENETIC, GREEDY_HILL_CLIMBING, GREEDY_GENETIC)
 
 ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
-DEFAULT_ALLOCATOR = "greedy+genetic"
 
 
 def allocator_named(name: str) -> Allocator:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from muster._api import DEFAULT_ALLOCATOR
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
     format_option,
@@ -37,7 +38,7 @@ _FILE = click.Path(path_type=Path)
 @click.option(
     "-a",
     "--allocator",
-    default="greedy+genetic",
+    default=DEFAULT_ALLOCATOR,
     show_default=True,
     metavar="A",
     help="The algorithm; --list-allocators says which there are.",

@@ -1,0 +1,65 @@
+"""What the documents say is so."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from muster._api import DEFAULT_ALLOCATOR
+from muster.allocation.registry import ALLOCATORS
+from muster.cli.main import VERBS, run
+from muster.mission.kinds import specified
+from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.yaml_reader import parse_yaml
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+MISSION_FILE = (ROOT / "docs" / "mission-file.md").read_text(encoding="utf-8")
+
+
+def blocks(text, language):
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
+
+
+def test_the_python_example_of_the_readme_runs(tmp_path, monkeypatch):
+    (example,) = blocks(README, "python")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example.replace("time_limit=1.0", "iterations=50"), "README.md", "exec"), {})
+    assert (tmp_path / "plan.json").stat().st_size > 0
+    assert (tmp_path / "plan.png").stat().st_size > 0
+
+
+def test_the_verbs_of_the_readme_are_those_of_the_command():
+    verbs = {
+        line.split()[1] for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("muster ")
+    }
+    assert verbs == set(VERBS)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help(verb, capsys):
+    assert run([verb, "--help"]) == 0
+    assert f"muster {verb}" in capsys.readouterr().out
+
+
+def test_the_readme_has_every_allocator():
+    rows = re.findall(r"^\| `([a-z+-]+)`( \(default\))? \|", README, flags=re.MULTILINE)
+    assert {name for name, _ in rows} == set(ALLOCATORS)
+    assert [name for name, default in rows if default] == [DEFAULT_ALLOCATOR]
+
+
+def test_every_key_of_a_mission_is_described():
+    keys = {f.name for model in (Mission, Rules, Robot, Task) for f in specified(model)}
+    described = set(re.findall(r"`([a-z_0-9]+)`", MISSION_FILE))
+    assert keys - described == set()
+
+
+def test_the_example_mission_is_one():
+    (example,) = blocks(MISSION_FILE, "yaml")
+    mission = parse_yaml(example, Path("example.yaml"))
+    assert [task.id for task in mission.tasks] == ["1", "2"]
+
+
+def test_pictures_of_the_readme_are_there():
+    for name in re.findall(r"!\[[^]]*\]\(([^)]+)\)", README):
+        assert (ROOT / name).stat().st_size > 0
