@@ -4,7 +4,7 @@ import json
 import math
 from dataclasses import dataclass, replace
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Robot, Rules, Task, TravelTable
@@ -12,8 +12,6 @@ from muster.mission.plan import Plan, Route, Unassigned, read_plan
 from muster.verification import Verdict, verify
 
 NEAR = {"rel_tol": 1e-9, "abs_tol": 1e-9}
-
-untimed = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
 # --- random missions and plans ---------------------------------------------------------------------------------------
@@ -215,7 +213,6 @@ class SlowJudge:
         return sum(abs(u - v) for u in usages for v in usages) / (2 * len(usages) * sum(usages))
 
 
-@untimed
 @given(questions())
 def test_the_slow_judge_finds_the_same(question):
     mission, plan = question
@@ -251,7 +248,6 @@ def summary(verdict: Verdict) -> tuple[list[tuple[str, str, str]], list[float]]:
     return found, [-1 if figure is None else figure for figure in figures]
 
 
-@untimed
 @given(questions(), st.randoms(use_true_random=False))
 def test_the_order_of_robots_tasks_and_routes_changes_nothing(question, random):
     mission, plan = question
@@ -288,7 +284,6 @@ def stating(mission: Mission, plan: Plan, verdict: Verdict) -> Plan:
     )
 
 
-@untimed
 @given(questions())
 def test_a_plan_that_states_what_the_judge_found_states_nothing_false(question):
     mission, plan = question
@@ -296,7 +291,6 @@ def test_a_plan_that_states_what_the_judge_found_states_nothing_false(question):
     assert verify(mission, stating(mission, plan, verdict)) == verdict
 
 
-@untimed
 @given(questions(), st.data())
 def test_any_figure_that_is_changed_is_found(question, data):
     mission, plan = question
@@ -310,7 +304,6 @@ def test_any_figure_that_is_changed_is_found(question, data):
     assert false.detail.startswith(f"{name}: ")
 
 
-@untimed
 @given(questions())
 def test_a_verdict_is_json_without_infinities(question):
     data = verify(*question).as_dict()
@@ -318,7 +311,6 @@ def test_a_verdict_is_json_without_infinities(question):
     assert data.keys() >= {"valid", "violations", "objective", "total_cost", "max_usage", "makespan_s"}
 
 
-@untimed
 @given(questions())
 def test_bounds_between_figures(question):
     mission, plan = question
@@ -333,7 +325,6 @@ def test_bounds_between_figures(question):
             assert route.leaves_s <= visit.arrives_s <= visit.starts_s <= visit.ends_s <= verdict.makespan_s
 
 
-@untimed
 @given(questions())
 def test_ignoring_rules_adds_no_violation(question):
     mission, plan = question
@@ -343,7 +334,6 @@ def test_ignoring_rules_adds_no_violation(question):
     assert {violation.kind for violation in lax} <= {"lock", "unreachable"}
 
 
-@untimed
 @given(questions(), st.sampled_from(["r_0", "ghost"]), st.sampled_from(["0", "nothing"]))
 def test_what_does_not_exist_or_repeats_is_named_and_left_out(question, robot, task):
     mission, plan = question
@@ -355,7 +345,6 @@ def test_what_does_not_exist_or_repeats_is_named_and_left_out(question, robot, t
 
 
 def test_a_random_plan_survives_its_file(tmp_path):
-    @untimed
     @given(questions())
     def survives(question):
         mission, plan = question

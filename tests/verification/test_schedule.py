@@ -92,6 +92,13 @@ def test_deadlock_across_two_robots_through_a_chain_of_prerequisites():
     assert verdict.average == pytest.approx((1 + 2 + 3 + 4 + 5) / 5)
 
 
+def test_a_deadlock_is_told_from_the_first_task_of_a_route():
+    """Not from the middle of a route or of a chain of prerequisites, though their ids come first."""
+    tasks = {"8": (1, 1, ["2"]), "1": (2, 1, []), "9": (3, 1, []), "2": (4, 1, ["9"])}
+    verdict = judge(line(tasks, r={}, s={}), r=["8", "1", "9"], s=["2"])
+    assert deadlock_of(verdict) == "r: 8 -> 1 -> 9; prerequisite: 9 -> 2 -> 8"
+
+
 def test_ignored_prerequisites_do_not_deadlock():
     mission = line({"a": (1, 1, ["b"]), "b": (2, 1, [])}, r={})
     assert judge(mission, r=["a", "b"], ignored=("prerequisites",)).valid

@@ -168,8 +168,13 @@ def _table_faults(mission: Mission) -> Iterator[Fault]:
     for name in sorted(set(robots) & set(tasks)):
         at: Path = ("tasks", tasks.index(name), "id")
         yield Fault(at, shown(name), "an id that no robot has: both are places of the travel tables")
+    for kind in mission.travel or ():
+        if kind not in mission.travel_tables:
+            yield Fault(("travel", kind), "a table that was not read", "one of travel_tables for each entry of travel")
     for kind, table in mission.travel_tables.items():
         rows = set(table.places)
+        if any(len(row) != len(table.places) for row in (table.metres, *table.metres)):
+            yield Fault(("travel", kind), "rows of different lengths", "a row and a column for each place")
         missing = [name for name in (*robots, *tasks) if name not in rows]
         if missing:
             value = f"no row for {', '.join(missing[:5])}"

@@ -191,17 +191,13 @@ class _Reading:
 
     def _number(self, data: Mapping[str, Any], name: str) -> float | None:
         value = data.get(name)
-        if value is None:
-            return None
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        if value is not None and not _finite(value):
             self._refuse(name, value, "a finite number")
             return None
         return value
 
     def _names(self, value: object, field: str) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(
-            isinstance(name, str | int) and not isinstance(name, bool) for name in value
-        ):
+        if not isinstance(value, list) or not all(map(_is_id, value)):
             self._refuse(field, value, "a list of ids")
             return ()
         return tuple(str(name) for name in value)
@@ -211,7 +207,7 @@ class _Reading:
             self._refuse("routes", "missing", "a list of routes")
         routes = []
         for k, route in enumerate(self._given(data, "routes", list, [])):
-            if not isinstance(route, dict) or not isinstance(route.get("robot"), str | int):
+            if not isinstance(route, dict) or not _is_id(route.get("robot")):
                 self._refuse(f"routes[{k}]", route, "a mapping with robot and tasks")
                 continue
             tasks = self._names(route.get("tasks"), f"routes[{k}].tasks")
@@ -221,7 +217,7 @@ class _Reading:
     def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:
         left_out = []
         for k, item in enumerate(self._given(data, "unassigned", list, [])):
-            if not isinstance(item, dict) or not isinstance(item.get("task"), str | int):
+            if not isinstance(item, dict) or not _is_id(item.get("task")):
                 self._refuse(f"unassigned[{k}]", item, "a mapping with task and reasons")
                 continue
             left_out.append(Unassigned(str(item["task"]), self._reasons(item.get("reasons", []), k)))
@@ -238,10 +234,22 @@ class _Reading:
 
     def _history(self, data: Mapping[str, Any]) -> tuple[tuple[float, float], ...]:
         history = self._given(data, "history", list, [])
-        if not all(isinstance(p, list) and len(p) == 2 and all(isinstance(x, int | float) for x in p) for p in history):
+        if not all(isinstance(pair, list) and len(pair) == 2 and all(map(_finite, pair)) for pair in history):
             self._refuse("history", history, "a list of [seconds, objective]")
             return ()
         return tuple((float(seconds), float(value)) for seconds, value in history)
+
+
+def _finite(value: object) -> bool:
+    """Whether a value is a number that float64 can hold."""
+    try:
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def _is_id(value: object) -> bool:
+    return isinstance(value, str | int) and not isinstance(value, bool)
 
 
 def tie_order(names: Sequence[str]) -> list[int]:

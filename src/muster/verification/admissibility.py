@@ -22,12 +22,12 @@ def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], l
     robot_of: dict[str, str] = {}
     for route in plan.routes:
         if route.robot not in robots:
-            violations.append(
-                Violation("unknown-robot", route.robot, None, "no robot of the mission; its route is left out")
-            )
+            violations.append(Violation("unknown-robot", route.robot, None, "no robot of the mission; route left out"))
             continue
         if route.robot in routes:
-            violations.append(Violation("repeated-robot", route.robot, None, "another route of this robot, left out"))
+            violations.append(
+                Violation("repeated-robot", route.robot, None, "a further route of this robot; route left out")
+            )
             continue
         known = routes[route.robot] = []
         for name in route.tasks:

@@ -20,12 +20,11 @@ class Leg:
 
 @dataclass(frozen=True)
 class Step:
-    """One task of a route: the way there, the usage on arrival, and the work in the unit of usage and in seconds."""
+    """One task of a route: the way there, the usage on arrival, and how long the work takes."""
 
     task: Task
     leg: Leg
     arrival_usage: float
-    work: float
     work_s: float
 
 
@@ -56,9 +55,8 @@ def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Tas
         leg = _leg(travel.metres(robot, here, there), robot, in_time)
         travelled += leg.usage
         seconds = work_seconds(robot, task)
-        work = seconds if in_time else task.actuation_cost
-        steps.append(Step(task, leg, arrival_usage=travelled + worked, work=work, work_s=seconds))
-        worked += work
+        steps.append(Step(task, leg, arrival_usage=travelled + worked, work_s=seconds))
+        worked += seconds if in_time else task.actuation_cost
         here = there
     end = place_at_end(robot, mission.rules) if steps else None
     last_leg = None if end is None else _leg(travel.metres(robot, here, end), robot, in_time)
