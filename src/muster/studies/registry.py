@@ -1,0 +1,44 @@
+"""The studies by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Protocol
+
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+from muster.studies.effort import Effort
+from muster.studies.tables import Report
+from muster.studies.thesis_3_3 import Thesis33
+
+OnDone = Callable[[int, int], None]
+"""Called with the number of runs done, and of all runs."""
+
+
+class Study(Protocol):
+    """A published experiment that can be repeated; `tables` are the numbers of its tables."""
+
+    name: str
+    summary: str
+    tables: tuple[str, ...]
+
+    def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
+
+
+_IMPLEMENTATIONS: tuple[Study, ...] = (Thesis33(),)
+
+STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})
+
+
+def study_named(name: str) -> Study:
+    """The study of that name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in STUDIES:
+        raise ParameterError(f"study: {name}; expected {' or '.join(STUDIES)}{did_you_mean(name, STUDIES)}")
+    return STUDIES[name]

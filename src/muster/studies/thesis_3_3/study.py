@@ -1,0 +1,102 @@
+"""The study: which tables there are, and how they are made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Protocol
+
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import did_you_mean
+from muster.studies.effort import Effort
+from muster.studies.processes import run_cases
+from muster.studies.runs import Case, Sample
+from muster.studies.tables import Report, Table
+from muster.studies.thesis_3_3.routes import Routes
+from muster.studies.thesis_3_3.rules import Capacities, Chains, Violations
+from muster.studies.thesis_3_3.totals import Totals
+
+
+class Reproduction(Protocol):
+    """One table repeated: the cases that it needs, and the table made of their runs."""
+
+    @property
+    def number(self) -> str: ...
+
+    def cases(self, effort: Effort) -> Iterator[Case]: ...
+
+    def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table: ...
+
+
+_RUN = ("scenario", "allocator")
+_FIGURES = ("iterations", "tasks", "C", "F", "mean", "worst", "s")
+_STATISTICS = ("iterations", "tasks", "F", "mean", "worst", "spread", "deviation", "s")
+
+_TABLES: tuple[Reproduction, ...] = (
+    Totals("3.2", ("allocator",), _STATISTICS),
+    Totals("3.3", ("figure", "allocator"), _FIGURES, published_iterations=True),
+    Totals("3.4", _RUN, _FIGURES),
+    Routes("3.5"),
+    Routes("3.6"),
+    Totals("3.7", _RUN, _FIGURES, plans="3.6"),
+    Routes("3.8"),
+    Routes("3.9"),
+    Totals("3.10", _RUN, _FIGURES, plans="3.9"),
+    Chains(),
+    Violations(),
+    Routes("3.13"),
+    Routes("3.14"),
+    Totals("3.15", _RUN, _FIGURES, plans="3.14"),
+    Capacities(),
+    Routes("3.17"),
+    Routes("3.18"),
+    Totals("3.19", _RUN, _FIGURES, plans="3.18"),
+    Totals("3.20", ("scenario", "rules ignored"), _FIGURES),
+    Totals("3.21", ("scenario", "objective"), ("tasks", "C", "max u", "F", "E", "s")),
+    Totals("3.22", ("scenario", "objective"), ("iterations", "tasks", "C", "max u", "F", "E", "mean", "worst", "s")),
+)
+
+_LEGEND = (
+    "C is total cost, max u greatest usage, F = C + max u, E equality index; tasks: how many are completed.",
+    "All own numbers are recomputed by muster.verify. Those of a random algorithm are of the best run over all seeds; "
+    "mean, worst, spread (worst less best) and deviation (standard deviation) are of its objective, over all seeds.",
+    "s is the time that the thesis states, and the processor time of an own run (the mean over all seeds).",
+    "✓: equal to what is published, within 0.011. reached n/m: n of m runs do at least as well as published. "
+    "erratum: misprinted; own numbers are compared with what is right.",
+)
+
+
+class Thesis33:
+    """Greedy, genetic, hill-climbing and combined task allocation against a benchmark, and under each rule."""
+
+    name = "thesis-3.3"
+    summary = "task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22"
+    tables = tuple(table.number for table in _TABLES)
+
+    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
+        """Repeat the section, or the tables of it that `effort` names.
+
+        Raises
+        ------
+        ParameterError
+            if there is no such table.
+        """
+        wanted = [table for table in _TABLES if table.number in self._numbers(effort)]
+        cases = [case for table in wanted for case in table.cases(effort)]
+        samples = run_cases(cases, effort.seed_count, workers, on_done)
+        outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
+        return Report(
+            study=self.name,
+            document="TCF thesis, section 3.3",
+            seeds=effort.seed_count,
+            runs=len(outcomes),
+            cpu_s=sum(outcome.cpu_s for outcome in outcomes),
+            legend=_LEGEND,
+            tables=tuple(table.table(effort, samples) for table in wanted),
+        )
+
+    def _numbers(self, effort: Effort) -> tuple[str, ...]:
+        for number in effort.tables:
+            if number not in self.tables:
+                hint = did_you_mean(number, self.tables)
+                raise ParameterError(f"table: {number}; expected {self.tables[0]} to {self.tables[-1]}{hint}")
+        return effort.tables or self.tables

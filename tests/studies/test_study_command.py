@@ -1,0 +1,110 @@
+"""`muster study`: what it prints, and how it ends."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from muster.cli.main import run
+from muster.studies import STUDIES
+
+WAITING = """
+import sys
+from muster.cli.main import run
+import muster.cli.study, muster.studies
+print("ready", flush=True)
+sys.exit(run(["study", "thesis-3.3", "--tables", "3.2", "--iterations", "1000000000", "--workers", "2"]))
+"""
+
+
+@pytest.mark.parametrize("arguments", [["study"], ["study", "--list"]])
+def test_lists_studies(capsys, arguments):
+    assert run(arguments) == 0
+    out = capsys.readouterr().out
+    assert all(name in out for name in STUDIES)
+
+
+def test_lists_studies_as_json(capsys):
+    assert run(["study", "--format", "json"]) == 0
+    (study,) = json.loads(capsys.readouterr().out)
+    assert study["name"] == "thesis-3.3"
+    assert len(study["tables"]) == 21
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["thesis-3"], "did you mean 'thesis-3.3'?"),
+        (["thesis-3.3", "--tables", "3.5,3.1"], "table: 3.1; expected 3.2 to 3.22"),
+        (["thesis-3.3", "-o", "nowhere/at/all.txt"], "nowhere/at/all.txt: cannot be written"),
+        (["thesis-3.3", "--seeds", "0"], "--seeds"),
+    ],
+)
+def test_refuses(capsys, arguments, message):
+    assert run(["study", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert captured.out == ""
+
+
+def test_quick_study_prints_all_tables(capsys, tmp_path):
+    file = tmp_path / "study.json"
+    assert run(["study", "thesis-3.3", "--quick", "--workers", "2", "-o", str(file)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    report = json.loads(file.read_text(encoding="utf-8"))
+    assert report["seeds"] == 2
+    assert [table["number"] for table in report["tables"]] == list(STUDIES["thesis-3.3"].tables)
+    for table in report["tables"]:
+        assert f"Table {table['number']}. {table['title'].split(';')[0]}" in captured.out
+        assert all(list(row) == table["columns"] for row in table["rows"])
+    (row,) = [
+        r for r in report["tables"][5]["rows"] if (r["scenario"], r["tasks"], r["iterations"]) == ("16T-3R", 16, None)
+    ]
+    assert row["F"] == pytest.approx(364.71, abs=0.011)
+
+
+def test_json_on_standard_output(capsys, tmp_path):
+    file = tmp_path / "tables"
+    arguments = ["--format", "json", "--tables", "3.5, 3.16", "-q", "-o", str(file)]
+    assert run(["study", "thesis-3.3", *arguments]) == 0
+    out = capsys.readouterr().out
+    assert [table["number"] for table in json.loads(out)["tables"]] == ["3.5", "3.16"]
+    assert file.read_text(encoding="utf-8") == out
+
+
+def test_text_goes_to_a_file_too(capsys, tmp_path):
+    file = tmp_path / "study.txt"
+    assert run(["study", "thesis-3.3", "--tables", "3.8", "--workers", "1", "-v", "-o", str(file)]) == 0
+    captured = capsys.readouterr()
+    assert file.read_text(encoding="utf-8") == captured.out
+    assert "6, 20, 27, 1" in captured.out
+    assert "3 runs" in captured.err
+
+
+def test_a_terminal_without_check_marks():
+    code = "from muster.cli.main import run; raise SystemExit(run(['study', 'thesis-3.3', '--tables', '3.5']))"
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=environment, check=True)
+    assert b"?" not in done.stdout
+    assert b"= " in done.stdout
+
+
+def test_ctrl_c_ends_it():
+    study = subprocess.Popen(
+        [sys.executable, "-c", WAITING],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert study.stdout is not None
+    assert study.stdout.readline() == "ready\n"
+    time.sleep(1.0)
+    os.killpg(study.pid, signal.SIGINT)  # as a terminal does: to all processes
+    out, err = study.communicate(timeout=60)
+    assert (study.returncode, out, err.strip()) == (130, "", "interrupted")
