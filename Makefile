@@ -58,10 +58,12 @@ bench: $(VENV)/developed
 # Two states of one environment: what a user has, and with the developers' tools.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
+	@echo "Building Muster; this takes about a minute ..."
 	$(BIN)/pip install --quiet --editable '.[all]'
 	@touch $@
 
 $(VENV)/developed: $(VENV)/installed
+	@echo "Installing the tools for tests ..."
 	$(BIN)/pip install --quiet --group dev
 	@touch $@
 
