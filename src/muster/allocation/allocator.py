@@ -15,6 +15,7 @@ from muster.mission.kinds import did_you_mean
 from muster.mission.plan import Plan, Route
 
 Routes = list[list[int]]
+_MOST = 1_000_000  # of anything that a parameter counts
 
 
 class Algorithm(Protocol):
@@ -151,4 +152,10 @@ def make_parameters(allocator: Allocator, values: dict[str, Any]) -> Any:
         if name not in known:
             hint = did_you_mean(name, known) or f"; it has {', '.join(known) or 'none'}"
             raise ParameterError(f"{allocator.name} has no parameter {name}{hint}")
+    for f in fields(allocator.parameters):
+        value = values.get(f.name, f.default)
+        if isinstance(f.default, int) and not isinstance(value, int):
+            raise ParameterError(f"{f.name}: {value}; expected a whole number")
+        if isinstance(f.default, int) and value > _MOST:
+            raise ParameterError(f"{f.name}: {value}; expected at most {_MOST}")
     return allocator.parameters(**values)

@@ -89,8 +89,11 @@ class Problem:
 
     @cached_property
     def capacity(self) -> Floats:
-        """(m,) usable work capacity; inf where unlimited."""
-        usable = 1.0 - self.mission.rules.capacity_reserve
+        """(m,) usable work capacity; inf where unlimited.
+
+        A route that fills it exactly may come out above it by the rounding of sums, for which there is room.
+        """
+        usable = (1.0 - self.mission.rules.capacity_reserve) * (1 + 1e-12)
         limited = self.holds("capacity")
         return np.array(
             [usable * r.work_capacity if limited and r.work_capacity is not None else math.inf for r in self.robots]
@@ -214,7 +217,7 @@ class Problem:
         """(len(places), len(to)) travel usage of robot i between places."""
         table, classes = self.travel
         if len(table):
-            metres = table[classes[i]][np.asarray(places)[:, None], np.asarray(to)[None]]
+            metres = table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]]
         else:
             metres = np.linalg.norm(self._exits[places][:, None] - self._entries[to][None], axis=2)
         return np.asarray(metres / self.robots[i].speed_mps if self.usage_unit == "s" else metres)
@@ -259,3 +262,26 @@ def _not_supported(mission: Mission) -> Iterable[Finding]:
             expected = "go-to-goal or sensor-activation: costs of other actions cannot be computed yet"
             at = ("tasks", k, "action", "name")
             yield Finding(*source.place(at), path_text(at), shown(task.action.name), expected)
+    if not math.isfinite(_bound(mission)):
+        value, expected = "numbers too large or too small", "numbers whose sums are below 1.8e308"
+        yield Finding(*source.place(()), "", value, expected)
+
+
+def _bound(mission: Mission) -> float:
+    """What no sum in any plan is above; inf where one may be beyond float64."""
+    robots, tasks = mission.robots, mission.tasks
+    points = [*(p for r in robots for p in (r.position, r.end_position)), *(p for t in tasks for p in _portals(t))]
+    far = max(abs(c) for point in points if point is not None for c in point)
+    tabled = [d for table in mission.travel_tables.values() for row in table.metres for d in row if math.isfinite(d)]
+    if far > 1e150:  # its square is beyond
+        return math.inf
+    metres = max([4 * far, *tabled])
+    work = sum(t.actuation_cost + (duration_s(t) or 0.0) for t in tasks)
+    slowest = min(1.0, *(r.speed_mps for r in robots), *(r.efficiency for r in robots))
+    legs = float(len(tasks) + 2 * len(robots))
+    whole = (legs * metres + work) / slowest + max(r.available_from_s for r in robots)
+    return whole * legs + sum(t.priority for t in tasks)
+
+
+def _portals(task: Task) -> tuple[Point, ...]:
+    return task.entry or task.position, task.exit or task.position

@@ -52,7 +52,12 @@ def _require_fit(mission: Mission, plan: Plan, path: Path) -> None:
     wrong = [v for v in verify(mission, plan).violations if v.kind in names]
     if wrong:
         expected = "a plan of this mission (`muster verify` says more)"
-        raise PlanError([Finding(str(path), None, v.kind, v.detail, expected) for v in wrong])
+        raise PlanError(
+            [
+                Finding(str(path), None, v.kind, ", ".join(filter(None, (v.task or v.robot, v.detail))), expected)
+                for v in wrong
+            ]
+        )
 
 
 def _left_out(mission: Mission, plan: Plan, form: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import click
@@ -38,7 +39,11 @@ def command(name: str, shipped: str | None, output: Path | None) -> None:
     """
     stem = name.removesuffix(".yaml").removesuffix(".yml")
     path = output or Path(f"{stem}.yaml")
-    text = _TEMPLATE.format(name=path.stem, file=path) if shipped is None else _shipped_text(shipped)
+    text = (
+        _TEMPLATE.format(name=json.dumps(path.stem, ensure_ascii=False), file=path)
+        if shipped is None
+        else _shipped_text(shipped)
+    )
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from typing import Any
 
 import click
 
@@ -16,6 +17,10 @@ from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
 from muster.mission.errors import MusterError
 
 VERBS = ("missions", "init", "check", "solve", "verify", "explain", "study", "bench")
+
+
+class _OutputClosedError(Exception):
+    pass
 
 
 class _Verbs(click.Group):
@@ -33,6 +38,12 @@ class _Verbs(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
             formatter.write_dl([(verb, _SUMMARIES[verb]) for verb in VERBS])
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:  # which click would turn into the exit code of a rejected plan
+            raise _OutputClosedError from None
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -95,7 +106,7 @@ def run(arguments: list[str]) -> int:
         return BAD_INPUT
     except MusterError as error:
         return _fail(str(error))
-    except BrokenPipeError:
+    except (BrokenPipeError, _OutputClosedError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except OSError as error:

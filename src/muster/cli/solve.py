@@ -146,7 +146,7 @@ def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
             values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
         except ValueError:
             raise ParameterError(f"--set: {setting}; expected NAME=NUMBER") from None
-        if not equals:
+        if not equals or not name.strip():
             raise ParameterError(f"--set: {setting}; expected NAME=NUMBER")
     return values
 

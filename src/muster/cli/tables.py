@@ -35,7 +35,11 @@ def console() -> Any:
     """Standard output; as wide as the terminal, or of a fixed width into files and pipes."""
     from rich.console import Console
 
-    return Console(file=sys.stdout, width=None if sys.stdout.isatty() else _WIDTH_WITHOUT_TERMINAL, highlight=False)
+    class Terminal(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError  # for `main` to turn into an exit code; rich's own would be that of a rejected plan
+
+    return Terminal(file=sys.stdout, width=None if sys.stdout.isatty() else _WIDTH_WITHOUT_TERMINAL, highlight=False)
 
 
 def sequence(tasks: Sequence[str]) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from muster.mission.kinds import Fault, Path, did_you_mean, shown
 
 if TYPE_CHECKING:
-    from muster.mission.model import Mission, Point, Task
+    from muster.mission.model import Mission, Point, Robot, Task
 
 
 def inconsistencies(mission: Mission) -> Iterator[Fault]:
@@ -34,19 +33,36 @@ def _repeated_ids(mission: Mission) -> Iterator[Fault]:
             first.setdefault(name, k)
 
 
-def _unknown(name: str, known: Sequence[str], what: str) -> str:
-    return f"the id of a {what}{did_you_mean(name, known)}"
+def _unknown(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
+    return Fault(at, shown(name), f"the id of a {what}{did_you_mean(name, known)}", relies_on=f"{what}s")
+
+
+def _new_tasks(mission: Mission) -> list[tuple[Path, Task]]:
+    return [(("events", k, "new_task"), e.new_task) for k, e in enumerate(mission.events) if e.new_task]
+
+
+def _robots_that_join(mission: Mission) -> list[tuple[Path, Robot]]:
+    return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
+
+
+def _all_tasks(mission: Mission) -> list[tuple[Path, Task]]:
+    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission)]
+
+
+def _all_robots(mission: Mission) -> list[tuple[Path, Robot]]:
+    return [*((("robots", k), robot) for k, robot in enumerate(mission.robots)), *_robots_that_join(mission)]
 
 
 def _prerequisites(mission: Mission) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
-    known = set(ids)
-    for k, task in enumerate(mission.tasks):
-        seen: set[str] = set()
+    later = [t.id for _, t in _new_tasks(mission)]
+    for path, task in _all_tasks(mission):
+        known = ids if path[0] == "tasks" else [*ids, *later]
+        among, seen = set(known), set[str]()
         for p, name in enumerate(task.prerequisites):
-            at: Path = ("tasks", k, "prerequisites", p)
-            if name not in known:
-                yield Fault(at, shown(name), _unknown(name, ids, "task"))
+            at: Path = (*path, "prerequisites", p)
+            if name not in among:
+                yield _unknown(at, name, known, "task")
             elif name in seen:
                 yield Fault(at, shown(name), "each prerequisite once")
             seen.add(name)
@@ -79,11 +95,11 @@ def _cycle(tasks: Sequence[Task], knot: list[int]) -> Fault:
 
 def _locks(mission: Mission) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
-    joining = [e.robot_joins.id for e in mission.events if e.robot_joins]
-    for k, task in enumerate(mission.tasks):
+    joining = [robot.id for _, robot in _robots_that_join(mission)]
+    for path, task in _all_tasks(mission):
         for r, name in enumerate(task.only_robots or ()):
             if name not in ids and name not in joining:
-                yield Fault(("tasks", k, "only_robots", r), shown(name), _unknown(name, ids, "robot"))
+                yield _unknown((*path, "only_robots", r), name, ids, "robot")
 
 
 def _suitability(mission: Mission) -> Iterator[Fault]:
@@ -92,16 +108,16 @@ def _suitability(mission: Mission) -> Iterator[Fault]:
     rows = list(mission.suitability)
     columns = {kind for row in mission.suitability.values() for kind in row}
     groups = (
-        ("robots", [r.type for r in mission.robots], rows, "a row"),
-        ("tasks", [t.type for t in mission.tasks], sorted(columns), "a column"),
+        ([(path, robot.type) for path, robot in _all_robots(mission)], rows, "a row"),
+        ([(path, task.type) for path, task in _all_tasks(mission)], sorted(columns), "a column"),
     )
-    for group, types, known, what in groups:
-        for k, name in enumerate(types):
-            expected = f"a type that has {what} in suitability ({', '.join(known)})"
+    for types, known, what in groups:
+        expected = f"a type that has {what} in suitability ({', '.join(known)})"
+        for path, name in types:
             if name is None:
-                yield Fault((group, k, "type"), "missing", expected)
+                yield Fault((*path, "type"), "missing", expected)
             elif name not in known:
-                yield Fault((group, k, "type"), shown(name), expected + did_you_mean(name, known))
+                yield Fault((*path, "type"), shown(name), expected + did_you_mean(name, known))
 
 
 def _positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
@@ -144,6 +160,8 @@ def _travel(mission: Mission) -> Iterator[Fault]:
     if mission.travel_rule == "map" and mission.map is None:
         yield Fault(("rules", "travel"), shown("map"), "a mission with a map, or another rule")
     if mission.travel_rule != "matrix":
+        if mission.travel is not None:
+            yield Fault(("travel",), "tables that are not used", "rules.travel: matrix beside them")
         return
     if mission.travel is None:
         yield Fault(("travel",), "missing", "a travel table for each type of robot, with rules.travel: matrix")
@@ -179,8 +197,10 @@ def _table_faults(mission: Mission) -> Iterator[Fault]:
         if missing:
             value = f"no row for {', '.join(missing[:5])}"
             yield Fault(("travel", kind), value, "a row and a column for each robot and task")
-        if any(math.isnan(metres) or metres < 0 for row in table.metres for metres in row):
-            yield Fault(("travel", kind), "a negative distance or NaN", "distances of at least 0, or inf")
+        for start, row in zip(table.places, table.metres, strict=True):
+            for end, metres in zip(table.places, row, strict=True):
+                if not metres >= 0:
+                    yield Fault(("travel", kind), f"{metres:g} from {start} to {end}", "metres of at least 0, or inf")
 
 
 def _places_without_row(mission: Mission) -> Iterator[Fault]:
@@ -208,7 +228,7 @@ def _events(mission: Mission) -> Iterator[Fault]:
         )
         for path, name, known, what in named:
             if name is not None and name not in known:
-                yield Fault(("events", k, *path), shown(name), _unknown(name, known, what))
+                yield _unknown(("events", k, *path), name, known, what)
         for group, name, known in (
             ("robot_joins", event.robot_joins.id if event.robot_joins else None, robots),
             ("new_task", event.new_task.id if event.new_task else None, tasks),

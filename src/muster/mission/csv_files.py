@@ -33,29 +33,33 @@ def read_rows(path: FilePath, needed: Sequence[str], optional: Sequence[str] = (
     if not lines:
         raise MissionError([Finding(str(path), 1, "", "empty", f"a head line: {','.join(needed)}")])
     head = [name.strip() for name in lines[0][1]]
-    found = [
-        Finding(str(path), lines[0][0], name, "missing column", f"the columns {','.join([*needed, *optional])}")
-        for name in needed
-        if name not in head
-    ]
-    for name in head:
-        if name not in (*needed, *optional) or head.count(name) > 1:
-            hint = did_you_mean(name, [*needed, *optional])
-            found.append(
-                Finding(
-                    str(path),
-                    lines[0][0],
-                    name,
-                    "unknown or repeated column",
-                    f"the columns {','.join([*needed, *optional])}{hint}",
-                )
-            )
+    found = _head_findings(path, lines[0][0], head, needed, optional)
     for line, cells in lines[1:]:
         if len(cells) != len(head):
-            found.append(Finding(str(path), line, "", f"{len(cells)} cells", f"{len(head)}, one for each column"))
+            hint = "; a cell with commas in quotes" if len(cells) > len(head) else ""
+            expected = f"{len(head)}, one for each column{hint}"
+            found.append(Finding(str(path), line, "", f"{len(cells)} cells", expected))
     if found:
         raise MissionError(found)
     return [Row(line, dict(zip(head, (c.strip() for c in cells), strict=True))) for line, cells in lines[1:]]
+
+
+def _head_findings(
+    path: FilePath, line: int, head: Sequence[str], needed: Sequence[str], optional: Sequence[str]
+) -> list[Finding]:
+    if not set(head) & set(needed):
+        value = shown(",".join(head))
+        raise MissionError([Finding(str(path), line, "", value, f"a head line: {','.join(needed)}")])
+    known = [*needed, *optional]
+    expected = f"the columns {','.join(needed)}" + "".join(f", and {name} if wanted" for name in optional)
+    missing = [name for name in needed if name not in head]
+    unknown = [name for name in head if name not in known]
+    repeated = [name for name in dict.fromkeys(head) if name in known and head.count(name) > 1]
+    return [
+        *(Finding(str(path), line, name, "missing column", expected) for name in missing),
+        *(Finding(str(path), line, name, "unknown column", expected + did_you_mean(name, known)) for name in unknown),
+        *(Finding(str(path), line, name, "repeated column", expected) for name in repeated),
+    ]
 
 
 def read_table(path: FilePath) -> tuple[list[str], list[tuple[int, str, list[str]]]]:
@@ -84,8 +88,14 @@ def number(text: str) -> object:
 
 def _lines(path: FilePath) -> list[tuple[int, list[str]]]:
     """The lines that hold something, with their numbers."""
-    reader = csv.reader(io.StringIO(read_text(path), newline=""))
+    reader = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
+    lines: list[tuple[int, list[str]]] = []
+    begins = 1
     try:
-        return [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                lines.append((begins, cells))
+            begins = reader.line_num + 1
     except csv.Error as error:
-        raise MissionError([Finding(str(path), reader.line_num, "", shown(str(error)), "CSV")]) from None
+        raise MissionError([Finding(str(path), begins, "", str(error), "CSV")]) from None
+    return lines

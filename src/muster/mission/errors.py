@@ -34,10 +34,13 @@ class Finding:
     value: str
     expected: str
 
+    @property
+    def place(self) -> str:
+        return self.file if self.line is None else f"{self.file}:{self.line}"
+
     def __str__(self) -> str:
-        place = self.file if self.line is None else f"{self.file}:{self.line}"
         subject = f"{self.field}: " if self.field else ""
-        return f"{place}: {subject}{self.value}; expected {self.expected}"
+        return f"{self.place}: {subject}{self.value}; expected {self.expected}"
 
     def as_dict(self) -> dict[str, str | int | None]:
         return asdict(self)

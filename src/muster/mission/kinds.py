@@ -28,6 +28,8 @@ class Fault:
     path: Path
     value: str
     expected: str
+    relies_on: str = ""
+    """`robots` or `tasks` where the value was looked for among their ids; not said where one of those is wrong."""
 
 
 class Invalid:
@@ -80,8 +82,9 @@ def _trimmed(value: object, levels: int = 3) -> object:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`"; did you mean 'x'?"` for the known word that is nearest, or nothing."""
-    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
-    return f"; did you mean '{near[0]}'?" if near else ""
+    folded = {name.casefold(): name for name in reversed(list(known))}
+    near = difflib.get_close_matches(word.casefold(), list(folded), n=1, cutoff=0.6)
+    return f"; did you mean '{folded[near[0]]}'?" if near else ""
 
 
 def _refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:
@@ -187,7 +190,9 @@ class Text:
             return str(value)
         if isinstance(value, str) and value.strip() and value.isprintable():
             return value
-        return _refuse(self, value, at, faults)
+        hint = "; in quotes it is one" if isinstance(value, int | float) else ""
+        faults.append(Fault(at, shown(value), self.expected + hint))
+        return INVALID
 
     def schema(self) -> JsonSchema:
         return {"anyOf": [{"type": "string", "minLength": 1}, {"type": "integer"}]}
@@ -222,7 +227,7 @@ class Choice:
 class Position:
     """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`."""
 
-    filler: ClassVar[tuple[float, ...]] = (0.0, 0.0)
+    filler: ClassVar[tuple[float, ...]] = ()  # neither flat nor spatial
     planar: bool = False
 
     @property
@@ -300,7 +305,10 @@ class Record:
 
     @property
     def expected(self) -> str:
-        return f"{self.what} with the keys {', '.join(f.name for f in specified(self.of) if required(f))}"
+        keys = [f.name for f in specified(self.of) if required(f)]
+        if keys:
+            return f"{self.what} with the keys {', '.join(keys)}"
+        return f"{self.what} with some of the keys {', '.join(f.name for f in specified(self.of))}"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, self.of):
@@ -333,10 +341,16 @@ class Record:
 
     def schema(self) -> JsonSchema:
         own = specified(self.of)
-        properties = {f.name: f.metadata["kind"].schema() | _described(f) for f in own}
+        properties = {f.name: _schema(f) | _described(f) for f in own}
         need = [f.name for f in own if required(f)]
         extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
         return {"type": "object", "properties": properties, "required": need, "additionalProperties": False} | extra
+
+
+def _schema(f: Field[Any]) -> JsonSchema:
+    """A key whose default is None may also stand without a value."""
+    own: JsonSchema = f.metadata["kind"].schema()
+    return {"anyOf": [own, {"type": "null"}]} if f.default is None else own
 
 
 def _default(f: Field[Any]) -> Any:
@@ -353,6 +367,8 @@ def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[An
         return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
     if key == "lat_lon":
         return Fault((*at, key), shown(value), "position in metres: places in degrees are not read yet")
+    if key == "<<":
+        return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
     hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
     return Fault((*at, key), "unknown key", f"a known key{hint}")
 

@@ -311,7 +311,10 @@ class Mission(_Checked):
         default=None,
     )
     suitability: Mapping[str, Mapping[str, float]] | None = spec(
-        Table(Table(Number(minimum=0, maximum=1), "a mapping from task types to scores"), "a mapping from robot types"),
+        Table(
+            Table(Number(minimum=0, maximum=1), "a mapping from task types to scores"),
+            "a mapping from robot types to scores of task types",
+        ),
         "scores of robot types for task types; without it every pair is allowed",
         default=None,
     )

@@ -93,7 +93,10 @@ class Plan:
 
     def save(self, path: str | Path) -> None:
         """Write the plan as JSON."""
-        Path(path).write_text(self.text(), encoding="utf-8")
+        try:
+            Path(path).write_text(self.text(), encoding="utf-8")
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(path)) from None
 
 
 def json_text(data: Mapping[str, Any]) -> str:
@@ -125,6 +128,11 @@ def read_plan(path: str | Path) -> Plan:
         raise PlanError([Finding(str(file), error.lineno, "", error.msg, "a plan in JSON")]) from None
     except (RecursionError, ValueError) as error:
         raise PlanError([Finding(str(file), None, "", shown(str(error)), "a plan in JSON")]) from None
+    try:
+        json.dumps(data, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        half = f"\\u{ord(error.object[error.start]):04x} alone in a text"
+        raise PlanError([Finding(str(file), None, "", half, "whole characters")]) from None
     return _Reading(str(file)).plan(data)
 
 
@@ -140,10 +148,12 @@ class _Reading:
             raise PlanError(
                 [Finding(self._file, None, "", shown(data), f"a mapping with schema: {PLAN_SCHEMA} and routes")]
             )
-        if data.get("schema") != PLAN_SCHEMA:
-            self._refuse("schema", data.get("schema", "missing"), PLAN_SCHEMA)
+        if "schema" not in data:
+            self._missing("schema", PLAN_SCHEMA)
+        elif data["schema"] != PLAN_SCHEMA:
+            self._refuse("schema", data["schema"], PLAN_SCHEMA)
         objective = self._given(data, "objective", dict, {})
-        ignored = self._names(data.get("ignored", []), "ignored")
+        ignored = self._names(data.get("ignored", []), "ignored", f"a list of {', '.join(IGNORABLE)}")
         for name in ignored:
             if name not in IGNORABLE:
                 self._refuse("ignored", name, " or ".join(IGNORABLE))
@@ -163,8 +173,8 @@ class _Reading:
             allocator=self._given(data, "allocator", str),
             seed=self._given(data, "seed", int),
             ignored=ignored,
-            objective=self._given(objective, "name", str),
-            objective_value=self._number(objective, "value"),
+            objective=objective.get("name") if objective.get("name") in OBJECTIVES else None,
+            objective_value=self._number(objective, "value", "objective."),
             usage_unit=self._given(data, "usage_unit", str),
             tasks_completed=self._given(data, "tasks_completed", int),
             tasks_total=self._given(data, "tasks_total", int),
@@ -176,6 +186,9 @@ class _Reading:
         if self._found:
             raise PlanError(self._found)
         return plan
+
+    def _missing(self, field: str, expected: str) -> None:
+        self._found.append(Finding(self._file, None, field, "missing", expected))
 
     def _refuse(self, field: str, value: object, expected: str) -> None:
         self._found.append(Finding(self._file, None, field, shown(value), expected))
@@ -189,29 +202,33 @@ class _Reading:
             return default
         return value
 
-    def _number(self, data: Mapping[str, Any], name: str) -> float | None:
+    def _number(self, data: Mapping[str, Any], name: str, at: str = "") -> float | None:
         value = data.get(name)
         if value is not None and not _finite(value):
-            self._refuse(name, value, "a finite number")
+            self._refuse(at + name, value, "a finite number")
             return None
         return value
 
-    def _names(self, value: object, field: str) -> tuple[str, ...]:
+    def _names(self, value: object, field: str, expected: str = "a list of ids") -> tuple[str, ...]:
         if not isinstance(value, list) or not all(map(_is_id, value)):
-            self._refuse(field, value, "a list of ids")
+            self._refuse(field, value, expected)
             return ()
         return tuple(str(name) for name in value)
 
     def _routes(self, data: Mapping[str, Any]) -> tuple[Route, ...]:
         if "routes" not in data:
-            self._refuse("routes", "missing", "a list of routes")
+            self._missing("routes", "a list of routes")
+        elif data["routes"] is None:
+            self._refuse("routes", None, "a list of routes")
         routes = []
         for k, route in enumerate(self._given(data, "routes", list, [])):
             if not isinstance(route, dict) or not _is_id(route.get("robot")):
                 self._refuse(f"routes[{k}]", route, "a mapping with robot and tasks")
                 continue
-            tasks = self._names(route.get("tasks"), f"routes[{k}].tasks")
-            routes.append(Route(str(route["robot"]), tasks, self._number(route, "usage")))
+            if "tasks" not in route:
+                self._missing(f"routes[{k}].tasks", "a list of ids")
+            tasks = self._names(route.get("tasks", []), f"routes[{k}].tasks")
+            routes.append(Route(str(route["robot"]), tasks, self._number(route, "usage", f"routes[{k}].")))
         return tuple(routes)
 
     def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:

@@ -41,11 +41,17 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     faults.extend(
         fault
         for fault in inconsistencies(mission)
-        if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path))
+        if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path)) and not _in_doubt(fault, wrong)
     )
     if faults:
         raise MissionError(findings(faults, source))
     return mission
+
+
+def _in_doubt(fault: Fault, wrong: set[Path]) -> bool:
+    """Whether an id was looked for among ids of which one is wrong: that may be the one that was meant."""
+    group = fault.relies_on
+    return bool(group) and any(path[:1] == (group,) and (len(path) < 3 or path[2] == "id") for path in wrong)
 
 
 def _prefixes(path: Path) -> list[Path]:

@@ -10,10 +10,12 @@ from muster.mission.errors import Finding, MissionError
 def read_text(path: Path) -> str:
     """The text of an input file; what stands in the way is a MissionError, not an OSError."""
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        data = path.read_bytes()
+        return data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
+        line = 1 + data.count(b"\n", 0, error.start)
         raise MissionError(
-            [Finding(str(path), None, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
+            [Finding(str(path), line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
         ) from None
     except OSError as error:
         raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None

@@ -14,7 +14,7 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import Row, number, read_rows, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, Path
+from muster.mission.kinds import Fault, Path, shown
 from muster.mission.model import SCHEMA, Mission, Robot, Task
 from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
@@ -33,7 +33,7 @@ def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = N
         with every finding: file, line, field, value, what was expected.
     """
     faults: list[Fault] = []
-    places: dict[Path, Place] = {}
+    places: dict[Path, Place] = {("robots",): (str(robots), 1), ("suitability",): (str(suitability), 1)}
     task_rows = read_rows(tasks, TASK_COLUMNS, ("z",))
     robot_rows = read_rows(robots, ROBOT_COLUMNS, ("z",))
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
@@ -56,14 +56,17 @@ def _task(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[s
     _place(("tasks", k), row, file, places)
     cells = row.cells
     task: dict[str, object] = {"id": cells["index"], "position": _position(row)}
-    task["prerequisites"] = (
-        re.split(r"[\s,;]+", cells["prerequisites"].strip("[] ")) if cells["prerequisites"].strip("[] ") else []
-    )
+    task["prerequisites"] = _prerequisites(cells["prerequisites"])
     if cells["type"]:
         task["type"] = cells["type"]
     if cells["actuation_cost"]:
         task["actuation_cost"] = number(cells["actuation_cost"])
     return task
+
+
+def _prerequisites(cell: str) -> list[str]:
+    ids = cell.strip("[] ")
+    return re.split(r"[\s,;]+", ids) if ids else []
 
 
 def _robot(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[str, object]:
@@ -79,10 +82,15 @@ def _robot(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[
 
 def _suitability(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
     columns, rows = read_table(path)
+    for k, name in enumerate(columns):
+        if name in columns[:k]:
+            raise MissionError([Finding(str(path), 1, "suitability", f"{shown(name)} again", "each task type once")])
     table: dict[str, dict[str, object]] = {}
     for line, name, cells in rows:
         if name in table:
-            raise MissionError([Finding(str(path), line, "suitability", f'"{name}" again', "each robot type once")])
+            raise MissionError(
+                [Finding(str(path), line, "suitability", f"{shown(name)} again", "each robot type once")]
+            )
         places["suitability", name] = (str(path), line)
         table[name] = {column: number(cell) for column, cell in zip(columns, cells, strict=True)}
     return table
@@ -123,11 +131,26 @@ def _lost(mission: Mission, with_suitability: bool) -> list[Finding]:
         suitability=mission.suitability if with_suitability else None,
     )
     names = ("origin_wgs84", "rules", "map", "travel", "suitability", "robots", "tasks", "events")
+    lost = [name for name in names if getattr(plain, name) != getattr(mission, name)]
+    lost += [name for name in ("robots", "tasks", "suitability") if name not in lost and not _cells_last(mission, name)]
     return [
         Finding(mission.source.file, None, name, "more than CSV can say", "what read_csv reads; or write YAML")
-        for name in names
-        if getattr(plain, name) != getattr(mission, name)
+        for name in lost
     ]
+
+
+def _cells_last(mission: Mission, group: str) -> bool:
+    """Whether ids and types come back from their cells as they are."""
+    if group == "suitability":
+        rows = mission.suitability or {}
+        return all(name == name.strip() for name in (*rows, *(kind for row in rows.values() for kind in row)))
+    words = [word for item in getattr(mission, group) for word in (item.id, item.type or "")]
+    return all(word == word.strip() for word in words) and (
+        group == "robots"
+        or all(
+            _prerequisites(f"[{','.join(task.prerequisites)}]") == list(task.prerequisites) for task in mission.tasks
+        )
+    )
 
 
 def _task_cells(task: Task) -> list[str]:

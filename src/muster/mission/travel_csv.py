@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import zip_longest
 from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault
+from muster.mission.kinds import Fault, shown
 from muster.mission.model import TravelTable
 from muster.mission.source import Source
 
@@ -23,7 +24,7 @@ def read_travel_tables(files: Mapping[str, str], source: Source, faults: list[Fa
             tables[kind] = read_travel_table(FilePath(source.file).parent / name)
         except MissionError as error:
             faults.extend(
-                Fault(("travel", kind), f"{finding.file}:{finding.line}: {finding.value}", finding.expected)
+                Fault(("travel", kind), f"{finding.place}: {finding.value}", finding.expected)
                 for finding in error.findings
             )
     return tables
@@ -39,14 +40,19 @@ def read_travel_table(path: FilePath) -> TravelTable:
     """
     columns, rows = read_table(path)
     names = [name for _, name, _ in rows]
-    if names != columns or len(set(names)) != len(names):
-        raise _refusal(
-            path, 1, "rows and columns that differ or repeat", "the same places in rows and columns, each once"
-        )
+    for k, name in enumerate(columns):
+        if name in columns[:k]:
+            raise _refusal(path, 1, f"column {name} for the second time", "each place once")
+        if name not in names:
+            raise _refusal(path, 1, f"column {name} and no such row", "the same places in rows and columns")
+    for (line, name, _), column in zip_longest(rows, columns):
+        if name != column:
+            expected = "no more rows than columns" if column is None else f"row {column}, as the columns are ordered"
+            raise _refusal(path, line, f"row {name}", expected)
     for line, name, cells in rows:
         for column, cell in zip(columns, cells, strict=True):
             if not isinstance(number(cell), float):
-                raise _refusal(path, line, f"{cell!r} from {name} to {column}", "metres, or inf")
+                raise _refusal(path, line, f"{shown(cell)} from {name} to {column}", "metres, or inf")
     return TravelTable(tuple(names), tuple(tuple(float(cell) for cell in cells) for _, _, cells in rows))
 
 

@@ -6,6 +6,7 @@ start and return to; every other node is a task whose id is the node's number.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number
@@ -31,7 +32,7 @@ def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
     places: dict[Path, Place] = {}
     head, nodes = _parts(path)
     found = _head_findings(path, head, len(nodes))
-    if depot not in [node for _, node, _ in nodes]:
+    if nodes and depot not in [node for _, node, _ in nodes]:
         found.append(Finding(str(path), None, "depot", shown(depot), "the number of a node"))
     if salesmen < 1:
         found.append(Finding(str(path), None, "salesmen", str(salesmen), "a whole number of at least 1"))
@@ -60,21 +61,28 @@ def _parts(path: FilePath) -> tuple[dict[str, tuple[int, str]], list[tuple[int, 
         if not words or words == ["EOF"]:
             continue
         if in_nodes and words[0][0].isdigit():
-            if len(words) != 3:
-                raise MissionError(
-                    [Finding(str(path), line, "NODE_COORD_SECTION", shown(text.strip()), "number, x, y")]
-                )
-            nodes.append((line, words[0], [number(words[1]), number(words[2])]))
+            x_y = [number(word) for word in words[1:]]
+            if len(x_y) != 2 or not all(isinstance(value, float) and math.isfinite(value) for value in x_y):
+                raise _refusal(path, line, shown(text.strip()), "number, x, y")
+            if any(words[0] == node for _, node, _ in nodes):
+                raise _refusal(path, line, f"node {words[0]} for the second time", "each node once")
+            nodes.append((line, words[0], x_y))
         elif words == ["NODE_COORD_SECTION"]:
             in_nodes = True
         elif ":" in text:
             keyword, _, value = text.partition(":")
             head[keyword.strip().upper()] = (line, value.strip())
+        elif not in_nodes and words[0].isdigit():
+            raise _refusal(path, line, "missing", "this line before the first node")
         else:
             raise MissionError(
                 [Finding(str(path), line, "", shown(text.strip()), "TSPLIB: KEYWORD : value, or a node")]
             )
     return head, nodes
+
+
+def _refusal(path: FilePath, line: int, value: str, expected: str) -> MissionError:
+    return MissionError([Finding(str(path), line, "NODE_COORD_SECTION", value, expected)])
 
 
 def _head_findings(path: FilePath, head: dict[str, tuple[int, str]], nodes: int) -> list[Finding]:
@@ -83,6 +91,8 @@ def _head_findings(path: FilePath, head: dict[str, tuple[int, str]], nodes: int)
         for keyword, value in _NEEDED.items()
         if head.get(keyword, (0, ""))[1] != value
     ]
+    if not nodes:
+        return [*found, Finding(str(path), None, "NODE_COORD_SECTION", "missing", "a line for each node: number, x, y")]
     line, dimension = head.get("DIMENSION", (None, "missing"))
     if dimension != str(nodes):
         found.append(Finding(str(path), line, "DIMENSION", dimension, f"{nodes}, the number of nodes in the file"))
@@ -98,13 +108,14 @@ def write_tsplib(mission: Mission, path: FilePath) -> None:
         if the mission is more than salesmen who start at one place, visit plain places and return.
     """
     start = mission.robots[0].position
-    tasks = [{"id": t.id, "position": t.position} for t in mission.tasks]
-    robots = [{"id": r.id, "position": start} for r in mission.robots]
+    tasks = [{"id": str(k), "position": t.position} for k, t in enumerate(mission.tasks, 2)]
+    robots = [{"id": f"r_{k}", "position": start} for k in range(len(mission.robots))]
     data = {"name": mission.name, "rules": {"return_to_start": True}, "robots": robots, "tasks": tasks}
     if mission.dimensions == 3 or mission_from(data, mission.source, []) != mission:
         value = "more than TSPLIB can say"
         raise MissionError([Finding(mission.source.file, None, "", value, "salesmen, one depot, plain tasks in 2-D")])
     nodes = [start, *(t.position for t in mission.tasks)]
-    lines = [f"NAME : {mission.name}", "TYPE : TSP", f"DIMENSION : {len(nodes)}", "EDGE_WEIGHT_TYPE : EUC_2D"]
+    name = mission.name.removesuffix(f"-{len(mission.robots)}")
+    lines = [f"NAME : {name}", "TYPE : TSP", f"DIMENSION : {len(nodes)}", "EDGE_WEIGHT_TYPE : EUC_2D"]
     lines += ["NODE_COORD_SECTION", *(f"{k} {x!r} {y!r}" for k, (x, y) in enumerate(nodes, 1)), "EOF"]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

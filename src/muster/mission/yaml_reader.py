@@ -14,12 +14,14 @@ from typing import Any
 import yaml
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, Path
+from muster.mission.kinds import Fault, Path, shown
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
 from muster.mission.text_files import read_text
 
+_FORBIDDEN = re.compile(r"[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_LINE_END = re.compile(r"\r\n|[\r\n\x85\u2028\u2029]")
 _NULL = re.compile(r"~|null|Null|NULL|")
 _TRUE = re.compile(r"true|True|TRUE")
 _FALSE = re.compile(r"false|False|FALSE")
@@ -78,12 +80,15 @@ class _Reading:
             next(self._events)  # the end of the document
             beyond = next(self._events)
         except yaml.MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            raise self._refusal(mark.line + 1 if mark else None, error.problem or "not YAML", "YAML") from None
+            raise self._syntax_refusal(error, text) from None
         except yaml.YAMLError as error:
-            raise self._refusal(None, str(error).splitlines()[0], "YAML") from None
+            at = _FORBIDDEN.search(text)
+            line = text.count("\n", 0, at.start()) + 1 if at else None
+            raise self._refusal(line, str(error).splitlines()[0], "YAML") from None
         if not isinstance(beyond, yaml.StreamEndEvent):
             raise self._refusal(_line(beyond), "a second document", "one mission a file")
+        if not isinstance(data, dict):
+            raise self._refusal(self.places[()][1], shown(data), "a mission: schema, robots, tasks")
         return data
 
     def _value(self, event: Any, at: Path) -> object:
@@ -124,13 +129,26 @@ class _Reading:
         line = _line(event)
         if not isinstance(event, yaml.ScalarEvent):
             raise self._refusal(line, "a key that is no word", "a plain word before the colon")
-        key: str = event.value
+        resolved = _resolved(event.value) if event.implicit[0] else event.value
+        key: str = str(resolved) if type(resolved) is int else event.value  # as ids and types are read
         if key in data:
             place = self._file, line
             self.places[(*at, key, "")] = place
             self.faults.append(Fault((*at, key, ""), "the key for the second time", "each key once"))
         self.places.setdefault((*at, key), (self._file, line))
         return key
+
+    def _syntax_refusal(self, error: yaml.MarkedYAMLError, text: str) -> MissionError:
+        """What PyYAML says; and where the thing began that has no end, which is often lines above."""
+        at, begin, problem = error.problem_mark or error.context_mark, error.context_mark, error.problem or "not YAML"
+        if at is None:
+            return self._refusal(None, problem, "YAML")
+        lines = _LINE_END.split(text)
+        if at.line < len(lines) and lines[at.line][at.column : at.column + 1] == "\t":
+            return self._refusal(at.line + 1, "a tab", "spaces, where YAML allows no tab")
+        if begin is not None and begin.line != at.line:
+            problem += f", {error.context} from line {begin.line + 1}"
+        return self._refusal(at.line + 1, problem, "YAML")
 
     def _refusal(self, line: int | None, value: str, expected: str) -> MissionError:
         return MissionError([Finding(self._file, line, "", value, expected)])
