@@ -30,6 +30,7 @@ help:
 	@echo "make sanitize   run the core's tests under the address and undefined-behaviour sanitizers"
 	@echo "make study      repeat section 3.3 of the TCF thesis, 10 seeds a case"
 	@echo "make bench      measure speed on this machine"
+	@echo "make clean      remove what make has made"
 
 check: $(VENV)/developed
 	$(BIN)/ruff check .
@@ -64,7 +65,7 @@ $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
 
 $(VENV)/developed: $(VENV)/installed
 	@echo "Installing the tools for tests ..."
-	$(BIN)/pip install --quiet --group dev
+	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
 	@touch $@
 
 $(VENV)/made: | prerequisites

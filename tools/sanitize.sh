@@ -5,7 +5,7 @@ set -eu
 python=${PYTHON:-python3}
 environment=build/sanitized
 [ -d "$environment" ] || "$python" -m venv "$environment"
-"$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C build-dir=build/sanitizing \
+"$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C cmake.define.MUSTER_WERROR=ON -C build-dir=build/sanitizing \
     -C install.strip=false '.[all]' pytest hypothesis
 core=$(find "$environment" -name '_core*.so')
 if ! ldd "$core" | grep -q libasan; then

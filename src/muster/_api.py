@@ -47,12 +47,13 @@ def load(
         if a parameter is missing, or does not go with this kind of file.
     """
     path = _found(path_or_name)
-    _check_flags(path_or_name, path.suffix, robots=robots, suitability=suitability, salesmen=salesmen)
-    if path.suffix == ".csv":
+    suffix = path.suffix.lower()
+    _check_flags(path_or_name, suffix, robots=robots, suitability=suitability, salesmen=salesmen)
+    if suffix == ".csv":
         from muster.mission.thesis_csv import read_csv
 
         return read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability))
-    if path.suffix == ".tsp":
+    if suffix == ".tsp":
         from muster.mission.tsplib import read_tsplib
 
         return read_tsplib(path, salesmen or 0, depot)
@@ -64,7 +65,8 @@ def load(
 def _found(path_or_name: str | Path) -> Path:
     path = Path(path_or_name)
     shipped = mission_path(str(path_or_name))
-    if path.exists() or (shipped is None and path.suffix in (".yaml", ".yml", ".csv", ".tsp")):
+    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp")
+    if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
         return path
     if shipped is None:
         expected = f"a file, or the name of a shipped mission{did_you_mean(str(path_or_name), mission_names())}"
@@ -125,8 +127,6 @@ def solve(
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
 
-    if not 0 <= seed < 2**64:
-        raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
     problem = Problem.compile(mission, objective, ignore).ready()

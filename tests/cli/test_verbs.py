@@ -258,6 +258,13 @@ def test_flags_that_do_not_fit(verb, arguments, message, muster):
     assert len(err.splitlines()) == 1
 
 
+def test_suffixes_in_capitals(muster):
+    Path("t.csv").rename("T.CSV")
+    assert muster("check", "T.CSV", "--robots", "r.csv")[0] == 0
+    Path("eil51.TSP").write_bytes(mission_path("eil51").read_bytes())
+    assert muster("check", "eil51.TSP", "--salesmen", 2)[0] == 0
+
+
 def test_a_file_comes_before_a_shipped_mission_of_that_name(muster):
     Path("6T-2R").write_text(MISSION, encoding="utf-8")
     assert muster("check", "6T-2R")[1].startswith("yard: ")

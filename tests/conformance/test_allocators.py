@@ -67,7 +67,7 @@ def test_history_only_improves_and_ends_at_the_plan(allocator):
     plan = muster.solve(muster.load("eil51-5"), allocator, iterations=300)
     values = [value for _, value in plan.history]
     seconds = [time for time, _ in plan.history]
-    assert values == sorted(values, reverse=True)
+    assert values == sorted(set(values), reverse=True)
     assert values[-1] == plan.objective_value
     assert seconds == sorted(seconds)
     assert seconds[-1] <= plan.elapsed_s
@@ -107,6 +107,21 @@ def test_a_start_that_is_not_admissible_is_refused(allocator):
     start = muster.Plan(routes=(muster.Route("r_1", ("16", "5")),))
     with pytest.raises(muster.ParameterError, match="start"):
         muster.solve(mission, allocator, iterations=1, start=start)
+
+
+@every_allocator
+def test_two_routes_of_one_robot_are_no_start(allocator):
+    mission = muster.load("31T-6R")
+    start = muster.Plan(routes=(muster.Route("r_0", ("4",)), muster.Route("r_0", ("6",))))
+    with pytest.raises(muster.ParameterError, match="two routes"):
+        muster.solve(mission, allocator, iterations=1, start=start)
+
+
+@every_allocator
+@pytest.mark.parametrize("seed", [-1, 2**64, 1.5])
+def test_a_seed_out_of_range_is_refused(allocator, seed):
+    with pytest.raises(muster.ParameterError, match="seed"):
+        muster.solve(muster.load("6T-2R"), allocator, iterations=1, seed=seed)
 
 
 @every_allocator

@@ -1,5 +1,8 @@
 """The core's verbs against the judge, which shares no code with them."""
 
+from dataclasses import replace
+from random import Random
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -169,3 +172,47 @@ def test_the_problem_outlives_its_python_name():
     population = core.Population(Problem.compile(random_mission(2)).core, 3, 0)
     population.set_random(0)
     assert len(population) == 3
+
+
+@given(
+    seed=seeds,
+    allocator=st.sampled_from(["greedy", "hill-climbing", "genetic", "greedy+genetic", "greedy+hill-climbing"]),
+)
+def test_a_capacity_that_is_filled_exactly_is_enough(seed, allocator):
+    random, work = Random(seed), seed % 2
+    places = sorted(random.sample(range(1, 60), 5))
+    tasks = tuple(
+        muster.Task(id=str(k), position=(place / 10, 0), actuation_cost=work * random.randrange(30) / 10)
+        for k, place in enumerate(places)
+    )
+    free = muster.Mission(robots=(muster.Robot(id="r", position=(0, 0)),), tasks=tasks)
+    usage = muster.verify(free, muster.Plan(routes=(muster.Route("r", tuple("01234")),))).total_cost
+    limited = replace(free, robots=(muster.Robot(id="r", position=(0, 0), work_capacity=usage),))
+    plan = muster.solve(limited, allocator, iterations=200)
+    assert muster.verify(limited, plan).valid
+    if allocator.startswith("greedy") and not work:  # along a line the nearest task is always the next
+        assert plan.complete
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.1, 50.0, float("nan")])
+@pytest.mark.parametrize("step", ["replace_worst", "mutate", "cross"])
+def test_shares_and_probabilities_out_of_range_are_refused(step, share):
+    population = core.Population(small_problem(), 3, 0)
+    with pytest.raises(ValueError, match="from 0 to 1"):
+        getattr(population, step)(share)
+
+
+def test_the_objective_of_routes_above_capacity_is_theirs():
+    robots = (muster.Robot(id="a", position=(0, 0), work_capacity=5), muster.Robot(id="b", position=(0, 0)))
+    tasks = (muster.Task(id="1", position=(10, 0)), muster.Task(id="2", position=(0, 10)))
+    problem = Problem.compile(muster.Mission(robots=robots, tasks=tasks))
+    inspection = core.Inspection(problem.core, [[0], [1]])
+    assert not inspection.admissible
+    assert inspection.objective == 30.0
+
+
+def test_a_knot_has_no_objective():
+    tasks = (muster.Task(id="1", position=(1, 0), prerequisites=("2",)), muster.Task(id="2", position=(2, 0)))
+    problem = Problem.compile(muster.Mission(robots=(muster.Robot(id="a", position=(0, 0)),), tasks=tasks))
+    inspection = core.Inspection(problem.core, [[0, 1]])
+    assert inspection.objective is inspection.makespan is None

@@ -28,10 +28,11 @@ def expected(name):
 
 
 def line_of(error):
-    """A finding of `--format json` as the line that a person gets."""
+    """A finding of `--format json` as the line that a person gets: what cannot be printed is escaped."""
     place = error["file"] if error["line"] is None else f"{error['file']}:{error['line']}"
     subject = f"{error['field']}: " if error["field"] else ""
-    return f"{place}: {subject}{error['value']}; expected {error['expected']}\n"
+    line = f"{place}: {subject}{error['value']}; expected {error['expected']}"
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line) + "\n"
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -77,6 +78,16 @@ def test_every_verb_says_the_same(verb, capsys, monkeypatch, tmp_path):
         code = run([verb, *arguments(name), *([str(plan)] if verb != "solve" else [])])
         out, err = capsys.readouterr()
         assert (code, out, err) == (2, "", expected(name))
+
+
+def test_of_each_knot_of_prerequisites_one_cycle_is_named(tmp_path, capsys):
+    """Not all there are: a ring of tasks that all wait for its first one has as many cycles as tasks."""
+    waits = [f"[{(k + 1) % 500}, 0]" if 0 < k < 499 else f"[{(k + 1) % 500}]" for k in range(500)]
+    tasks = "".join(f"  - {{id: {k}, position: [0, 0], prerequisites: {names}}}\n" for k, names in enumerate(waits))
+    path = tmp_path / "ring.yaml"
+    path.write_text(f"schema: muster/1\nrobots: [{{id: r_0, position: [0, 0]}}]\ntasks:\n{tasks}", encoding="utf-8")
+    assert run(["check", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
 
 
 def test_every_file_has_its_message():

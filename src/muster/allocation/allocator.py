@@ -46,8 +46,10 @@ class Allocator:
         Raises
         ------
         ParameterError
-            if `start` is not an admissible plan of this problem.
+            if `start` is not an admissible plan of this problem, or the seed is out of range.
         """
+        if not (isinstance(seed, int) and 0 <= seed < 2**64):
+            raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
         routes = None if start is None else admissible_routes(problem, start)
         routes = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
         return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
@@ -65,6 +67,8 @@ def routes_of(problem: Problem, plan: Plan) -> Routes:
     for route in plan.routes:
         if route.robot not in problem.robot_index:
             raise ParameterError(f"start: robot {route.robot} is not in the mission")
+        if routes[problem.robot_index[route.robot]]:
+            raise ParameterError(f"start: robot {route.robot} has two routes")
         for task in route.tasks:
             if task not in problem.task_index:
                 raise ParameterError(f"start: task {task} is not in the mission")

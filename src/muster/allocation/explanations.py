@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -26,7 +27,7 @@ def unassigned(problem: Problem, routes: Sequence[Sequence[int]]) -> tuple[Unass
 def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:
     """Why robot i does not do task j, which the plan leaves out."""
     robot = problem.robots[i].id
-    refusal = problem.refusal(i, j)
+    refusal = None if problem.allowed[i, j] else problem.refusal(i, j)
     if refusal is not None:
         return Reason(robot, *refusal)
     missing = [problem.tasks[k].id for k in problem.prerequisites[j] if k not in done]
@@ -35,8 +36,8 @@ def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: in
     unit = problem.usage_unit
     insertion = inspection.cheapest_insertion(i, j)
     if insertion is None:
-        if problem.prerequisites[j] or problem.dependants[j]:
-            return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
+        return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
+    if math.isinf(insertion.usage):
         return Reason(robot, "unreachable", "there is no way to it")
     capacity = problem.capacity[i]
     if insertion.usage > capacity:

@@ -10,14 +10,18 @@ import numpy as np
 from muster.allocation.problem import Floats, Problem
 from muster.mission.plan import Reason, Unassigned
 
+_ROUNDING = 1e-9
+"""What a sum may be off, relative: a task that fills a capacity exactly is not impossible."""
+
 
 def impossible(problem: Problem) -> tuple[Unassigned, ...]:
-    """The tasks that no robot can do in any admissible plan, in mission order, each with a reason for every robot.
+    """Tasks that no robot can do in any admissible plan, in mission order, each with a reason for every robot.
 
-    A task is impossible if no robot may do it, if it is out of every robot's reach, or if a prerequisite is impossible.
+    These are the tasks that no robot may do, those out of every robot's reach by themselves, and those whose
+    prerequisites are impossible. There can be others, such as a chain of prerequisites too long for the team.
     """
     least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
-    possible = problem.allowed & np.isfinite(least) & (least <= problem.capacity[:, None])
+    possible = problem.allowed & np.isfinite(least) & (least <= problem.capacity[:, None] * (1 + _ROUNDING))
     lost = dict.fromkeys(np.flatnonzero(~possible.any(axis=0)).tolist(), "")
     waiting = list(lost)
     while waiting:

@@ -89,11 +89,8 @@ class Problem:
 
     @cached_property
     def capacity(self) -> Floats:
-        """(m,) usable work capacity; inf where unlimited.
-
-        A route that fills it exactly may come out above it by the rounding of sums, for which there is room.
-        """
-        usable = (1.0 - self.mission.rules.capacity_reserve) * (1 + 1e-12)
+        """(m,) usable work capacity; inf where unlimited."""
+        usable = 1.0 - self.mission.rules.capacity_reserve
         limited = self.holds("capacity")
         return np.array(
             [usable * r.work_capacity if limited and r.work_capacity is not None else math.inf for r in self.robots]
@@ -151,7 +148,7 @@ class Problem:
         table, classes = self.travel
         return core.Problem(
             objective=self.objective,
-            usage_is_time=self.mission.rules.usage == "time",
+            usage_is_time=self.in_time,
             capacity=self.capacity,
             speed=_floats(r.speed_mps for r in self.robots),
             efficiency=_floats(r.efficiency for r in self.robots),
@@ -199,11 +196,18 @@ class Problem:
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes."""
         weight = sum(self.tasks[j].priority for j in sorted(j for route in routes for j in route))
-        return weight, core.Inspection(self.core, [list(route) for route in routes]).objective
+        objective = core.Inspection(self.core, [list(route) for route in routes]).objective
+        assert objective is not None, "the routes of an allocator do not deadlock"
+        return weight, objective
+
+    @property
+    def in_time(self) -> bool:
+        """Whether usage is time."""
+        return self.mission.rules.usage == "time"
 
     @property
     def usage_unit(self) -> str:
-        return "s" if self.mission.rules.usage == "time" else "m"
+        return "s" if self.in_time else "m"
 
     def start(self, i: int) -> int:
         """The place where robot i starts."""
@@ -220,12 +224,12 @@ class Problem:
             metres = table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]]
         else:
             metres = np.linalg.norm(self._exits[places][:, None] - self._entries[to][None], axis=2)
-        return np.asarray(metres / self.robots[i].speed_mps if self.usage_unit == "s" else metres)
+        return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""
         robot = self.robots[i]
-        if self.usage_unit == "m":
+        if not self.in_time:
             return self._actuation_cost
         in_time = self._duration / robot.efficiency
         return np.where(np.isnan(in_time), self._actuation_cost / robot.speed_mps, in_time)
@@ -254,9 +258,11 @@ def _coordinates(points: Sequence[Point]) -> Floats:
 def _not_supported(mission: Mission) -> Iterable[Finding]:
     source = mission.source
     if mission.travel_rule == "map":
-        path = ("rules", "travel")
-        expected = "euclidean or matrix: travel over a map cannot be planned yet"
-        yield Finding(*source.place(path), path_text(path), shown("map"), expected)
+        stated = mission.rules.travel is not None
+        path = ("rules", "travel") if stated else ("map",)
+        value = shown("map") if stated else "a map, and no rules.travel"
+        expected = "rules.travel: euclidean or matrix; travel over a map cannot be planned yet"
+        yield Finding(*source.place(path), path_text(path), value, expected)
     for k, task in enumerate(mission.tasks):
         if task.action is not None and task.action.has_geometry:
             expected = "go-to-goal or sensor-activation: costs of other actions cannot be computed yet"

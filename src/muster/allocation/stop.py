@@ -90,7 +90,9 @@ class Stop:
             yield self.iterations_done
 
     def improved(self, weight: float, objective: float) -> None:
-        """Note the figures of a new best plan."""
+        """Note the figures of a plan, if it is the best so far."""
+        if self.best is not None and (-weight, objective) >= (-self.best[0], self.best[1]):
+            return
         now = self._clock.now()
         self.best = weight, objective
         self.history.append((now - self._begin, objective))

@@ -53,7 +53,7 @@ _FILE = click.Path(path_type=Path)
 )
 @objective_option
 @ignore_option
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Of all random choices.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), metavar="S", help="Seconds.  [default: 5, without --iterations]"
 )

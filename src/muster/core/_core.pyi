@@ -22,7 +22,9 @@ class Problem:
     def robots(self) -> int: ...
 
 class Insertion:
-    """Where a task would go in a robot's route, and the robot's usage then."""
+    """
+    Where a task would go in a robot's route, and the robot's usage then, in the unit of usage.
+    """
 
     @property
     def at(self) -> int: ...
@@ -32,7 +34,7 @@ class Insertion:
 
 class Inspection:
     """
-    Routes with their figures, and what putting one more task into them would take.
+    Routes with their figures, and what putting one more task into them would take. One thread at a time may use one.
     """
 
     def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
@@ -47,7 +49,8 @@ class Inspection:
         """
 
     @property
-    def objective(self) -> float: ...
+    def objective(self) -> float | None:
+        """Whatever the capacities; None if routes and prerequisites deadlock."""
 
     @property
     def usages(self) -> list[float]: ...
@@ -58,7 +61,7 @@ class Inspection:
 
     def cheapest_insertion(self, robot: int, task: int) -> Insertion | None:
         """
-        The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the capacity; None if there is no such place.
+        The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the capacity; usage inf if there is no way to it, None if it would deadlock everywhere.
         """
 
 class Matching:
@@ -76,7 +79,9 @@ class Matching:
     def cost(self) -> float: ...
 
 class Greedy:
-    """State and steps of greedy task allocation (TCF thesis, Algorithm 1)."""
+    """
+    State and steps of greedy task allocation (TCF thesis, Algorithm 1). One thread at a time may use one.
+    """
 
     def __init__(self, problem: Problem, balanced: bool) -> None:
         """`balanced`: choose by c_ij + u_i (3.17), else by c_ij alone (3.27)."""
@@ -91,7 +96,9 @@ class Greedy:
     def routes(self) -> list[list[int]]: ...
 
 class Population:
-    """Task allocations that evolve (TCF thesis, Algorithm 3)."""
+    """
+    Task allocations that evolve (TCF thesis, Algorithm 3). One thread at a time may use one.
+    """
 
     def __init__(self, problem: Problem, size: int, seed: int) -> None:
         """`size` empty allocations."""

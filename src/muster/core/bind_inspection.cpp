@@ -2,10 +2,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
-#include <memory>
-#include <stdexcept>
-
 #include "bindings.hpp"
 #include "inspection.hpp"
 #include "routes.hpp"
@@ -16,22 +12,25 @@ using namespace nb::literals;
 namespace muster {
 
 void bind_inspection(nb::module_& m) {
-  nb::class_<Insertion>(m, "Insertion", "Where a task would go in a robot's route, and the robot's usage then.")
+  nb::class_<Insertion>(m, "Insertion",
+                        "Where a task would go in a robot's route, and the robot's usage then, in the unit of usage.")
       .def_ro("at", &Insertion::at)
       .def_ro("usage", &Insertion::usage);
   nb::class_<Inspection>(m, "Inspection",
-                         "Routes with their figures, and what putting one more task into them would take.")
+                         "Routes with their figures, and what putting one more task into them would take. One thread "
+                         "at a time may use one.")
       .def(nb::init<const Problem&, const Routes&>(), "problem"_a, "routes"_a, nb::keep_alive<1, 2>(),
            "One list of task indices for each robot. Raises ValueError if a task stands twice or does not exist.")
       .def_prop_ro("admissible", &Inspection::admissible,
                    "Whether capacities hold, no prerequisite is left out and nothing deadlocks.")
-      .def_prop_ro("objective", &Inspection::objective)
+      .def_prop_ro("objective", &Inspection::objective,
+                   "Whatever the capacities; None if routes and prerequisites deadlock.")
       .def_prop_ro("usages", &Inspection::usages)
       .def_prop_ro("makespan", &Inspection::makespan, "Seconds; None if routes and prerequisites deadlock.")
       .def("cheapest_insertion", &Inspection::cheapest_insertion, "robot"_a, "task"_a,
            nb::call_guard<nb::gil_scoped_release>(),
            "The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the "
-           "capacity; None if there is no such place.");
+           "capacity; usage inf if there is no way to it, None if it would deadlock everywhere.");
 }
 
 }  // namespace muster

@@ -26,6 +26,9 @@ class Evolving : public Population {
   }
   void randomize(int k) { set_random(checked(k)); }
   void derive(int k, int of) { set_mutant(checked(k), checked(of)); }
+  void replace(double share) { replace_worst(probability(share)); }
+  void mutate_with(double p) { mutate(probability(p)); }
+  void cross_with(double p) { cross(probability(p)); }
   Routes routes(int k) const { return routes_of(problem_, member(checked(k))); }
   double weight(int k) const { return member(checked(k)).value().weight; }
   double objective(int k) const { return member(checked(k)).value().objective; }
@@ -36,24 +39,30 @@ class Evolving : public Population {
     return k;
   }
 
+  static double probability(double p) {
+    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a share or probability from 0 to 1");
+    return p;
+  }
+
   const Problem& problem_;
 };
 
 }  // namespace
 
 void bind_population(nb::module_& m) {
-  nb::class_<Evolving>(m, "Population", "Task allocations that evolve (TCF thesis, Algorithm 3).")
+  nb::class_<Evolving>(m, "Population",
+                       "Task allocations that evolve (TCF thesis, Algorithm 3). One thread at a time may use one.")
       .def(nb::init<const Problem&, int, std::uint64_t>(), "problem"_a, "size"_a, "seed"_a, nb::keep_alive<1, 2>(),
            "`size` empty allocations.")
       .def("__len__", &Evolving::size)
       .def("set_random", &Evolving::randomize, "member"_a, Unlocked(), "A random admissible allocation.")
       .def("set", &Evolving::set_routes, "member"_a, "routes"_a, "Raises ValueError if the routes are not admissible.")
       .def("set_mutant", &Evolving::derive, "member"_a, "of"_a, Unlocked(), "A mutant of another member.")
-      .def("replace_worst", &Evolving::replace_worst, "share"_a, Unlocked(),
+      .def("replace_worst", &Evolving::replace, "share"_a, Unlocked(),
            "Step 4: random admissible allocations for the worst share of the members.")
-      .def("mutate", &Evolving::mutate, "probability"_a, Unlocked(),
+      .def("mutate", &Evolving::mutate_with, "probability"_a, Unlocked(),
            "Step 5: task re-assignment (Algorithm 4); a mutant that is better stays.")
-      .def("cross", &Evolving::cross, "probability"_a, Unlocked(),
+      .def("cross", &Evolving::cross_with, "probability"_a, Unlocked(),
            "Step 6: CM-PMX (Algorithm 5); the two best of parents and children stay.")
       .def("best", &Evolving::best, "Index of the best member.")
       .def("routes", &Evolving::routes, "member"_a)

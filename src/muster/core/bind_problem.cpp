@@ -42,6 +42,11 @@ void bind_problem(nb::module_& m) {
              Numbers efficiency, Numbers available_from, Flags must_end, Numbers actuation_cost, Numbers duration,
              Numbers priority, Flags allowed, const std::vector<std::vector<int>>& prerequisites, Numbers entry,
              Numbers exit, Numbers table, Indices travel_class) {
+            const bool table_fits = table.size() == 0 || table.ndim() == 3;
+            if (allowed.ndim() != 2 || allowed.shape(0) != capacity.size() || entry.ndim() != 2 ||
+                entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
+              throw std::invalid_argument("an array has the wrong shape");
+            }
             ProblemData data;
             data.objective = objective_of(objective);
             data.usage_is_time = usage_is_time;

@@ -15,9 +15,7 @@ struct Value {
   double objective = 0.0;
 
   bool better_than(const Value& other) const {
-    constexpr double kNoise = 1e-12;
-    if (std::abs(weight - other.weight) > kNoise * (1.0 + weight)) return weight > other.weight;
-    return objective < other.objective - kNoise * (1.0 + std::abs(objective));
+    return weight != other.weight ? weight > other.weight : objective < other.objective;
   }
 };
 
@@ -41,7 +39,6 @@ class Draft {
 
   void clear();
   void insert(int task, int robot, int at);
-  void append(int task, int robot) { insert(task, robot, length(robot)); }
   void remove(int robot, int at);
   void swap(int robot, int at, int with);
   // All routes at once: tasks[k] goes to robots[k], in the order given.
@@ -79,11 +76,12 @@ class Evaluator {
   bool order(const Draft& draft);
   // The time at which the last task ends, waiting included; none if routes and prerequisites deadlock.
   std::optional<double> makespan(const Draft& draft);
+  // The problem's objective of a draft whose figures are those of its routes and that does not deadlock.
+  double objective(const Draft& draft);
 
  private:
   bool conclude(Draft& draft);
   bool prerequisites_done(const Draft& draft) const;
-  double objective(const Draft& draft);
 
   const Problem& problem_;
   std::vector<int> waiting_;   // what a task still waits for: prerequisites, and the task before it in its route

@@ -14,6 +14,7 @@ Greedy::Greedy(const Problem& problem, bool balanced)
       waiting_(problem.tasks()),
       place_in_list_(problem.tasks()),
       surroundings_(problem.classes()),
+      coefficients_(problem.classes()),
       preferred_(problem.robots()),
       stale_(problem.robots(), 1),
       usage_(problem.robots(), 0.0),
@@ -30,18 +31,28 @@ Greedy::Greedy(const Problem& problem, bool balanced)
   }
 }
 
+namespace {
+// A sum that subtraction has brought below this share of its first value is added up anew: what is left of it may be
+// rounding alone.
+constexpr double kRounding = 1e-6;
+}  // namespace
+
 std::optional<Matching> Greedy::select() {
   std::optional<Matching> chosen;
   double lowest = 0.0;
+  for (int c = 0; c < problem_.classes(); ++c) {
+    coefficients_[c].clear();
+    for (const int task : needed_ready_) coefficients_[c].push_back(dependency_coefficient(c, task));
+  }
   for (int robot = 0; robot < problem_.robots(); ++robot) {
+    if (balanced_ && chosen && usage_[robot] > lowest) continue;  // f is at least the usage
     if (stale_[robot]) {
       preferred_[robot] = plain_preference(robot);
       stale_[robot] = 0;
     }
     Preference best = preferred_[robot];
-    for (const int task : needed_ready_) {
-      consider(robot, task, dependency_coefficient(problem_.travel_class(robot), task), best);
-    }
+    const auto& coefficients = coefficients_[problem_.travel_class(robot)];
+    for (std::size_t k = 0; k < needed_ready_.size(); ++k) consider(robot, needed_ready_[k], coefficients[k], best);
     if (best.task == Draft::kNobody) continue;
     const double f = balanced_ ? best.cost + usage_[robot] : best.cost;
     if (!chosen || f < lowest || (f == lowest && best.task < chosen->task)) {
@@ -59,7 +70,7 @@ void Greedy::assign(int robot, int task) {
   if (allocated_[task]) throw std::invalid_argument("the task is allocated already");
   allocated_[task] = 1;
   --left_;
-  usage_[robot] += problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
+  usage_[robot] = problem_.on_to(robot, usage_[robot], position_[robot], task);
   position_[robot] = task;
   routes_[robot].push_back(task);
   stale_[robot] = 1;
@@ -73,8 +84,12 @@ void Greedy::assign(int robot, int task) {
     for (const int needed : needed_) {
       const double distance = problem_.distance(c, needed, task);
       if (!std::isfinite(distance)) continue;
-      surroundings_[c][needed].sum_to_others -= distance;
-      --surroundings_[c][needed].others;
+      Surroundings& around = surroundings_[c][needed];
+      around.sum_to_others -= distance;
+      --around.others;
+      if (around.sum_to_others != 0.0 && around.sum_to_others < kRounding * around.sum_at_first) {
+        around.sum_to_others = sum_to_others(c, needed);
+      }
     }
   }
   for (const int dependant : problem_.dependants(task)) {
@@ -111,7 +126,8 @@ void Greedy::consider(int robot, int task, double coefficient, Preference& best)
   const double cost = problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
   const double debit = coefficient * cost;
   if (!best.after(debit, task)) return;
-  if (!problem_.fits(robot, usage_[robot] + cost + problem_.end_usage(robot, task))) return;
+  const double usage = problem_.on_to(robot, usage_[robot], position_[robot], task);
+  if (!problem_.fits(robot, usage + problem_.end_usage(robot, task))) return;
   best = {debit, cost, task};
 }
 
@@ -128,12 +144,19 @@ void Greedy::survey(int task) {
     }
     if (reached) around.to_dependants /= reached;
     for (int other = 0; other < problem_.tasks(); ++other) {
-      const double distance = problem_.distance(c, task, other);
-      if (other == task || !std::isfinite(distance)) continue;
-      around.sum_to_others += distance;
-      ++around.others;
+      if (other != task && std::isfinite(problem_.distance(c, task, other))) ++around.others;
     }
+    around.sum_to_others = around.sum_at_first = sum_to_others(c, task);
   }
+}
+
+double Greedy::sum_to_others(int travel_class, int task) const {
+  double sum = 0.0;
+  for (int other = 0; other < problem_.tasks(); ++other) {
+    const double distance = problem_.distance(travel_class, task, other);
+    if (other != task && !allocated_[other] && std::isfinite(distance)) sum += distance;
+  }
+  return sum;
 }
 
 // Kp of (3.20), with N_T the number of tasks not yet allocated.

@@ -26,7 +26,7 @@ class Greedy {
 
   // Steps 2 to 5: the locally optimal admissible matching; none if no robot can do any of the tasks left.
   std::optional<Matching> select();
-  // Steps 6 to 8: append the task to the robot's route and go there.
+  // Steps 6 to 8: append the task to the robot's route and go there. A start plan may append in any order.
   void assign(int robot, int task);
 
   const std::vector<std::vector<int>>& routes() const { return routes_; }
@@ -42,10 +42,11 @@ class Greedy {
     }
   };
   // Distances from a task with dependants, for one travel class: their mean to its dependants, and the sum and number
-  // of those to the other tasks left.
+  // of those to the other tasks left. Tasks to which there is no way are left out of both.
   struct Surroundings {
     double to_dependants = 0.0;
     double sum_to_others = 0.0;
+    double sum_at_first = 0.0;
     int others = 0;
   };
 
@@ -54,6 +55,7 @@ class Greedy {
   void survey(int task);
   Preference plain_preference(int robot) const;
   void consider(int robot, int task, double coefficient, Preference& best) const;
+  double sum_to_others(int travel_class, int task) const;
   double dependency_coefficient(int travel_class, int task) const;
 
   const Problem& problem_;
@@ -66,6 +68,7 @@ class Greedy {
   std::vector<int> needed_;        // all tasks left with dependants
   std::vector<int> place_in_list_;
   std::vector<std::vector<Surroundings>> surroundings_;  // by travel class and task
+  std::vector<std::vector<double>> coefficients_;        // Kp by travel class, in the order of needed_ready_
   std::vector<Preference> preferred_;                    // each robot's best plain task
   std::vector<char> stale_;                              // whether it must be found anew
   std::vector<int> position_;

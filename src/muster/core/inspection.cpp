@@ -1,7 +1,6 @@
 #include "inspection.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "operators.hpp"
@@ -13,7 +12,9 @@ Inspection::Inspection(const Problem& problem, const Routes& routes)
       evaluator_(problem),
       draft_(draft_from(problem, routes)),
       admissible_(evaluator_.evaluate(draft_)),
-      makespan_(evaluator_.makespan(draft_)) {}
+      makespan_(evaluator_.makespan(draft_)) {
+  if (makespan_) objective_ = evaluator_.objective(draft_);
+}
 
 std::vector<double> Inspection::usages() const {
   std::vector<double> usages;
@@ -29,15 +30,15 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
   std::vector<Insertion> places;
   const Window allowed = window(problem_, draft_.route(robot), task);
   for (int at = allowed.earliest; at <= allowed.latest; ++at) {
-    const double usage = draft_.figures(robot).usage + growth(robot, task, at);
-    if (std::isfinite(usage)) places.push_back({at, usage});
+    places.push_back({at, draft_.figures(robot).usage + growth(robot, task, at)});
   }
   std::ranges::stable_sort(places, {}, &Insertion::usage);
   for (const Insertion& place : places) {
     if (!problem_.has_prerequisites()) return place;
-    Draft trial = draft_;
-    trial.insert(task, robot, place.at);
-    if (evaluator_.order(trial)) return place;
+    draft_.insert(task, robot, place.at);
+    const bool ordered = evaluator_.order(draft_);
+    draft_.remove(robot, place.at);
+    if (ordered) return place;
   }
   return std::nullopt;
 }

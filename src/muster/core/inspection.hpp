@@ -19,7 +19,8 @@ class Inspection {
   Inspection(const Problem& problem, const Routes& routes);
 
   bool admissible() const { return admissible_; }
-  double objective() const { return draft_.value().objective; }
+  // Of the routes as they are, whatever the capacities; none if they deadlock.
+  std::optional<double> objective() const { return objective_; }
   std::vector<double> usages() const;
   std::optional<double> makespan() const { return makespan_; }
   std::optional<Insertion> cheapest_insertion(int robot, int task);
@@ -33,6 +34,7 @@ class Inspection {
   Draft draft_;
   bool admissible_;
   std::optional<double> makespan_;
+  std::optional<double> objective_;
 };
 
 }  // namespace muster

@@ -41,7 +41,7 @@ void RandomAllocation::operator()(Random& random, Draft& draft) {
     if (robot == Draft::kNobody) continue;
     tasks_.push_back(task);
     robots_.push_back(robot);
-    usage_[robot] += problem_.travel_usage(robot, place_[robot], task) + problem_.work_usage(robot, task);
+    usage_[robot] = problem_.on_to(robot, usage_[robot], place_[robot], task);
     place_[robot] = task;
     for (const int dependant : problem_.dependants(task)) {
       if (--waiting_[dependant] == 0) ready_.push_back(dependant);
@@ -56,8 +56,8 @@ int RandomAllocation::pick_robot(Random& random, int task) const {
   const int from = count > 1 ? random.below(count) : 0;
   for (int k = 0; k < count; ++k) {
     const int robot = allowed[(from + k) % count];
-    const double leg = problem_.travel_usage(robot, place_[robot], task) + problem_.work_usage(robot, task);
-    if (problem_.fits(robot, usage_[robot] + leg + problem_.end_usage(robot, task))) return robot;
+    const double usage = problem_.on_to(robot, usage_[robot], place_[robot], task);
+    if (problem_.fits(robot, usage + problem_.end_usage(robot, task))) return robot;
   }
   return Draft::kNobody;
 }

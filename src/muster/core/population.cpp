@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -14,10 +15,9 @@ Population::Population(const Problem& problem, int size, std::uint64_t seed)
       evaluator_(problem),
       random_allocation_(problem),
       crossover_(problem),
-      ranking_(size),
+      ranking_(size < 1 ? throw std::invalid_argument("a population needs a member") : size),
       first_child_(problem),
       second_child_(problem) {
-  if (size < 1) throw std::invalid_argument("a population needs a member");
   members_.assign(size, Draft(problem));
   for (int k = 0; k < size; ++k) evaluator_.evaluate(members_[k]);
 }
@@ -32,6 +32,8 @@ int Population::best() const {
 
 void Population::set_random(int k) {
   random_allocation_(random_, members_[k]);
+  if (evaluator_.evaluate(members_[k])) return;
+  members_[k].clear();
   evaluator_.evaluate(members_[k]);
 }
 
@@ -59,7 +61,7 @@ void Population::replace_worst(double share) {
   std::iota(ranking_.begin(), ranking_.end(), 0);
   std::ranges::stable_sort(ranking_,
                            [this](int a, int b) { return members_[b].value().better_than(members_[a].value()); });
-  const int replaced = static_cast<int>(share * size());
+  const int replaced = static_cast<int>(std::floor(share * size() + 1e-9));
   for (int n = 0; n < replaced; ++n) set_random(ranking_[n]);
 }
 

@@ -98,7 +98,18 @@ class Problem {
   // What the way from a place to the robot's end adds; 0 where the route may end anywhere.
   double end_usage(int robot, int from) const { return must_end(robot) ? travel_usage(robot, from, end(robot)) : 0.0; }
 
-  bool fits(int robot, double usage) const { return std::isfinite(usage) && usage <= capacity(robot); }
+  // The usage after going on to a task and doing it. The additions are those of `walk`, in its order, so that the two
+  // never disagree.
+  double on_to(int robot, double usage, int from, int task) const {
+    return usage + travel_usage(robot, from, task) + work_usage(robot, task);
+  }
+
+  // Whether a usage is within the robot's capacity. One that fills it exactly may come out above it by the rounding of
+  // sums, for which there is room.
+  bool fits(int robot, double usage) const {
+    constexpr double kRounding = 1e-12;
+    return std::isfinite(usage) && usage <= capacity(robot) * (1.0 + kRounding);
+  }
 
   RouteFigures walk(int robot, std::span<const int> route) const;
 

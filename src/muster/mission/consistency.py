@@ -55,10 +55,11 @@ def _all_robots(mission: Mission) -> list[tuple[Path, Robot]]:
 
 def _prerequisites(mission: Mission) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
-    later = [t.id for _, t in _new_tasks(mission)]
+    with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
+    own, all_of_them = set(ids), set(with_new)
     for path, task in _all_tasks(mission):
-        known = ids if path[0] == "tasks" else [*ids, *later]
-        among, seen = set(known), set[str]()
+        known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
+        seen: set[str] = set()
         for p, name in enumerate(task.prerequisites):
             at: Path = (*path, "prerequisites", p)
             if name not in among:
@@ -69,10 +70,15 @@ def _prerequisites(mission: Mission) -> Iterator[Fault]:
 
 
 def _cycles(mission: Mission) -> Iterator[Fault]:
-    """One cycle for each knot of prerequisites, named in the order in which the tasks wait."""
+    """One cycle of each knot of prerequisites, named in the order in which the tasks wait.
+
+    Not all: there can be more than anyone could read, and the others go when one task of theirs is set right, or are
+    found when it was.
+    """
     index = {t.id: k for k, t in reversed(list(enumerate(mission.tasks)))}
     before = [[index[name] for name in task.prerequisites if name in index] for task in mission.tasks]
     state = [0] * len(before)  # 0: not visited, 1: on the way, 2: done
+    named: set[int] = set()
     for start in range(len(before)):
         way, steps = [start], [iter(before[start])] if state[start] == 0 else []
         while steps:
@@ -82,7 +88,10 @@ def _cycles(mission: Mission) -> Iterator[Fault]:
                 state[way.pop()] = 2
                 steps.pop()
             elif state[following] == 1:
-                yield _cycle(mission.tasks, way[way.index(following) :])
+                knot = way[way.index(following) :]
+                if named.isdisjoint(knot):
+                    yield _cycle(mission.tasks, knot)
+                named.update(knot)
             elif state[following] == 0:
                 way.append(following)
                 steps.append(iter(before[following]))

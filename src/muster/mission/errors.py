@@ -40,7 +40,8 @@ class Finding:
 
     def __str__(self) -> str:
         subject = f"{self.field}: " if self.field else ""
-        return f"{self.place}: {subject}{self.value}; expected {self.expected}"
+        text = f"{self.place}: {subject}{self.value}; expected {self.expected}"
+        return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
     def as_dict(self) -> dict[str, str | int | None]:
         return asdict(self)

@@ -12,6 +12,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
+from numbers import Real
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 Path = tuple[str | int, ...]
@@ -117,7 +118,7 @@ class Number:
         return ", ".join(["a finite number", *filter(None, [" and ".join(bounds)])])
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if isinstance(value, bool) or not isinstance(value, int | float | Real):
             return _refuse(self, value, at, faults)
         try:
             number = float(value)
@@ -186,7 +187,7 @@ class Text:
     expected: ClassVar[str] = "a text of one line"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 10**18:
+        if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 10**300:
             return str(value)
         if isinstance(value, str) and value.strip() and value.isprintable():
             return value
@@ -236,6 +237,7 @@ class Position:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         lengths = (2,) if self.planar else (2, 3)
+        value = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) not in lengths:
             return _refuse(self, value, at, faults)
         numbers = [Number().read(number, (*at, k), faults) for k, number in enumerate(value)]
@@ -284,8 +286,10 @@ class Table:
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if not isinstance(value, Mapping) or not value:
             return _refuse(self, value, at, faults)
-        items = {str(key): self.kind.read(item, (*at, str(key)), faults) for key, item in value.items()}
-        return INVALID if any(item is INVALID for item in items.values()) else items
+        names = [Text().read(key, (*at, str(key)), faults) for key in value]
+        items = [self.kind.read(item, (*at, str(key)), faults) for key, item in value.items()]
+        wrong = any(part is INVALID for part in (*names, *items))
+        return INVALID if wrong else dict(zip(names, items, strict=True))
 
     def schema(self) -> JsonSchema:
         return {"type": "object", "additionalProperties": self.kind.schema(), "minProperties": 1}

@@ -74,7 +74,9 @@ class Plan:
 
     @property
     def complete(self) -> bool:
-        """Whether no task is left out."""
+        """Whether no task is left out, by the plan's own figures where it states them."""
+        if self.tasks_completed is not None and self.tasks_total is not None:
+            return self.tasks_completed == self.tasks_total
         return not self.unassigned
 
     def as_dict(self) -> dict[str, Any]:

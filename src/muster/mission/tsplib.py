@@ -55,6 +55,7 @@ def _parts(path: FilePath) -> tuple[dict[str, tuple[int, str]], list[tuple[int, 
     """The head (keyword to line and value) and the nodes (line, number, coordinates)."""
     head: dict[str, tuple[int, str]] = {}
     nodes: list[tuple[int, str, list[object]]] = []
+    seen: set[str] = set()
     in_nodes = False
     for line, text in enumerate(read_text(path).splitlines(), 1):
         words = text.split()
@@ -64,8 +65,9 @@ def _parts(path: FilePath) -> tuple[dict[str, tuple[int, str]], list[tuple[int, 
             x_y = [number(word) for word in words[1:]]
             if len(x_y) != 2 or not all(isinstance(value, float) and math.isfinite(value) for value in x_y):
                 raise _refusal(path, line, shown(text.strip()), "number, x, y")
-            if any(words[0] == node for _, node, _ in nodes):
+            if words[0] in seen:
                 raise _refusal(path, line, f"node {words[0]} for the second time", "each node once")
+            seen.add(words[0])
             nodes.append((line, words[0], x_y))
         elif words == ["NODE_COORD_SECTION"]:
             in_nodes = True
