@@ -17,6 +17,7 @@ from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
 from muster.mission.text_files import read_text
 
+_MOST_SALESMEN = 100_000
 _NEEDED = {"TYPE": "TSP", "EDGE_WEIGHT_TYPE": "EUC_2D"}
 
 
@@ -34,8 +35,8 @@ def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
     found = _head_findings(path, head, len(nodes))
     if nodes and depot not in [node for _, node, _ in nodes]:
         found.append(Finding(str(path), None, "depot", shown(depot), "the number of a node"))
-    if salesmen < 1:
-        found.append(Finding(str(path), None, "salesmen", str(salesmen), "a whole number of at least 1"))
+    if not 1 <= salesmen <= _MOST_SALESMEN:
+        found.append(Finding(str(path), None, "salesmen", str(salesmen), f"a whole number from 1 to {_MOST_SALESMEN}"))
     if found:
         raise MissionError(found)
     start = next(position for _, node, position in nodes if node == depot)
