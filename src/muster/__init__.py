@@ -7,8 +7,6 @@ plan = muster.solve(mission, time_limit=1.0)
 assert muster.verify(mission, plan).valid
 """
 
-from importlib.metadata import version
-
 from muster._api import load, plot, solve, verify
 from muster.mission.errors import (
     Finding,
@@ -22,8 +20,6 @@ from muster.mission.errors import (
 )
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route, read_plan
-
-__version__ = version("muster-robotics")
 
 __all__ = [
     "Finding",
@@ -40,10 +36,17 @@ __all__ = [
     "Route",
     "Rules",
     "Task",
-    "__version__",
     "load",
     "plot",
     "read_plan",
     "solve",
     "verify",
 ]
+
+
+def __getattr__(name: str) -> str:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("muster-robotics")
+    raise AttributeError(f"module 'muster' has no attribute {name!r}")

@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import select
 import signal
 import subprocess
@@ -718,3 +719,31 @@ def test_ctrl_c_keeps_the_best_plan_so_far(form, muster):
     assert (out == Path("plan.json").read_text(encoding="utf-8")) == (form == "json")
     assert muster("verify", "eil51-5", "plan.json")[0] == 0
     assert read_plan("plan.json").tasks_completed == 50
+
+
+def test_outputs_never_replace_inputs_or_each_other(muster):
+    text = Path("yard.yaml").read_text()
+    code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "-o", "./yard.yaml")
+    assert (code, out) == (2, "")
+    assert err.startswith("yard.yaml: given twice")
+    assert Path("yard.yaml").read_text() == text
+    code, _, err = muster("solve", "yard.yaml", "-a", "greedy", "--plot", "x.png", "--gantt", "x.png")
+    assert code == 2
+    assert err.startswith("x.png: given twice")
+
+
+def test_names_are_text_and_not_markup(muster):
+    text = Path("yard.yaml").read_text()
+    Path("odd.yaml").write_text(
+        re.sub(r"name: .*", 'name: "x [/x] [m]"', text) if "name:" in text else f'name: "x [/x] [m]"\n{text}'
+    )
+    code, out, _ = muster("solve", "odd.yaml", "-a", "greedy")
+    assert code == 0
+    assert "x [/x] [m]: greedy" in out
+    assert "usage [m]" in out
+
+
+def test_a_time_limit_does_not_cut_greedy_short(muster):
+    code, out, _ = muster("solve", "eil51-5", "--time-limit", "0", "--format", "json")
+    assert code == 0
+    assert json.loads(out)["tasks_completed"] == 50

@@ -24,7 +24,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     for robot, route in enumerate(start or ()):
         for task in route:
             greedy.assign(robot, task)
-    while not stop.due():
+    while not stop.interrupted:  # a time limit is for what comes after: half a greedy plan is of no use
         matching = greedy.select()  # steps 2 to 5
         if matching is None:
             break

@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from io import TextIOWrapper
 from typing import Any
 
 import click
@@ -75,18 +76,21 @@ def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
         ctx.exit()
 
 
-@click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+_HELP = """Plan missions of robot teams: who does what, in which order.
+
+A MISSION is a file (mission YAML, a task-list CSV, TSPLIB) or the name of a mission that comes with Muster:
+
+\b
+  muster solve 31T-6R50 --plot plan.png
+"""
+
+
+@click.group(cls=_Verbs, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
     "--version", is_flag=True, expose_value=False, is_eager=True, callback=_print_version, help="Print the version."
 )
 def muster() -> None:
-    r"""Plan missions of robot teams: who does what, in which order.
-
-    A MISSION is a file (mission YAML, a task-list CSV, TSPLIB) or the name of a mission that comes with Muster:
-
-    \b
-      muster solve 31T-6R50 --plot plan.png
-    """
+    """Plan missions of robot teams."""
 
 
 def main() -> None:
@@ -96,6 +100,9 @@ def main() -> None:
 
 def run(arguments: list[str]) -> int:
     """Run the command; returns the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a character that the terminal lacks is no reason to stop
+            stream.reconfigure(errors="backslashreplace")
     try:
         result = muster.main(arguments, prog_name="muster", standalone_mode=False)
         sys.stdout.flush()

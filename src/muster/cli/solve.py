@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -100,7 +101,7 @@ def command(
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
-    _require_writable(output, plot, gantt)
+    _require_writable((output, plot, gantt), (mission, robots, suitability))
     _require_drawable(plot, gantt)
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, _settings(settings))
@@ -151,11 +152,19 @@ def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
     return values
 
 
-def _require_writable(*files: Path | None) -> None:
-    """Find out before a long search, not after it, that its result cannot be written."""
-    for file in files:
-        if file is not None and (file.is_dir() or not file.parent.is_dir()):
+def _require_writable(outputs: tuple[Path | None, ...], inputs: tuple[str | Path | None, ...]) -> None:
+    """Find out before a long search, not after it, that its result cannot be written or would replace something."""
+    taken = {Path(name).resolve() for name in inputs if name is not None and Path(name).is_file()}
+    for file in outputs:
+        if file is None:
+            continue
+        if file.resolve() in taken:
+            raise ParameterError(f"{file}: given twice; expected a file that is neither read nor written otherwise")
+        taken.add(file.resolve())
+        if file.is_dir() or not file.parent.is_dir():
             raise ParameterError(f"{file}: cannot be written; expected a file in a folder that exists")
+        if not os.access(file if file.exists() else file.parent, os.W_OK):
+            raise ParameterError(f"{file}: cannot be written; expected a place with permission to write")
 
 
 def _require_drawable(*files: Path | None) -> None:
