@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.kinds import did_you_mean, shown
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
@@ -127,6 +127,8 @@ def solve(
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
 
+    _require_mission(mission)
+    ignore = (ignore,) if isinstance(ignore, str) else ignore
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
     problem = Problem.compile(mission, objective, ignore).ready()
@@ -139,7 +141,15 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
     """Judge a plan from scratch, by code that no allocator uses."""
     from muster.verification import verify as judge
 
+    _require_mission(mission)
     return judge(mission, plan)
+
+
+def _require_mission(mission: object) -> None:
+    if not isinstance(mission, Mission):
+        raise ParameterError(
+            f"mission: {shown(mission)}; expected a Mission: muster.load makes one from a file or name"
+        )
 
 
 def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:

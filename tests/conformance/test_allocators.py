@@ -141,3 +141,30 @@ def test_progress_is_reported_and_leaves_signals_alone():
     assert seen[-1].weight == 50
     assert [p.objective for p in seen] == sorted((p.objective for p in seen), reverse=True)
     assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"allocator": "gredy"}, "did you mean 'greedy'"),
+        ({"allocator": None}, "allocator"),
+        ({"time_limit": -1}, "time_limit"),
+        ({"time_limit": float("nan")}, "time_limit"),
+        ({"time_limit": "1"}, "time_limit"),
+        ({"iterations": -1}, "iterations"),
+        ({"iterations": 1.5}, "iterations"),
+        ({"objective": "least"}, "objective"),
+        ({"ignore": ("skill",)}, "ignore"),
+        ({"ignore": "skill"}, 'ignore: "skill"'),
+        ({"population_size": 0}, "population_size"),
+        ({"popsize": 3}, "has no parameter popsize"),
+    ],
+)
+def test_wrong_parameters_are_refused_in_words(arguments, message):
+    with pytest.raises(muster.ParameterError, match=message):
+        muster.solve(muster.load("6T-2R"), **arguments)
+
+
+def test_a_name_is_no_mission():
+    with pytest.raises(muster.ParameterError, match=r"muster\.load"):
+        muster.solve("6T-2R")

@@ -28,6 +28,6 @@ def allocator_named(name: str) -> Allocator:
         if there is none.
     """
     if name not in ALLOCATORS:
-        hint = did_you_mean(name, ALLOCATORS)
+        hint = did_you_mean(str(name), ALLOCATORS)
         raise ParameterError(f"allocator: {name}; expected {', '.join(ALLOCATORS)}{hint}")
     return ALLOCATORS[name]

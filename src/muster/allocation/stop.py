@@ -49,10 +49,10 @@ class Stop:
         clock: Clock | None = None,
         on_progress: Callable[[Progress], None] | None = None,
     ) -> None:
-        if iterations is not None and iterations < 0:
+        if iterations is not None and not (isinstance(iterations, int) and iterations >= 0):
             raise ParameterError(f"iterations: {iterations}; expected a whole number of at least 0")
-        if time_limit is not None and not time_limit >= 0:
-            raise ParameterError(f"time_limit: {time_limit:g}; expected seconds, at least 0")
+        if time_limit is not None and not (isinstance(time_limit, int | float) and time_limit >= 0):
+            raise ParameterError(f"time_limit: {time_limit}; expected seconds, at least 0")
         self._iterations = iterations
         self._time_limit = time_limit
         self._clock = clock or SystemClock()
