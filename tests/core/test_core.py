@@ -10,7 +10,7 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation.allocator import finished_plan, routes_of
+from muster.allocation.allocator import Outcome, finished_plan, routes_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.plan import Plan, Route
@@ -130,7 +130,7 @@ def test_evaluation_agrees_with_the_judge_on_any_routes(seed, order):
     assert inspection.usages == pytest.approx([usage[robot.id] for robot in problem.robots])
     if verdict.valid:
         assert inspection.objective == pytest.approx(verdict.value())
-        plan = finished_plan(problem, Stop(), routes, allocator="test", seed=0)
+        plan = finished_plan(problem, Stop(), Outcome(routes), allocator="test", seed=0)
         assert muster.verify(problem.mission, plan).valid
 
 

@@ -10,6 +10,7 @@ from muster import core
 from muster.allocation.explanations import unassigned
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.mission.book import Book
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import did_you_mean
 from muster.mission.plan import Plan, Route
@@ -18,10 +19,18 @@ Routes = list[list[int]]
 _MOST = 1_000_000  # of anything that a parameter counts
 
 
+@dataclass(frozen=True)
+class Outcome:
+    """What an algorithm arrives at; an auction has a book."""
+
+    routes: Routes
+    book: Book | None = None
+
+
 class Algorithm(Protocol):
     """The part of an allocator that differs: routes for a problem, from the routes of a start plan if there is one."""
 
-    def __call__(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Routes: ...
+    def __call__(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Outcome: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,8 +60,8 @@ class Allocator:
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
         routes = None if start is None else admissible_routes(problem, start)
-        routes = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
-        return finished_plan(problem, stop, routes, allocator=self.name, seed=seed)
+        outcome = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
+        return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
 
 
 def routes_of(problem: Problem, plan: Plan) -> Routes:
@@ -100,10 +109,10 @@ def admissible_routes(problem: Problem, plan: Plan) -> Routes:
     return routes
 
 
-def finished_plan(problem: Problem, stop: Stop, routes: Sequence[Sequence[int]], *, allocator: str, seed: int) -> Plan:
+def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: str, seed: int) -> Plan:
     """The plan with these routes, its figures, and the reasons for the tasks left out."""
     elapsed = stop.elapsed_s
-    lists = [list(route) for route in routes]
+    lists = [list(route) for route in outcome.routes]
     inspection = core.Inspection(problem.core, lists)
     usages = inspection.usages
     mission = problem.mission
@@ -131,6 +140,7 @@ def finished_plan(problem: Problem, stop: Stop, routes: Sequence[Sequence[int]],
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
         unassigned=unassigned(problem, lists),
         history=tuple(stop.history),
+        book=outcome.book,
     )
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster import core
-from muster.allocation.allocator import Allocator, Routes
+from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -45,9 +45,9 @@ class Parameters:
             raise ParameterError(f"start_mutants: {self.start_mutants}; expected a whole number of at least 0")
 
 
-def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 3, from a random population; a start plan and mutants of it become members of it (Algorithm 7)."""
-    return evolve(first_population(problem, seed, params, start), stop, params)
+    return Outcome(evolve(first_population(problem, seed, params, start), stop, params))
 
 
 def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> core.Population:

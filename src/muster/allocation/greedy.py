@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster import core
-from muster.allocation.allocator import Allocator, Routes
+from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 
@@ -18,7 +18,7 @@ class Parameters:
     """Greedy task allocation has none."""
 
 
-def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 1; with a start plan it goes on from its routes. With the objective `total`: MinCost (3.27)."""
     greedy = core.Greedy(problem.core, balanced=problem.objective != "total")
     for robot, route in enumerate(start or ()):
@@ -30,7 +30,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
             break
         greedy.assign(matching.robot, matching.task)  # steps 6 to 8
     stop.improved(*problem.value(greedy.routes))
-    return greedy.routes
+    return Outcome(greedy.routes)
 
 
 GREEDY = Allocator(

@@ -6,15 +6,15 @@ TCF thesis, section 3.2.2, Algorithm 6: hill climbing from the greedy plan.
 from __future__ import annotations
 
 from muster.allocation import greedy
-from muster.allocation.allocator import Allocator, Routes
+from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.hill_climbing import Parameters, climb
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 
 
-def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 6."""
-    first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start)  # 1
+    first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start).routes  # 1
     return climb(problem, stop, seed, params, first)  # 2
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster import core
-from muster.allocation.allocator import Allocator, Routes
+from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.genetic import Best
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -19,7 +19,7 @@ class Parameters:
     """Hill climbing has none."""
 
 
-def climb(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Routes:
+def climb(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 2: a population of one, where every iteration is one mutation; from a random plan or from `start`."""
     climber = core.Population(problem.core, 1, seed)
     if start is None:
@@ -31,7 +31,7 @@ def climb(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Ro
     for _ in stop.iterations():
         climber.mutate(1.0)  # 2 and 3
         best.note(climber)
-    return best.routes
+    return Outcome(best.routes)
 
 
 HILL_CLIMBING = Allocator(

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from muster.mission.book import Award, Book
 from muster.mission.errors import Finding, MissionError, PlanError
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES
@@ -71,6 +72,7 @@ class Plan:
     routes: tuple[Route, ...]
     unassigned: tuple[Unassigned, ...] = ()
     history: tuple[tuple[float, float], ...] = ()
+    book: Book | None = None  # of an auction
 
     @property
     def complete(self) -> bool:
@@ -82,11 +84,14 @@ class Plan:
     def as_dict(self) -> dict[str, Any]:
         """The plan as its file holds it."""
         data: dict[str, Any] = {"schema": PLAN_SCHEMA}
-        for name, value in asdict(self).items():
+        for name, value in asdict(replace(self, book=None)).items():
             if name == "objective":
                 data["objective"] = {"name": self.objective, "value": self.objective_value}
-            elif name != "objective_value":
+            elif name not in ("objective_value", "book"):
                 data[name] = value
+        if self.book is not None:
+            data |= {"rounds": self.book.rounds, "messages": self.book.messages}
+            data["book"] = [award.as_dict() for award in self.book.awards]
         return data
 
     def text(self) -> str:
@@ -183,6 +188,7 @@ class _Reading:
             routes=self._routes(data),
             unassigned=self._unassigned(data),
             history=self._history(data),
+            book=self._book(data),
             **{name: self._number(data, name) for name in figures},
         )
         if self._found:
@@ -257,6 +263,31 @@ class _Reading:
             self._refuse("history", history, "a list of [seconds, objective]")
             return ()
         return tuple((float(seconds), float(value)) for seconds, value in history)
+
+    def _book(self, data: Mapping[str, Any]) -> Book | None:
+        if data.get("book") is None:
+            return None
+        awards = self._given(data, "book", list, [])
+        for k, award in enumerate(awards):
+            if not _is_award(award):
+                expected = "a mapping with round, task, robot, price, bids (robot: bid) and bidders"
+                self._refuse(f"book[{k}]", award, expected)
+                return None
+        return Book(
+            rounds=self._given(data, "rounds", int, 0),
+            messages=self._given(data, "messages", int),
+            awards=tuple(Award(**award | {"bids": tuple(award["bids"].items())}) for award in awards),
+        )
+
+
+def _is_award(value: object) -> bool:
+    kinds = {"round": int, "task": str, "robot": str, "price": int | float, "bids": dict, "bidders": int}
+    return (
+        isinstance(value, dict)
+        and value.keys() == kinds.keys()
+        and all(isinstance(value[name], kind) for name, kind in kinds.items())
+        and all(map(_finite, (value["price"], *value["bids"].values())))
+    )
 
 
 def _finite(value: object) -> bool:

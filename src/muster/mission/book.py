@@ -1,0 +1,98 @@
+"""The book of an auction: what was bid for which task, who won it, and for how much. Immutable."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+COLUMNS = ("round", "task", "robot", "bid", "winner", "price")
+MOST_BIDS_OF_AN_AWARD = 10
+"""Bids that an award names; `Book.save` writes all."""
+
+
+@dataclass(frozen=True)
+class Award:
+    """How a task of the plan came to its robot.
+
+    `bids` are (robot, bid) of the robots that bid for the task in that round, the best first and at most
+    MOST_BIDS_OF_AN_AWARD of them; `bidders` is the number of all.
+    """
+
+    round: int
+    task: str
+    robot: str
+    price: float
+    bids: tuple[tuple[str, float], ...]
+    bidders: int
+
+    @classmethod
+    def of(cls, number: int, task: str, robot: str, price: float, bids: Sequence[tuple[str, float]]) -> Award:
+        """An award, from all bids for the task, the best first."""
+        return cls(number, task, robot, price, tuple(bids[:MOST_BIDS_OF_AN_AWARD]), len(bids))
+
+    def as_dict(self) -> dict[str, Any]:
+        head = {"round": self.round, "task": self.task, "robot": self.robot, "price": self.price}
+        return {**head, "bids": dict(self.bids), "bidders": self.bidders}
+
+
+@dataclass(frozen=True)
+class Bid:
+    """One bid; `winner` and `price` are those of its task if the task was won in this round, else None."""
+
+    round: int
+    task: str
+    robot: str
+    bid: float
+    winner: str | None
+    price: float | None
+
+
+TakeBid = Callable[[Bid], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Book:
+    """What an auction leaves behind besides its plan.
+
+    `awards` holds the tasks of the plan, in the order in which they were won for good. `messages` is None where nothing
+    is sent. `recite` tells every bid of the auction in order; None in a book that was read from a plan file.
+    """
+
+    rounds: int
+    messages: int | None = None
+    awards: tuple[Award, ...]
+    recite: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def bids(self) -> tuple[Bid, ...]:
+        """Every bid. Of a large auction there are many: `save` keeps none of them in memory."""
+        bids: list[Bid] = []
+        self._recite(bids.append)
+        return tuple(bids)
+
+    def award_of(self, task: str) -> Award | None:
+        """How this task came to its robot; None if the plan leaves it out."""
+        return next((award for award in self.awards if award.task == task), None)
+
+    def save(self, path: str | Path) -> None:
+        """Write every bid as CSV, a line each, with the columns COLUMNS."""
+        with Path(path).open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(COLUMNS)
+
+            def write(bid: Bid) -> None:
+                writer.writerow((bid.round, bid.task, bid.robot, bid.bid, bid.winner or "", _text(bid.price)))
+
+            self._recite(write)
+
+    def _recite(self, take: TakeBid) -> None:
+        if self.recite is None:
+            raise ValueError("a plan file holds the awards, not every bid")
+        self.recite(take)
+
+
+def _text(price: float | None) -> str:
+    return "" if price is None else repr(price)
