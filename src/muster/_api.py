@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.kinds import did_you_mean, shown
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import shown
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 

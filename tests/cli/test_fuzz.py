@@ -6,6 +6,7 @@ In-process, with warnings as errors: a warning of NumPy on standard error is not
 import io
 import json
 import math
+import re
 from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
@@ -85,6 +86,11 @@ def muster(*arguments):
 def is_a_message(err):
     """Every line tells a place and what was expected; none is from the inside of the program."""
     return err != "" and "Traceback" not in err and "internal error" not in err and "Warning" not in err
+
+
+def only_warns(err):
+    """Nothing is said but that the plan names another mission."""
+    return all(re.match(r"warning: \S+: mission: .*; expected ", line) for line in err.splitlines())
 
 
 def survives(folder, *arguments):
@@ -342,7 +348,7 @@ def judged(folder, mission, plan):
     """Verify, explain and go on from a plan that may be broken in any way."""
     code, out, err = muster("verify", mission, plan)
     assert code in (0, 1, 2)
-    assert (is_a_message(err) and out == "") if code == 2 else err == ""
+    assert (is_a_message(err) and out == "") if code == 2 else only_warns(err)
     json_code, out, err = muster("verify", mission, plan, "--format", "json")
     assert json_code == code
     assert code == 2 or json.loads(out)["valid"] is (code == 0)
@@ -350,7 +356,7 @@ def judged(folder, mission, plan):
         for task in ((), ("--task", "3")):
             code, out, err = muster("explain", mission, plan, "--format", form, *task)
             assert code in (0, 2)
-            assert is_a_message(err) if code == 2 else err == ""
+            assert is_a_message(err) if code == 2 else only_warns(err)
     code, out, err = muster("solve", mission, "--start", plan, "--iterations", 2, "--format", "json")
     assert code in (0, 2)
     if code == 2:

@@ -8,6 +8,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Action, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan, Route
 from muster.verification import Verdict, verify
+from muster.verification.measure import equality_index
 
 
 def judge(mission: Mission, objective: str | None = None, **routes: list[str]) -> Verdict:
@@ -205,11 +206,14 @@ def line_of_robots(*usages: float) -> Verdict:
         ((0, 5, 0, 0), 1 / 4),
         ((1, 3), 1 - (2 * (1 * 1 + 2 * 3) / (2 * 4) - 3 / 2)),
         ((3, 1), 0.75),
-        ((2.5e307, 2.5e307, 2.5e307), 1),  # rank times usage would overflow
     ],
 )
 def test_equality_index(usages, index):
     assert line_of_robots(*usages).equality_index == pytest.approx(index, abs=1e-12)
+
+
+def test_equality_index_where_rank_times_usage_would_overflow():
+    assert equality_index([1.2e308, 2.5e307, 2.5e307]) == pytest.approx(equality_index([120, 25, 25]), abs=1e-12)
 
 
 @pytest.mark.parametrize(

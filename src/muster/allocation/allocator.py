@@ -12,7 +12,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.book import Book
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import shown
 from muster.mission.plan import Plan, Route
 
 Routes = list[list[int]]
@@ -38,7 +39,7 @@ class Allocator:
     """An algorithm that turns a problem into a plan.
 
     `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
-    itself when made and has the published defaults.
+    itself when made and has the published defaults. `auctions` tells whether its plans have a book.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Allocator:
     anytime: bool
     parameters: type[Any]
     algorithm: Algorithm
+    auctions: bool = False
 
     def solve(
         self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
@@ -167,9 +169,14 @@ def make_parameters(allocator: Allocator, values: dict[str, Any]) -> Any:
             hint = did_you_mean(name, known) or f"; it has {', '.join(known) or 'none'}"
             raise ParameterError(f"{allocator.name} has no parameter {name}{hint}")
     for f in fields(allocator.parameters):
-        value = values.get(f.name, f.default)
-        if isinstance(f.default, int) and not isinstance(value, int):
-            raise ParameterError(f"{f.name}: {value}; expected a whole number")
-        if isinstance(f.default, int) and value > _MOST:
-            raise ParameterError(f"{f.name}: {value}; expected at most {_MOST}")
+        _check_kind(f.name, f.default, values.get(f.name, f.default))
     return allocator.parameters(**values)
+
+
+def _check_kind(name: str, default: object, value: object) -> None:
+    if isinstance(default, int | float) and not isinstance(value, int | float):
+        raise ParameterError(f"{name}: {shown(value)}; expected a number")
+    if isinstance(default, int) and not isinstance(value, int):
+        raise ParameterError(f"{name}: {value}; expected a whole number")
+    if isinstance(default, int) and isinstance(value, int) and value > _MOST:
+        raise ParameterError(f"{name}: {value}; expected at most {_MOST}")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from muster import core
 from muster.allocation.problem import Problem
+from muster.mission.book import Award
 from muster.mission.plan import Reason, Unassigned
 
 
@@ -43,6 +44,25 @@ def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: in
     if insertion.usage > capacity:
         return Reason(robot, "capacity", f"at least {insertion.usage:.2f} {unit} with it, of {capacity:.2f} {unit}")
     return Reason(robot, "not-chosen", f"fits as number {insertion.at + 1}, for {insertion.usage:.2f} {unit} in all")
+
+
+def without_bid(problem: Problem, award: Award) -> tuple[Reason, ...]:
+    """Why robots could not bid for a task in the round in which it was won, in mission order.
+
+    Where an award does not name all bids only the robots are given that may not do the task at all.
+    """
+    j = problem.task_index[award.task]
+    bidders = {robot for robot, _ in award.bids}
+    all_named = award.bidders == len(award.bids)
+    reasons = []
+    for robot in problem.mission.robots:
+        i = problem.robot_index[robot.id]
+        refusal = problem.refusal(i, j)
+        if refusal is not None:
+            reasons.append(Reason(robot.id, *refusal))
+        elif all_named and robot.id not in bidders:
+            reasons.append(Reason(robot.id, "capacity", "too little was left of it, or there was no way"))
+    return tuple(reasons)
 
 
 @dataclass(frozen=True)

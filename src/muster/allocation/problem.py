@@ -12,10 +12,11 @@ import numpy.typing as npt
 
 from muster import core
 from muster.allocation.travel import travel_table
-from muster.mission.errors import Finding, NotSupportedError, ParameterError
+from muster.mission.errors import ParameterError
 from muster.mission.kinds import shown
-from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task, path_text
+from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
+from muster.mission.supported import require_supported
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -42,7 +43,7 @@ class Problem:
     ParameterError
         for an unknown objective or rule.
     NotSupportedError
-        for a mission that asks for travel over a map, or for actions whose cost is to be computed.
+        for a mission that asks for what is not supported yet (see `require_supported`).
     """
 
     mission: Mission
@@ -59,9 +60,7 @@ class Problem:
         for rule in ignored:
             if rule not in IGNORABLE:
                 raise ParameterError(f"ignore: {shown(rule)}; expected {' or '.join(IGNORABLE)}")
-        refused = list(_not_supported(mission))
-        if refused:
-            raise NotSupportedError(refused)
+        require_supported(mission)
         return cls(
             mission=mission,
             objective=objective,
@@ -141,6 +140,15 @@ class Problem:
 
     def _allowed_row(self, i: int) -> Bools:
         return np.array([self.refusal(i, j) is None for j in range(len(self.tasks))], dtype=np.bool_)
+
+    @cached_property
+    def suitability(self) -> Floats:
+        """(m, n) score of each robot's type for each task's type; 1 where no table is given."""
+        table = self.mission.suitability
+        if table is None:
+            return np.ones((len(self.robots), len(self.tasks)))
+        rows = {kind: _floats(scores.get(t.type or "", 0.0) for t in self.tasks) for kind, scores in table.items()}
+        return np.array([rows[r.type or ""] for r in self.robots]).reshape(len(self.robots), len(self.tasks))
 
     @cached_property
     def core(self) -> core.Problem:
@@ -253,41 +261,3 @@ def _floats(values: Iterable[float]) -> Floats:
 
 def _coordinates(points: Sequence[Point]) -> Floats:
     return np.array([(*p, 0.0)[:3] for p in points], dtype=np.float64).reshape(len(points), 3)
-
-
-def _not_supported(mission: Mission) -> Iterable[Finding]:
-    source = mission.source
-    if mission.travel_rule == "map":
-        stated = mission.rules.travel is not None
-        path = ("rules", "travel") if stated else ("map",)
-        value = shown("map") if stated else "a map, and no rules.travel"
-        expected = "rules.travel: euclidean or matrix; travel over a map cannot be planned yet"
-        yield Finding(*source.place(path), path_text(path), value, expected)
-    for k, task in enumerate(mission.tasks):
-        if task.action is not None and task.action.has_geometry:
-            expected = "go-to-goal or sensor-activation: costs of other actions cannot be computed yet"
-            at = ("tasks", k, "action", "name")
-            yield Finding(*source.place(at), path_text(at), shown(task.action.name), expected)
-    if not math.isfinite(_bound(mission)):
-        value, expected = "numbers too large or too small", "numbers whose sums are below 1.8e308"
-        yield Finding(*source.place(()), "", value, expected)
-
-
-def _bound(mission: Mission) -> float:
-    """What no sum in any plan is above; inf where one may be beyond float64."""
-    robots, tasks = mission.robots, mission.tasks
-    points = [*(p for r in robots for p in (r.position, r.end_position)), *(p for t in tasks for p in _portals(t))]
-    far = max(abs(c) for point in points if point is not None for c in point)
-    tabled = [d for table in mission.travel_tables.values() for row in table.metres for d in row if math.isfinite(d)]
-    if far > 1e150:  # its square is beyond
-        return math.inf
-    metres = max([4 * far, *tabled])
-    work = sum(t.actuation_cost + (duration_s(t) or 0.0) for t in tasks)
-    slowest = min(1.0, *(r.speed_mps for r in robots), *(r.efficiency for r in robots))
-    legs = float(len(tasks) + 2 * len(robots))
-    whole = (legs * metres + work) / slowest + max(r.available_from_s for r in robots)
-    return whole * legs + sum(t.priority for t in tasks)
-
-
-def _portals(task: Task) -> tuple[Point, ...]:
-    return task.entry or task.position, task.exit or task.position

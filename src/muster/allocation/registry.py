@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from muster.allocation.allocator import Allocator
+from muster.allocation.auction import AUCTION
 from muster.allocation.genetic import GENETIC
 from muster.allocation.greedy import GREEDY
 from muster.allocation.greedy_genetic import GREEDY_GENETIC
 from muster.allocation.greedy_hill_climbing import GREEDY_HILL_CLIMBING
 from muster.allocation.hill_climbing import HILL_CLIMBING
+from muster.allocation.market import MARKET
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import did_you_mean
 
-_IMPLEMENTATIONS = (GREEDY, HILL_CLIMBING, GENETIC, GREEDY_HILL_CLIMBING, GREEDY_GENETIC)
+_IMPLEMENTATIONS = (GREEDY, HILL_CLIMBING, GENETIC, GREEDY_HILL_CLIMBING, GREEDY_GENETIC, AUCTION, MARKET)
 
 ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
 

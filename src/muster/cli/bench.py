@@ -8,11 +8,11 @@ import click
 
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.hints import did_you_mean
 
 
 @click.command()
-@click.option("--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, start-up.")
+@click.option("--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, auction-large, start-up.")
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
 @quiet_option

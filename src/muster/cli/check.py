@@ -8,7 +8,14 @@ from typing import Any
 import click
 
 from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE
-from muster.cli.options import format_option, ignore_option, load_mission, mission_argument, require_complete_option
+from muster.cli.options import (
+    format_option,
+    ignore_option,
+    load_mission,
+    mission_argument,
+    quiet_option,
+    require_complete_option,
+)
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.plan import Unassigned, json_text
@@ -19,6 +26,7 @@ from muster.mission.plan import Unassigned, json_text
 @ignore_option
 @format_option
 @require_complete_option
+@quiet_option
 def command(
     mission: str,
     robots: Path | None,
@@ -28,13 +36,15 @@ def command(
     ignore: tuple[str, ...],
     form: str,
     require_complete: bool,
+    quiet: bool,
+    verbose: bool,
 ) -> int:
     """Find what is wrong with a MISSION, and name every task that can never be done and why."""
     from muster.allocation.feasibility import impossible
     from muster.allocation.problem import Problem
 
     try:
-        loaded = load_mission(mission, robots, suitability, salesmen, depot)
+        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
         lost = impossible(Problem.compile(loaded, ignored=ignore))
     except (MissionError, NotSupportedError) as error:
         if form == "json":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.options import format_option, load_mission, mission_argument
+from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.kinds import did_you_mean
 from muster.mission.model import Mission
@@ -16,7 +16,11 @@ from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
     from muster.allocation.explanations import Alternative
+    from muster.allocation.problem import Problem
+    from muster.mission.book import Award
     from muster.verification import Verdict
+
+_MOST_SILENT = 10  # robots that could not bid, and are named
 
 
 @click.command()
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
 @click.argument("plan", type=click.Path(path_type=Path))
 @click.option("--task", metavar="T", help="Only this task, which may also be one that is done.")
 @format_option
+@quiet_option
 def command(
     mission: str,
     plan: Path,
@@ -33,11 +38,14 @@ def command(
     salesmen: int | None,
     depot: str | None,
     form: str,
+    quiet: bool,
+    verbose: bool,
 ) -> None:
     """Say why tasks are left out of a PLAN; with --task, why a task is done by this robot and not by another."""
-    loaded = load_mission(mission, robots, suitability, salesmen, depot)
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = read_plan(plan)
     _require_fit(loaded, given, plan)
+    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
     if task is None:
         _left_out(loaded, given, form)
     else:
@@ -91,11 +99,14 @@ def _one_task(mission: Mission, plan: Plan, task: str, form: str) -> None:
     verdict = verify(mission, plan)
     now = next((route.robot for route in verdict.routes if task in route.tasks), None)
     objective = verdict.value()
+    award = None if plan.book is None else plan.book.award_of(task)
     if form == "json":
         data = {"task": task, "robot": now, "objective": objective, "alternatives": [asdict(a) for a in found]}
-        click.echo(json_text(data), nl=False)
+        click.echo(json_text(data | ({} if award is None else {"award": award.as_dict()})), nl=False)
         return
     _print_place(verdict, task, now)
+    if award is not None:
+        click.echo(_award_text(problem, award))
     _print_alternatives(found, now, objective)
 
 
@@ -110,6 +121,21 @@ def _print_place(verdict: Verdict, task: str, now: str | None) -> None:
         waits = visit.starts_s - visit.arrives_s
         waiting = f", waits {waits:.2f} s," if waits > 0 else ""
         click.echo(f"{now} arrives at {visit.arrives_s:.2f} s{waiting} and ends at {visit.ends_s:.2f} s")
+
+
+def _award_text(problem: Problem, award: Award) -> str:
+    """How a task was won, who bid what, and why others could not."""
+    from muster.allocation.explanations import without_bid
+
+    parts = [f"task {award.task} went to {award.robot} in round {award.round} for {award.price:.2f}"]
+    parts += [f"{robot} bid {bid:.2f}" for robot, bid in award.bids if robot != award.robot]
+    if award.bidders > len(award.bids):
+        parts.append(f"{award.bidders - len(award.bids)} others made worse bids")
+    silent = without_bid(problem, award)
+    parts += [f"{reason.robot} could not: {reason.reason}, {reason.detail}" for reason in silent[:_MOST_SILENT]]
+    if len(silent) > _MOST_SILENT:
+        parts.append(f"{len(silent) - _MOST_SILENT} others could not, either")
+    return "; ".join(parts)
 
 
 def _print_alternatives(found: tuple[Alternative, ...], now: str | None, objective: float | None) -> None:

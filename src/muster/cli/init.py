@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from muster.cli.options import quiet_option
 from muster.mission.errors import ParameterError
 
 _TEMPLATE = """\
@@ -32,7 +33,8 @@ tasks:
 @click.argument("name", default="mission")
 @click.option("--from", "shipped", metavar="SHIPPED", help="Copy a mission that comes with Muster.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: NAME.yaml]")
-def command(name: str, shipped: str | None, output: Path | None) -> None:
+@quiet_option
+def command(name: str, shipped: str | None, output: Path | None, quiet: bool, verbose: bool) -> None:
     """Write a mission file to start from: NAME.yaml in this folder.
 
     An existing file is left alone.
@@ -50,12 +52,16 @@ def command(name: str, shipped: str | None, output: Path | None) -> None:
     except FileExistsError:
         raise ParameterError(f"{path}: exists; expected the name of a new file") from None
     click.echo(str(path))
-    click.echo(f"next: muster check {path}; muster solve {path}", err=True)
+    if verbose:
+        origin = "a template" if shipped is None else f"a copy of {shipped}"
+        click.echo(f"wrote {path}: {origin}, {len(text.splitlines())} lines", err=True)
+    if not quiet:
+        click.echo(f"next: muster check {path}; muster solve {path}", err=True)
 
 
 def _shipped_text(shipped: str) -> str:
     from muster.library import mission_names, mission_path
-    from muster.mission.kinds import did_you_mean
+    from muster.mission.hints import did_you_mean
 
     path = mission_path(shipped)
     if path is None:

@@ -8,9 +8,11 @@ from typing import Any, TypeVar
 
 import click
 
-from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.errors import Finding, ParameterError
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
+from muster.mission.plan import Plan
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
@@ -31,14 +33,37 @@ def mission_argument(verb: Verb) -> Verb:
 
 
 def load_mission(
-    mission: str, robots: Path | None, suitability: Path | None, salesmen: int | None, depot: str | None
+    mission: str,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    *,
+    verbose: bool = False,
 ) -> Mission:
-    """The mission that the command names."""
+    """The mission that the command names; with -v a line says which file it is, and how much is in it."""
     from muster import load
 
     if depot is not None and salesmen is None:
         raise ParameterError("--depot given; expected it together with --salesmen")
-    return load(mission, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot or "1")
+    loaded = load(mission, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot or "1")
+    if verbose:
+        amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
+        click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
+    return loaded
+
+
+def say_of_plan(plan: Plan, file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> None:
+    """With -v which plan was read and how much is in it; without -q a warning if it names another mission.
+
+    Not more than a warning: a mission may be renamed, and its plans hold as before.
+    """
+    if verbose:
+        amount = f"{len(plan.routes)} routes, {sum(len(route.tasks) for route in plan.routes)} tasks"
+        click.echo(f"read {file}: plan, {amount}", err=True)
+    if not quiet and plan.mission not in (None, mission.name):
+        expected = f"{shown(mission.name)}; the plan may be of another mission"
+        click.echo(f"warning: {Finding(str(file), None, 'mission', shown(plan.mission), expected)}", err=True)
 
 
 def format_option(verb: Verb) -> Verb:
@@ -56,7 +81,9 @@ def format_option(verb: Verb) -> Verb:
 def quiet_option(verb: Verb) -> Verb:
     """-q and -v."""
     verb = click.option("-v", "--verbose", is_flag=True, help="Say more on standard error.")(verb)
-    return click.option("-q", "--quiet", is_flag=True, help="No progress and messages on standard error.")(verb)
+    return click.option("-q", "--quiet", is_flag=True, help="No progress or messages on standard error, errors aside.")(
+        verb
+    )
 
 
 def ignore_option(verb: Verb) -> Verb:

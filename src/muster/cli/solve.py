@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster._api import DEFAULT_ALLOCATOR
+from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
     format_option,
@@ -28,6 +30,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
+    from muster.allocation.allocator import Allocator
     from muster.allocation.stop import Stop
     from muster.verification import Verdict
 
@@ -61,11 +64,15 @@ _FILE = click.Path(path_type=Path)
 @click.option(
     "--iterations", type=click.IntRange(min=0), metavar="N", help="Stop after so many; then a seed gives one plan."
 )
+@click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]")
+@click.option("--placement", type=click.Choice(PLACEMENTS), help="Where a task goes in a route.  [default: insert]")
+@click.option("--winner", type=click.Choice(WINNERS), help="Which bid wins.  [default: lowest]")
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter of the allocator.")
 @click.option("--start", type=_FILE, metavar="PLAN", help="A plan to go on from.")
 @require_complete_option
 @format_option
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
+@click.option("--book", type=_FILE, metavar="FILE", help="Write every bid of an auction (.csv).")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the routes (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw the time chart (.png, .svg, .pdf).")
 @quiet_option
@@ -81,11 +88,15 @@ def command(
     seed: int,
     time_limit: float | None,
     iterations: int | None,
+    bid: str | None,
+    placement: str | None,
+    winner: str | None,
     settings: tuple[str, ...],
     start: Path | None,
     require_complete: bool,
     form: str,
     output: Path | None,
+    book: Path | None,
     plot: Path | None,
     gantt: Path | None,
     quiet: bool,
@@ -101,10 +112,13 @@ def command(
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
-    _require_writable((output, plot, gantt), (mission, robots, suitability))
+    _require_writable((output, book, plot, gantt), (mission, robots, suitability))
     _require_drawable(plot, gantt)
     chosen = allocator_named(allocator)
-    params = make_parameters(chosen, _settings(settings))
+    if book is not None and not chosen.auctions:
+        raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
+    terms = _terms(chosen, bid=bid, placement=placement, winner=winner)
+    params = make_parameters(chosen, {**terms, **_settings(settings)})
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore).ready()
@@ -114,6 +128,8 @@ def command(
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
     _show(loaded, plan, form, output, plot, gantt)
+    if book is not None and plan.book is not None:
+        plan.book.save(book)
     if stop.interrupted:
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
@@ -126,8 +142,6 @@ def command(
 def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
-    from dataclasses import fields
-
     from muster.allocation.registry import ALLOCATORS
     from muster.cli.tables import print_table
 
@@ -143,13 +157,28 @@ def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
+        if not equals or not name.strip() or not text.strip():
+            raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
         try:
             values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
         except ValueError:
-            raise ParameterError(f"--set: {setting}; expected NAME=NUMBER") from None
-        if not equals or not name.strip():
-            raise ParameterError(f"--set: {setting}; expected NAME=NUMBER")
+            values[name.strip()] = text.strip()
     return values
+
+
+def _terms(allocator: Allocator, **words: str | None) -> dict[str, Any]:
+    """The terms of an auction that are given."""
+    known = {f.name for f in fields(allocator.parameters)}
+    for name, word in words.items():
+        if word is not None and name not in known:
+            raise ParameterError(f"--{name}: {allocator.name} has no such terms; expected --allocator {_auctions()}")
+    return {name: word for name, word in words.items() if word is not None}
+
+
+def _auctions() -> str:
+    from muster.allocation.registry import ALLOCATORS
+
+    return " or ".join(allocator.name for allocator in ALLOCATORS.values() if allocator.auctions)
 
 
 def _require_writable(outputs: tuple[Path | None, ...], inputs: tuple[str | Path | None, ...]) -> None:

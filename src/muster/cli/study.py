@@ -77,11 +77,12 @@ def command(
 def _list(form: str) -> None:
     from muster.cli.tables import print_table
     from muster.studies import STUDIES
+    from muster.studies.tables import span
 
     if form == "json":
         click.echo(_json([{"name": s.name, "summary": s.summary, "tables": s.tables} for s in STUDIES.values()]))
         return
-    rows = [(s.name, s.summary, f"{s.tables[0]} to {s.tables[-1]}") for s in STUDIES.values()]
+    rows = [(s.name, s.summary, span(s.tables)) for s in STUDIES.values()]
     print_table(("study", "what it is", "tables"), rows)
 
 
@@ -107,10 +108,8 @@ def _json(data: object) -> str:
 
 
 def _print_report(report: Report) -> None:
-    _print_text(
-        f"{report.study}: {report.document}; seeds 0 to {report.seeds - 1}; {report.runs} runs, "
-        f"{report.cpu_s:.1f} s of processor time"
-    )
+    seeds = "" if report.seeds is None else f"seeds 0 to {report.seeds - 1}; "
+    _print_text(f"{report.study}: {report.document}; {seeds}{report.runs} runs, {report.cpu_s:.1f} s of processor time")
     for line in (*report.legend, ""):
         _print_text(line)
     for table in report.tables:
@@ -122,8 +121,11 @@ def _print_table(table: Table) -> None:
 
     headers = [_SHORT_HEADERS.get(column, column) for column in table.columns]
     numeric = [header for k, header in enumerate(headers) if any(isinstance(row[k], int | float) for row in table.rows)]
-    rows = [[_text(column, cell) for column, cell in zip(table.columns, row, strict=True)] for row in table.rows]
-    print_table(headers, _without_repetition(rows), title=f"Table {table.number}. {table.title}", right=numeric)
+    rows = [
+        [_text(column, cell, table.decimals) for column, cell in zip(table.columns, row, strict=True)]
+        for row in table.rows
+    ]
+    print_table(headers, _without_repetition(rows), title=table.heading, right=numeric)
     for note in table.notes:
         _print_text(note)
     _print_text("")
@@ -155,11 +157,11 @@ def _printable(text: str) -> str:
     return text
 
 
-def _text(column: str, cell: Cell) -> str:
+def _text(column: str, cell: Cell, decimals: int) -> str:
     from muster.cli.tables import sequence
 
     if isinstance(cell, float):
-        return "<0.01" if column == "s" and cell < _LEAST_SECONDS else f"{cell:.2f}"
+        return "<0.01" if column == "s" and cell < _LEAST_SECONDS else f"{cell:.{decimals}f}"
     if isinstance(cell, tuple):
         if cell and isinstance(cell[0], float):
             return " to\n".join(f"{value:.2f}" for value in cell)

@@ -8,12 +8,16 @@ from typing import Any
 
 _WIDTH_WITHOUT_TERMINAL = 120
 _MOST_TASKS_SHOWN = 60
+_LONGEST_WORD = 10  # that is not folded where there is little room
 
 
 def print_table(
     columns: Sequence[str], rows: Iterable[Sequence[str]], *, title: str = "", right: Sequence[str] = ()
 ) -> None:
-    """Print a table; columns named in `right` are set to the right."""
+    """Print a table; columns named in `right` are set to the right.
+
+    Where there is little room words fold, figures never: a table that needs more room than the terminal has takes it.
+    """
     from rich import box
     from rich.table import Table
 
@@ -24,11 +28,42 @@ def print_table(
         title_style="bold",
         pad_edge=False,
     )
-    for column in columns:
-        table.add_column(_plain(column), justify="right" if column in right else "left", overflow="fold")
-    for row in rows:
+    listed = [tuple(row) for row in rows]
+    out = console()
+    widths = _widths([(name, [row[k] for row in listed]) for k, name in enumerate(columns)], right, out.width)
+    for column, width in zip(columns, widths, strict=True):
+        justify: Any = "right" if column in right else "left"
+        table.add_column(_plain(column), justify=justify, overflow="fold", width=width)
+    for row in listed:
         table.add_row(*(_plain(cell) for cell in row))
-    console().print(table)
+    out.width = max(out.width, _whole(widths))
+    out.print(table)
+
+
+def _widths(columns: Sequence[tuple[str, Sequence[str]]], right: Sequence[str], room: int) -> list[int]:
+    """Give columns (head, cells) the width of their cells; where there is no room for that, narrow ones grow first."""
+    wanted, widths = [], []
+    for head, cells in columns:
+        lines = [line for cell in (head, *cells) for line in cell.split("\n")]
+        wanted.append(_widest(lines))
+        words = min(_LONGEST_WORD, _widest([word for line in lines for word in line.split()]))
+        widths.append(max(_widest(head.split()), _widest(lines[1:])) if head in right else words)
+    spare = room - _whole(widths)
+    while spare > 0 and widths != wanted:
+        _, k = min((width, k) for k, width in enumerate(widths) if width < wanted[k])
+        widths[k], spare = widths[k] + 1, spare - 1
+    return widths
+
+
+def _whole(widths: Sequence[int]) -> int:
+    """The width of a table with such columns: three spaces between two of them, one before and one after."""
+    return sum(widths) + 3 * len(widths) - 1
+
+
+def _widest(texts: Iterable[str]) -> int:
+    from rich.cells import cell_len
+
+    return max(map(cell_len, texts), default=0)
 
 
 def _plain(cell: str) -> Any:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import format_option, load_mission, mission_argument
+from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
 from muster.mission.plan import json_text, read_plan
 
 
@@ -15,6 +15,7 @@ from muster.mission.plan import json_text, read_plan
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
 @format_option
+@quiet_option
 def command(
     mission: str,
     plan: Path,
@@ -23,6 +24,8 @@ def command(
     salesmen: int | None,
     depot: str | None,
     form: str,
+    quiet: bool,
+    verbose: bool,
 ) -> int:
     """Recompute a PLAN of a MISSION from scratch, by code that no allocator uses.
 
@@ -31,8 +34,10 @@ def command(
     from muster.cli.plan_tables import print_verdict
     from muster.verification import verify
 
-    loaded = load_mission(mission, robots, suitability, salesmen, depot)
-    verdict = verify(loaded, read_plan(plan))
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    given = read_plan(plan)
+    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    verdict = verify(loaded, given)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:

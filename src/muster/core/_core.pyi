@@ -138,3 +138,74 @@ class Population:
         """Weight of the tasks done."""
 
     def objective(self, member: int) -> float: ...
+
+class Bidders:
+    """
+    The team while tasks are auctioned: routes so far, and what each robot could do with each open task. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, insert: bool, figure: str) -> None:
+        """
+        `insert`: a task goes where it lengthens the route least, else to its end. `figure`, what offers are: `growth` of the route's usage; `arrivals`, what is added to the sum of usages on arrival; `end`, when the robot would be done with all its tasks, in seconds.
+        """
+
+    def set_routes(self, routes: Sequence[Sequence[int]]) -> None:
+        """
+        Begin anew with these routes; nothing is announced. Raises ValueError if they are not admissible.
+        """
+
+    def announce(self, tasks: Sequence[int]) -> None:
+        """Tasks are open as soon as their prerequisites are in routes."""
+
+    @property
+    def open(self) -> list[int]: ...
+
+    def offers(self, robot: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+        """
+        (n,) the figure of each task for the robot; inf where the task is not open, or the robot may not do it or has no capacity for it.
+        """
+
+    def offers_for(self, task: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+        """(m,) the figure of the task for each robot."""
+
+    def lowest(self) -> tuple[list[int], Annotated[NDArray[numpy.float64], dict(shape=(None,))]]:
+        """
+        For each robot the task with its lowest figure, the first if several have it, and (m,) that figure; -1 and inf for a robot without offers.
+        """
+
+    def award(self, robot: int, task: int) -> None:
+        """
+        Put an open task into the robot's route. Raises ValueError if the robot has no offer for it.
+        """
+
+    def relinquish(self, task: int) -> list[int]:
+        """
+        Take a task out of its route, and all in routes that waits for it; returns them. None are taken if the routes would not be admissible without them.
+        """
+
+    @property
+    def usages(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+        """(m,) in the unit of usage."""
+
+    @property
+    def lengths(self) -> list[int]:
+        """The number of tasks in each route."""
+
+    @property
+    def routes(self) -> list[list[int]]: ...
+
+class Annealing:
+    """
+    Simulated annealing of the order of tasks in single routes (market paper, section 3.1). One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, routes: Sequence[Sequence[int]], seed: int) -> None:
+        """Raises ValueError if the routes are not admissible."""
+
+    def anneal(self, robot: int, steps: int) -> None:
+        """
+        So many steps on one robot's route. The best order found stays, unless the plan would be worse for it.
+        """
+
+    @property
+    def routes(self) -> list[list[int]]: ...

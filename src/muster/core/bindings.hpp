@@ -9,5 +9,7 @@ void bind_problem(nanobind::module_& m);
 void bind_inspection(nanobind::module_& m);
 void bind_greedy(nanobind::module_& m);
 void bind_population(nanobind::module_& m);
+void bind_bidders(nanobind::module_& m);
+void bind_annealing(nanobind::module_& m);
 
 }  // namespace muster

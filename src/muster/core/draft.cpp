@@ -27,6 +27,8 @@ void Draft::remove(int robot, int at) {
 
 void Draft::swap(int robot, int at, int with) { std::swap(order_[first_[robot] + at], order_[first_[robot] + with]); }
 
+void Draft::reorder(int robot, std::span<const int> route) { std::ranges::copy(route, order_.begin() + first_[robot]); }
+
 void Draft::assign(std::span<const int> tasks, std::span<const int> robots) {
   clear();
   for (const int robot : robots) ++first_[robot + 1];
@@ -42,13 +44,12 @@ void Draft::assign(std::span<const int> tasks, std::span<const int> robots) {
 }
 
 bool Evaluator::evaluate(Draft& draft) {
-  for (int robot = 0; robot < problem_.robots(); ++robot)
-    draft.figures_[robot] = problem_.walk(robot, draft.route(robot));
+  for (int robot = 0; robot < problem_.robots(); ++robot) draft.measure(problem_, robot);
   return conclude(draft);
 }
 
 bool Evaluator::evaluate(Draft& draft, std::span<const int> changed) {
-  for (const int robot : changed) draft.figures_[robot] = problem_.walk(robot, draft.route(robot));
+  for (const int robot : changed) draft.measure(problem_, robot);
   return conclude(draft);
 }
 

@@ -41,6 +41,10 @@ class Draft {
   void insert(int task, int robot, int at);
   void remove(int robot, int at);
   void swap(int robot, int at, int with);
+  // The same tasks in another order.
+  void reorder(int robot, std::span<const int> route);
+  // Sets the figures of one route.
+  void measure(const Problem& problem, int robot) { figures_[robot] = problem.walk(robot, route(robot)); }
   // All routes at once: tasks[k] goes to robots[k], in the order given.
   void assign(std::span<const int> tasks, std::span<const int> robots);
 
@@ -76,6 +80,10 @@ class Evaluator {
   bool order(const Draft& draft);
   // The time at which the last task ends, waiting included; none if routes and prerequisites deadlock.
   std::optional<double> makespan(const Draft& draft);
+  // When each task ends, in the last schedule that `makespan` made.
+  double end_of(int task) const { return ends_[task]; }
+  // The tasks in the order that `order` found last.
+  std::span<const int> sequence() const { return sequence_; }
   // The problem's objective of a draft whose figures are those of its routes and that does not deadlock.
   double objective(const Draft& draft);
 

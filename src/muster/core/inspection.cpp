@@ -30,7 +30,7 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
   std::vector<Insertion> places;
   const Window allowed = window(problem_, draft_.route(robot), task);
   for (int at = allowed.earliest; at <= allowed.latest; ++at) {
-    places.push_back({at, draft_.figures(robot).usage + growth(robot, task, at)});
+    places.push_back({at, draft_.figures(robot).usage + problem_.growth(robot, draft_.route(robot), task, at)});
   }
   std::ranges::stable_sort(places, {}, &Insertion::usage);
   for (const Insertion& place : places) {
@@ -41,16 +41,6 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
     if (ordered) return place;
   }
   return std::nullopt;
-}
-
-double Inspection::growth(int robot, int task, int at) const {
-  const auto route = draft_.route(robot);
-  const int before = at ? route[at - 1] : problem_.start(robot);
-  const double there = problem_.travel_usage(robot, before, task) + problem_.work_usage(robot, task);
-  if (at < static_cast<int>(route.size())) {
-    return there + problem_.travel_usage(robot, task, route[at]) - problem_.travel_usage(robot, before, route[at]);
-  }
-  return there + problem_.end_usage(robot, task) - (route.empty() ? 0.0 : problem_.end_usage(robot, before));
 }
 
 }  // namespace muster

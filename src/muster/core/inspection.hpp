@@ -26,9 +26,6 @@ class Inspection {
   std::optional<Insertion> cheapest_insertion(int robot, int task);
 
  private:
-  // What a task adds to the usage of the robot's route at a place.
-  double growth(int robot, int task, int at) const;
-
   const Problem& problem_;
   Evaluator evaluator_;
   Draft draft_;

@@ -8,4 +8,6 @@ NB_MODULE(_core, m) {
   muster::bind_inspection(m);
   muster::bind_greedy(m);
   muster::bind_population(m);
+  muster::bind_bidders(m);
+  muster::bind_annealing(m);
 }

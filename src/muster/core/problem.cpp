@@ -85,4 +85,13 @@ RouteFigures Problem::walk(int robot, std::span<const int> route) const {
   return figures;
 }
 
+double Problem::growth(int robot, std::span<const int> route, int task, int at) const {
+  const int before = at ? route[at - 1] : start(robot);
+  const double there = travel_usage(robot, before, task) + work_usage(robot, task);
+  if (at < static_cast<int>(route.size())) {
+    return there + travel_usage(robot, task, route[at]) - travel_usage(robot, before, route[at]);
+  }
+  return there + end_usage(robot, task) - (route.empty() ? 0.0 : end_usage(robot, before));
+}
+
 }  // namespace muster

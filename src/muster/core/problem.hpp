@@ -112,6 +112,8 @@ class Problem {
   }
 
   RouteFigures walk(int robot, std::span<const int> route) const;
+  // What a task adds to the usage of a route, put at a place of it.
+  double growth(int robot, std::span<const int> route, int task, int at) const;
 
  private:
   double straight(int from, int to) const {

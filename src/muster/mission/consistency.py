@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from muster.mission.kinds import Fault, Path, did_you_mean, shown
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import Fault, Path, shown
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission, Point, Robot, Task

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import did_you_mean, shown
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import shown
 from muster.mission.text_files import read_text
 
 

@@ -7,13 +7,14 @@ JSON Schema, so that these cannot disagree.
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
 from numbers import Real
 from typing import Any, ClassVar, Protocol, runtime_checkable
+
+from muster.mission.hints import did_you_mean as did_you_mean
 
 Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]
@@ -79,13 +80,6 @@ def _trimmed(value: object, levels: int = 3) -> object:
         if not isinstance(value, int) or abs(value) < 10**60
         else "huge"
     )
-
-
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """`"; did you mean 'x'?"` for the known word that is nearest, or nothing."""
-    folded = {name.casefold(): name for name in reversed(list(known))}
-    near = difflib.get_close_matches(word.casefold(), list(folded), n=1, cutoff=0.6)
-    return f"; did you mean '{folded[near[0]]}'?" if near else ""
 
 
 def _refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:

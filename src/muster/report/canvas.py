@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from muster.mission.errors import MissingExtraError
 from muster.mission.plan import Plan
+from muster.report.fonts import Names
 from muster.report.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT
 from muster.verification import Verdict
 
@@ -77,6 +78,8 @@ def quiet_frame(ax: Any) -> None:
 
 def add_title(ax: Axes, name: str, facts: Sequence[str], alarm: str = "") -> None:
     """Write the mission's name above the axes, and beneath it a line of facts."""
+    from matplotlib import rcParams
+
     ax.set_title(
         shortened(name, _LONGEST_TITLE),
         loc="left",
@@ -85,6 +88,7 @@ def add_title(ax: Axes, name: str, facts: Sequence[str], alarm: str = "") -> Non
         color=TEXT,
         pad=20,
         parse_math=False,
+        fontfamily=rcParams["font.family"],  # a title is older than the text that is written into it
     )
     line: dict[str, Any] = {
         "xycoords": "axes fraction",
@@ -144,6 +148,13 @@ def add_legend(ax: Axes, entries: Sequence[tuple[Any, str]], title: str | None =
     for text, (_, label) in zip(legend.get_texts(), entries, strict=True):
         text.set_parse_math(False)  # an id may hold a dollar sign, or begin with an underscore, which hides an entry
         text.set_text(label)
+
+
+def note_entries(names: Names) -> list[tuple[Any, str]]:
+    """Make the legend's lines on how names are written, where that has to be said."""
+    from matplotlib.lines import Line2D
+
+    return [(Line2D([], [], linestyle="none"), note) for note in names.notes]
 
 
 def _right_end(ax: Any) -> float:

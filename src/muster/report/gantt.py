@@ -11,7 +11,18 @@ import numpy as np
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.report.canvas import add_legend, add_title, alarm_of, new_axes, quiet_frame, settle, shortened, write
+from muster.report.canvas import (
+    add_legend,
+    add_title,
+    alarm_of,
+    new_axes,
+    note_entries,
+    quiet_frame,
+    settle,
+    shortened,
+    write,
+)
+from muster.report.fonts import Names
 from muster.report.ground import drawn_prerequisites
 from muster.report.labels import text_size
 from muster.report.styles import DASHED, GRID, PREREQUISITE, QUIET_TEXT, TEXT, Style, robot_style
@@ -52,17 +63,23 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
         raise MusterError("no schedule to draw: in this plan tasks wait for each other for ever; see muster verify")
     if ax is None:
         ax = new_axes(10.0, _height_in(len(mission.robots)))
-    _frame(ax, mission, verdict)
+    names = Names(mission)
+    with names.fonts():
+        _draw(ax, mission, verdict, names)
+    return ax
+
+
+def _draw(ax: Any, mission: Mission, verdict: Verdict, names: Names) -> None:
+    _frame(ax, mission, verdict, names)
     for row, route in enumerate(verdict.routes):
         _draw_row(ax, row, route)
     arrows = _arrows(mission, verdict)
     _draw_arrows(ax, arrows)
-    _draw_makespan(ax, verdict.makespan_s)
-    add_title(ax, mission.name, _facts(verdict), alarm_of(verdict))
-    add_legend(ax, _entries(verdict, has_arrows=bool(arrows)))
+    _draw_makespan(ax, verdict.makespan_s or 0.0)
+    add_title(ax, names.title(mission.name), _facts(verdict), alarm_of(verdict))
+    add_legend(ax, [*_entries(verdict, has_arrows=bool(arrows)), *note_entries(names)])
     if sum(len(route.visits) for route in verdict.routes) <= MOST_NAMES:
-        _name_tasks(ax, verdict, {arrow.task for arrow in arrows if arrow.row < arrow.to_row})
-    return ax
+        _name_tasks(ax, verdict, names, {arrow.task for arrow in arrows if arrow.row < arrow.to_row})
 
 
 def _height_in(rows: int) -> float:
@@ -100,7 +117,8 @@ def _lasting(spans: Iterable[Span]) -> list[Span]:
     return [(start, end) for start, end in spans if end > start]
 
 
-def _frame(ax: Any, mission: Mission, verdict: Verdict) -> None:
+def _frame(ax: Any, mission: Mission, verdict: Verdict, names: Names) -> None:
+    from matplotlib import rcParams
     from matplotlib.ticker import FuncFormatter, MultipleLocator
 
     rows = len(mission.robots)
@@ -113,7 +131,8 @@ def _frame(ax: Any, mission: Mission, verdict: Verdict) -> None:
         ax.xaxis.set_major_locator(MultipleLocator(step * size))
     ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / size:g}"))
     named = range(0, rows, -(-rows // MOST_ROWS_NAMED))
-    ax.set_yticks(list(named), [shortened(mission.robots[row].id) for row in named], parse_math=False)
+    robots = [shortened(names.robot(mission.robots[row].id)) for row in named]
+    ax.set_yticks(list(named), robots, parse_math=False, fontfamily=rcParams["font.family"])
     ax.set_xlabel(f"time [{unit}]")
     quiet_frame(ax)
     ax.grid(visible=False, axis="y")
@@ -198,7 +217,7 @@ def _entries(verdict: Verdict, *, has_arrows: bool) -> list[tuple[Any, str]]:
     return entries
 
 
-def _name_tasks(ax: Any, verdict: Verdict, from_above: Set[str]) -> None:
+def _name_tasks(ax: Any, verdict: Verdict, names: Names, from_above: Set[str]) -> None:
     """Write ids in bars that are long enough, else above or below them; none where there is no room.
 
     `from_above` are the tasks that an arrow reaches from above; they are better named below.
@@ -212,7 +231,7 @@ def _name_tasks(ax: Any, verdict: Verdict, from_above: Set[str]) -> None:
         until = {1: -np.inf, -1: -np.inf}  # where the names above and below the bars end, in points
         for (starts_s, ends_s), visits in groupby(route.visits, key=lambda visit: (visit.starts_s, visit.ends_s)):
             tasks = [visit.task for visit in visits]  # several where they take no time and are at one place
-            name, middle = shortened(", ".join(tasks)), (starts_s + ends_s) / 2
+            name, middle = shortened(", ".join(map(names.task, tasks))), (starts_s + ends_s) / 2
             half = text_size(name, _FONT)[0] / 2
             look: dict[str, Any] = {"fontsize": _FONT, "zorder": 4, "gid": f"name-{tasks[0]}"}
             if (ends_s - starts_s) * points_per_second > 2 * half + 2:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from unicodedata import east_asian_width
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,8 @@ _LINE, _MARK, _OUTSIDE, _ORDER = 1.0, 8.0, 1000.0, 0.3
 
 def text_size(text: str, font_size: float) -> tuple[float, float]:
     """Estimate how wide and high a line of text is, in the unit of `font_size`."""
-    return 0.62 * font_size * max(len(text), 1), 0.85 * font_size
+    columns = sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
+    return 0.62 * font_size * max(columns, 1), 0.85 * font_size
 
 
 def line_obstacles(lines: Array, step: float = 3.0) -> Array:

@@ -18,12 +18,14 @@ from muster.report.canvas import (
     is_spatial,
     named_rows,
     new_axes,
+    note_entries,
     quiet_frame,
     settle,
     shortened,
     to_points,
     write,
 )
+from muster.report.fonts import Names
 from muster.report.ground import draw_map, draw_prerequisites, draw_stems, drawn_prerequisites
 from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
@@ -68,6 +70,12 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
     if ax is None:
         ax = _own_axes(mission)
     scene = _scene(mission, verdict, is_spatial(ax))
+    with scene.names.fonts():
+        _draw(ax, scene, plan, verdict)
+    return ax
+
+
+def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
     _frame(ax, scene)
     entries = _draw_ground(ax, scene)
     for trace in scene.traces:
@@ -77,11 +85,10 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
     _draw_left_out(ax, scene)
     _draw_starts(ax, scene)
     limited = any(trace.figures.capacity is not None for trace in scene.traces)
-    entries = [*_robot_entries(scene, verdict.usage_unit), *_mark_entries(scene), *entries]
+    entries = [*_robot_entries(scene, verdict.usage_unit), *_mark_entries(scene), *entries, *note_entries(scene.names)]
     add_legend(ax, entries, "usage / work capacity" if limited else "usage")
-    add_title(ax, mission.name, facts_of(verdict, plan), alarm_of(verdict))
+    add_title(ax, scene.names.title(scene.mission.name), facts_of(verdict, plan), alarm_of(verdict))
     _name_places(ax, scene)
-    return ax
 
 
 @dataclass(frozen=True)
@@ -101,6 +108,7 @@ class _Scene:
     left_out: list[Task]
     dimensions: int
     detail: _Detail
+    names: Names
 
     def places(self, points: Sequence[Point]) -> Places:
         return places(points, self.dimensions)
@@ -114,6 +122,7 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool) -> _Scene:
         left_out=left_out(mission, verdict),
         dimensions=dimensions,
         detail=_detail(len(mission.tasks)),
+        names=Names(mission),
     )
 
 
@@ -262,7 +271,7 @@ def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
         style = robot_style(trace.index)
         mark = Line2D([], [], color=style.color, marker=style.marker, markersize=5.5, linestyle="none")
         line = Line2D([], [], **_stroke(style, 1.6))
-        entries.append(((line, mark), f"{shortened(trace.robot.id)}  {_usage_text(trace, unit)}"))
+        entries.append(((line, mark), f"{shortened(scene.names.robot(trace.robot.id))}  {_usage_text(trace, unit)}"))
     if shown < len(scene.traces):
         entries.append((Line2D([], [], linestyle="none"), f"... and {len(scene.traces) - shown} more"))
     return entries
@@ -304,10 +313,13 @@ def _name_places(ax: Any, scene: _Scene) -> None:
         look = {"fontsize": 7.5, "color": TEXT, "fontweight": "bold", "zorder": 4}
         for position, group in _starts(scene):
             gid = f"start-name-{scene.mission.robots[group[0]].id}"
-            names.append((position, _group_name(scene.mission, group), {**look, "gid": gid}))
+            names.append((position, _group_name(scene, group), {**look, "gid": gid}))
     if scene.detail.ids:
         look = {"fontsize": 6.5, "color": QUIET_TEXT, "zorder": 4}
-        names += [(task.position, task.id, {**look, "gid": f"name-{task.id}"}) for task in scene.mission.tasks]
+        names += [
+            (task.position, scene.names.task(task.id), {**look, "gid": f"name-{task.id}"})
+            for task in scene.mission.tasks
+        ]
     if not names:
         return
     settle(ax)
@@ -320,8 +332,8 @@ def _name_places(ax: Any, scene: _Scene) -> None:
         write(ax, place, shortened(text), offset, halo=True, **look)
 
 
-def _group_name(mission: Mission, group: list[int]) -> str:
-    ids = [mission.robots[index].id for index in group]
+def _group_name(scene: _Scene, group: list[int]) -> str:
+    ids = [scene.names.robot(scene.mission.robots[index].id) for index in group]
     return ", ".join(ids) if len(ids) <= 3 else f"{len(ids)} robots"
 
 

@@ -110,26 +110,37 @@ def large_mission(tasks: int, robots: int, seed: int = 0) -> Mission:
 
 
 def greedy_large(runs: int) -> list[Measurement]:
-    """Greedy on 10,000 tasks and 200 robots, each run in a process of its own so that its memory can be told."""
-    code = "from muster.studies.bench import greedy_large_once as once; print(*once())"
-    seconds, megabytes, value = [], [], ""
-    for _ in range(min(runs, 3)):
-        words = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-        seconds.append(float(words[0]))
-        megabytes.append(float(words[1]))
-        value = words[2]
-    name = "greedy, 10,000 tasks x 200 robots"
+    """Greedy on 10,000 tasks and 200 robots."""
+    return _large("greedy", 10_000, 200, min(runs, 3), "< 5", "< 500")
+
+
+def auction_large(runs: int) -> list[Measurement]:
+    """The auction with insertion, total+max bids and lowest bid."""
     return [
-        _over_runs(name, "s", seconds, "< 5", f"F = {value}"),
-        _over_runs(f"{name}, peak memory", "MB", megabytes, "< 500", "the whole process"),
+        *_large("auction", 1_000, 100, runs, "< 1", "< 1000"),
+        *_large("auction", 10_000, 200, min(runs, 3), "< 60", "< 1000"),
     ]
 
 
-def greedy_large_once() -> tuple[float, float, float]:
+def _large(allocator: str, tasks: int, robots: int, runs: int, seconds: str, megabytes: str) -> list[Measurement]:
+    """Each run in a process of its own, so that its memory can be told."""
+    code = f"from muster.studies.bench import large_once; print(*large_once({allocator!r}, {tasks}, {robots}))"
+    found = []
+    for _ in range(runs):
+        words = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+        found.append([float(word) for word in words])
+    name = f"{allocator}, {tasks:,} tasks x {robots} robots"
+    return [
+        _over_runs(name, "s", [run[0] for run in found], seconds, f"F = {found[0][2]:.2f}"),
+        _over_runs(f"{name}, peak memory", "MB", [run[1] for run in found], megabytes, "the whole process"),
+    ]
+
+
+def large_once(allocator: str, tasks: int, robots: int) -> tuple[float, float, float]:
     """Seconds, peak memory in MB and F of one run."""
-    problem = Problem.compile(large_mission(10_000, 200)).ready()
+    problem = Problem.compile(large_mission(tasks, robots)).ready()
     begin = time.perf_counter()
-    plan = ALLOCATORS["greedy"].solve(problem, Stop())
+    plan = ALLOCATORS[allocator].solve(problem, Stop())
     seconds = time.perf_counter() - begin
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     value = verify(problem.mission, plan).value("total+max")
@@ -157,5 +168,6 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "greedy-small": greedy_small,
     "genetic": genetic_iterations,
     "greedy-large": greedy_large,
+    "auction-large": auction_large,
     "start-up": start_up,
 }

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from muster.mission.errors import Finding, NotSupportedError, PlanError
-from muster.mission.kinds import Fault, shown
-from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, findings
+from muster.mission.errors import Finding, PlanError
+from muster.mission.kinds import shown
+from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
 from muster.mission.plan import Plan
+from muster.mission.supported import require_supported
 from muster.verification.admissibility import broken_rules, capacity_of, known_routes
 from muster.verification.measure import MeasuredRoute, equality_index, measured
 from muster.verification.schedule import Deadlock, Times, awaited_in, schedule
 from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
-
-_LARGEST = "numbers whose sums are below 1.8e308"
 
 
 def verify(mission: Mission, plan: Plan) -> Verdict:
@@ -28,11 +26,11 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
     Raises
     ------
     NotSupportedError
-        if the mission cannot be judged yet: travel over a map, actions with geometry; or its numbers overflow.
+        if the mission asks for what is not supported yet (see `require_supported`).
     PlanError
         if the plan, built in Python, names an objective or an ignored rule that does not exist.
     """
-    _refuse(mission, _unsupported(mission))
+    require_supported(mission)
     _refuse_unknown_words(plan)
     tasks_of, violations = known_routes(mission, plan)
     travel = Travel(mission)
@@ -43,7 +41,6 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
     if isinstance(times, Deadlock):
         violations.append(Violation("deadlock", None, None, times.detail))
     verdict = _verdict(mission, plan, routes, None if isinstance(times, Deadlock) else times, unit)
-    _refuse(mission, _overflow(verdict))
     return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict)))
 
 
@@ -88,39 +85,6 @@ def _visits(route: MeasuredRoute, times: Mapping[str, Times]) -> Iterator[Visit]
     for step in route.steps:
         time = times[step.task.id]
         yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)
-
-
-def _unsupported(mission: Mission) -> Iterator[Fault]:
-    """Find what this version cannot judge."""
-    if mission.travel_rule == "map":
-        expected = "travel: euclidean or matrix; travel over a map cannot be judged yet"
-        if mission.rules.travel is None:
-            yield Fault(("map",), "a map, and no rules.travel", expected)
-        else:
-            yield Fault(("rules", "travel"), shown("map"), expected)
-    for k, task in enumerate(mission.tasks):
-        if task.action is not None and task.action.has_geometry:
-            expected = "go-to-goal or sensor-activation; actions with geometry cannot be judged yet"
-            yield Fault(("tasks", k, "action"), shown(task.action.name), expected)
-
-
-def _overflow(verdict: Verdict) -> Iterator[Fault]:
-    """Find figures beyond float64. All parts are at least 0, so where these sums are finite everything is."""
-    figures = {
-        "usage": verdict.total_cost + verdict.max_usage,
-        "usage on arrival": verdict.average,
-        "time": max((verdict.makespan_s or 0.0, *(route.back_s or 0.0 for route in verdict.routes))),
-        "priority": verdict.weight_completed,
-    }
-    for name, figure in figures.items():
-        if not math.isfinite(figure):
-            yield Fault((), f"{name} beyond the largest number", _LARGEST)
-
-
-def _refuse(mission: Mission, faults: Iterator[Fault]) -> None:
-    found = findings(faults, mission.source)
-    if found:
-        raise NotSupportedError(found)
 
 
 def _refuse_unknown_words(plan: Plan) -> None:

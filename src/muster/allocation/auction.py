@@ -1,0 +1,44 @@
+"""Sequential single-item auction: in each round every robot bids, and one task is sold.
+
+Auction thesis, chapter 4; Lagoudakis et al., Auction-Based Multi-Robot Routing (2005). Deterministic. A robot that can
+do none of the tasks left makes no bid; a task is offered once its prerequisites are sold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.auctioneer import Auctioneer, OnRound
+from muster.allocation.bookkeeping import book_of
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.terms import Terms
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Terms):
+    """Terms of the auction."""
+
+
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
+    """Sell all tasks that are not in the start plan's routes."""
+
+    def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
+        auctioneer = Auctioneer(problem, params, start, on_round)
+        auctioneer.sell(until)
+        return auctioneer
+
+    held = hold(stop)
+    stop.improved(*problem.value(held.routes))
+    return Outcome(held.routes, book_of(problem, held.round, held.sales, hold))
+
+
+AUCTION = Allocator(
+    name="auction",
+    summary="tasks sold one by one to the best bid; the auction thesis",
+    anytime=False,
+    parameters=Parameters,
+    algorithm=allocate,
+    auctions=True,
+)

@@ -1,0 +1,130 @@
+"""What every auction in one process needs: who bids what, who wins, and the account of the sales."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from muster import core
+from muster.allocation.allocator import Routes
+from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty, suitability_penalty, weighted
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.terms import Terms
+from muster.allocation.winners import WINNER_RULES, Indices, Sale
+
+Sales = dict[int, tuple[int, Sale, Floats]]
+"""By task: round, sale and (m,) the bids for the task, of the last time that it was sold."""
+OnRound = Callable[["Auctioneer", Sale], None]
+
+
+class Auctioneer:
+    """Sells tasks one by one to the robots of a team: announce, then select and assign round by round.
+
+    Tasks are sold only when their prerequisites are. `on_round` is told of every sale before the task is assigned.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        terms: Terms,
+        routes: Routes | None = None,
+        on_round: OnRound | None = None,
+    ) -> None:
+        self._problem = problem
+        self._terms = terms
+        self._rule = BID_RULES[terms.bid or problem.objective]
+        self._bidders = core.Bidders(problem.core, insert=terms.placement == "insert", figure=self._rule.figure)
+        self._winner_rule = WINNER_RULES[terms.winner](self)
+        self._on_round = on_round
+        self._robots = range(len(problem.robots))
+        self._linked = any(problem.prerequisites)
+        self.round = 0
+        self.restore(routes or [[] for _ in problem.robots], {})
+
+    @property
+    def routes(self) -> Routes:
+        return self._bidders.routes
+
+    def restore(self, routes: Routes, sales: Sales) -> None:
+        """Go back to these routes and the sales that led to them; all other tasks are announced."""
+        self.sales = dict(sales)
+        self._bidders.set_routes(routes)
+        self._look_at_team()
+        sold = {j for route in routes for j in route}
+        self.announce([j for j in range(len(self._problem.tasks)) if j not in sold])
+
+    def announce(self, tasks: Sequence[int]) -> None:
+        """Offer tasks."""
+        self._bidders.announce(list(tasks))
+        self._winner_rule.note(self._robots)
+
+    def sell(self, stop: Stop) -> None:
+        """Select and assign until nobody bids any more. No time limit cuts that short: half an auction is of no use."""
+        while not stop.interrupted and (sale := self.select()):
+            self.assign(sale)
+
+    def select(self) -> Sale | None:
+        """The sale of the next round; None if nobody bids for anything."""
+        return self._winner_rule.winner() if self._problem.tasks else None
+
+    def assign(self, sale: Sale) -> None:
+        """Put the task into the winner's route."""
+        self.round += 1
+        if self._on_round is not None:
+            self._on_round(self, sale)
+        self.sales[sale.task] = self.round, sale, self.bids_for(sale.task)
+        greatest = self._greatest_usage
+        self._bidders.award(sale.robot, sale.task)
+        self._look_at_team()
+        others_too = self._linked or (self._rule.of_team and self._greatest_usage != greatest)
+        self._winner_rule.note(self._robots if others_too else (sale.robot,), sale.task)
+
+    def relinquish(self, task: int) -> list[int]:
+        """Take a task out of its route, and all in routes that waits for it; returns them, to be announced again."""
+        returned = self._bidders.relinquish(task)
+        self._look_at_team()
+        return returned
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return len(self._problem.robots), len(self._problem.tasks)
+
+    def bids(self, robot: int) -> Floats:
+        """(n,) what a robot bids for each task; inf where it makes no bid."""
+        bids = self._rule.bid(self._bidders.offers(robot), self._standing(robot))
+        return self._weighted(bids, robot, slice(None))
+
+    def bids_for(self, task: int) -> Floats:
+        """(m,) what each robot bids for a task; inf where it makes no bid."""
+        bids = self._rule.bid(self._bidders.offers_for(task), self._standing(slice(None)))
+        return self._weighted(bids, slice(None), task)
+
+    def lowest_bids(self) -> tuple[Indices, Floats]:
+        """(m,) the task that each robot bids least for, and that bid; inf for a robot without bids."""
+        if self._terms.suitability_weight:  # the lowest bid need not be that with the lowest figure
+            rows = np.array([self.bids(robot) for robot in self._robots])
+            tasks = rows.argmin(axis=1)
+            return tasks, rows[self._robots, tasks]
+        chosen, figures = self._bidders.lowest()
+        tasks = np.array(chosen)
+        return tasks, self._weighted(self._rule.bid(figures, self._standing(slice(None))), slice(None), tasks)
+
+    def _look_at_team(self) -> None:
+        self._usages = self._bidders.usages
+        self._greatest_usage = float(self._usages.max())
+        self._lengths = np.array(self._bidders.lengths, dtype=np.float64)
+
+    def _standing(self, robots: int | slice) -> Standing:
+        return Standing(self._usages[robots], self._lengths[robots], self._greatest_usage)
+
+    def _weighted(self, bids: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
+        terms, penalty = self._terms, np.zeros(())
+        if terms.battery_weight:
+            capacity = self._problem.capacity[robots]
+            penalty = penalty + terms.battery_weight * battery_penalty(self._usages[robots], capacity)
+        if terms.suitability_weight:
+            scores = self._problem.suitability[robots, tasks]
+            penalty = penalty + terms.suitability_weight * suitability_penalty(scores)
+        return weighted(bids, penalty)

@@ -1,0 +1,43 @@
+"""The terms of an auction: who bids what, where a task goes, who wins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster.mission.errors import ParameterError
+
+BIDS = ("total", "max", "average", "average-as-printed", "total+max", "makespan")
+PLACEMENTS = ("append", "insert")
+WINNERS = ("lowest", "least-contested")
+
+_WORDS = {"bid": BIDS, "placement": PLACEMENTS, "winner": WINNERS}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Terms:
+    """Terms of an auction.
+
+    `bid` None is the rule named as the objective. The weights make bids worse, by the share of its capacity that a
+    robot has used up, and by what its suitability for the task lacks to 1: what the auction thesis leaves to future
+    work.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    bid: str | None = None
+    placement: str = "insert"
+    winner: str = "lowest"
+    battery_weight: float = 0.0
+    suitability_weight: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, words in _WORDS.items():
+            value = getattr(self, name)
+            if value not in words and not (name == "bid" and value is None):
+                raise ParameterError(f"{name}: {value}; expected {' or '.join(words)}")
+        for name in ("battery_weight", "suitability_weight"):
+            if not 0 <= getattr(self, name) < float("inf"):
+                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number of at least 0")

@@ -1,0 +1,82 @@
+"""Names in scripts that the usual font lacks: in another font that is installed, or as numbers where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+from muster.mission.model import Mission
+
+FALLBACKS = (
+    *("Noto Sans CJK SC", "Noto Sans CJK TC", "Noto Sans CJK JP", "Noto Sans CJK KR", "Noto Sans SC", "Noto Sans JP"),
+    *("Source Han Sans SC", "WenQuanYi Micro Hei", "WenQuanYi Zen Hei", "Droid Sans Fallback", "Arial Unicode MS"),
+    *("PingFang SC", "Hiragino Sans", "Microsoft YaHei", "Yu Gothic", "Malgun Gothic", "NanumGothic"),
+    *("Noto Sans", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Sans Bengali", "Noto Sans Tamil", "Nirmala UI"),
+    *("Noto Emoji", "Noto Sans Symbols2", "Segoe UI Symbol", "FreeSans", "Unifont"),
+)
+"""Families that are looked at, in this order, for characters that the usual font lacks."""
+
+NOTE = "#n: the n-th robot or task\nof the mission, whose id\nno installed font has"
+
+
+class Names:
+    """How a picture writes the names of a mission. Where no font has an id, its number in the mission stands for it."""
+
+    def __init__(self, mission: Mission) -> None:
+        robots, tasks = [robot.id for robot in mission.robots], [task.id for task in mission.tasks]
+        self._families, self._lacking = _fonts_for({*mission.name}.union(*robots, *tasks))
+        self._robots = {name: f"robot #{k}" for k, name in enumerate(robots, start=1) if not self._drawable(name)}
+        self._tasks = {name: f"task #{k}" for k, name in enumerate(tasks, start=1) if not self._drawable(name)}
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a legend has to say of the names."""
+        return (NOTE,) if self._robots or self._tasks else ()
+
+    def robot(self, name: str) -> str:
+        return self._robots.get(name, name)
+
+    def task(self, name: str) -> str:
+        return self._tasks.get(name, name)
+
+    def title(self, name: str) -> str:
+        """The mission's own name, with question marks for what no font has."""
+        return "".join("?" if c in self._lacking else c for c in name)
+
+    @contextmanager
+    def fonts(self) -> Iterator[None]:
+        """Within this, new texts have the fonts that the names need."""
+        from matplotlib import rc_context, rcParams
+
+        with rc_context({"font.family": [*rcParams["font.family"], *self._families]}):
+            yield
+
+    def _drawable(self, name: str) -> bool:
+        return self._lacking.isdisjoint(name)
+
+
+def _fonts_for(characters: Iterable[str]) -> tuple[list[str], set[str]]:
+    """The installed fallbacks that the characters need, and the characters that none of them has."""
+    foreign = {c for c in characters if not c.isascii()}
+    if not foreign:
+        return [], set()
+    from matplotlib import rcParams
+    from matplotlib.font_manager import fontManager
+
+    lacking = foreign - _characters(rcParams["font.family"])
+    installed = {font.name for font in fontManager.ttflist}
+    chosen = []
+    for family in FALLBACKS:
+        found = lacking & _characters([family]) if lacking and family in installed else set()
+        if found:
+            chosen.append(family)
+            lacking -= found
+    return chosen, lacking
+
+
+def _characters(families: list[str]) -> set[str]:
+    """The characters that a font has, both upright and bold."""
+    from matplotlib.font_manager import FontProperties, findfont, get_font
+
+    files = [findfont(FontProperties(family=families, weight=weight)) for weight in ("normal", "bold")]
+    return set.intersection(*(set(map(chr, get_font(file).get_charmap())) for file in files))

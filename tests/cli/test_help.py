@@ -1,0 +1,47 @@
+"""What the command says of itself."""
+
+import pytest
+from tests.cli.yard import VERBS, table_rows
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("flag", ["--help", "-h"])
+def test_help_of_a_verb(verb, flag, muster):
+    code, out, err = muster(verb, flag)
+    assert (code, err) == (0, "")
+    assert out.startswith(f"Usage: muster {verb} [OPTIONS]")
+    assert all(len(line) <= 80 for line in out.splitlines())
+
+
+def test_help(muster):
+    code, out, err = muster("--help")
+    assert (code, err) == (0, "")
+    first_words = [row[0] for row in table_rows(out)]
+    assert [verb for verb in first_words if verb in VERBS] == list(VERBS)
+
+
+def test_no_verb_shows_help(muster):
+    code, out, err = muster()
+    assert (code, out) == (2, "")
+    assert err.startswith("Usage: muster [OPTIONS] COMMAND")
+
+
+def test_version(muster):
+    code, out, err = muster("--version")
+    assert (code, err) == (0, "")
+    assert out.split()[0] == "muster"
+
+
+def test_unknown_verb(muster):
+    code, out, err = muster("sovle", "yard.yaml")
+    assert (code, out) == (2, "")
+    assert err.splitlines()[-1] == "Error: no verb 'sovle'; did you mean 'solve'?"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_unknown_option(verb, muster):
+    code, out, err = muster(verb, "--colour")
+    assert (code, out) == (2, "")
+    assert "No such option" in err.splitlines()[-1]

@@ -1,0 +1,68 @@
+"""-q and -v, which every verb has: they change what is said on standard error, never standard output."""
+
+from pathlib import Path
+
+import pytest
+
+from muster.cli.main import VERBS
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+READ = "read yard.yaml: mission yard, 2 robots, 4 tasks\n"
+READ_BOTH = f"{READ}read plan.json: plan, 2 routes, 3 tasks\n"
+CALLS = [
+    (["check", "yard.yaml"], READ),
+    (["verify", "yard.yaml", "plan.json"], READ_BOTH),
+    (["explain", "yard.yaml", "plan.json"], READ_BOTH),
+    (["explain", "yard.yaml", "plan.json", "--task", "open"], READ_BOTH),
+    (["missions"], "missions in "),
+    (["init", "new"], "wrote new.yaml: a template, 15 lines\n"),
+    (["init", "new", "--from", "6T-2R"], "wrote new.yaml: a copy of 6T-2R, "),
+]
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_them(verb, muster):
+    _, out, _ = muster(verb, "--help")
+    assert "-q, --quiet" in out
+    assert "-v, --verbose" in out
+
+
+@pytest.mark.parametrize(("arguments", "said"), CALLS)
+def test_verbose_says_what_was_read_or_written(arguments, said, plan, muster):
+    code, out, err = muster(*arguments)
+    assert said not in err
+    Path("new.yaml").unlink(missing_ok=True)
+    louder = muster(*arguments, "-v")
+    assert louder[:2] == (code, out)
+    assert said in louder[2]
+
+
+@pytest.mark.parametrize(("arguments", "_"), CALLS)
+def test_quiet_says_nothing(arguments, _, plan, muster):
+    code, _, err = muster(*arguments, "-q")
+    assert (code, err) == (0, "")
+
+
+@pytest.mark.parametrize("verb", ["check", "verify", "explain"])
+def test_quiet_does_not_hide_errors(verb, plan, muster):
+    arguments = [verb, "none.yaml", *([plan] if verb != "check" else []), "-q"]
+    assert muster(*arguments) == (2, "", "none.yaml: No such file or directory; expected a file to read\n")
+
+
+@pytest.mark.parametrize("verb", ["verify", "explain"])
+def test_a_plan_that_names_another_mission(verb, plan, muster):
+    text = Path("yard.yaml").read_text(encoding="utf-8")
+    Path("other.yaml").write_text(text.replace("name: yard", "name: harbour"), encoding="utf-8")
+    _, out, _ = muster(verb, "yard.yaml", plan)
+    warning = 'warning: plan.json: mission: "yard"; expected "harbour"; the plan may be of another mission\n'
+    assert muster(verb, "other.yaml", plan) == (0, out, warning)
+    assert muster(verb, "other.yaml", plan, "-q") == (0, out, "")
+
+
+@pytest.mark.parametrize("verb", ["verify", "explain"])
+def test_a_renamed_file_and_a_plan_that_names_no_mission(verb, plan, muster):
+    Path("yard.yaml").rename("renamed.yaml")
+    assert muster(verb, "renamed.yaml", plan)[2] == ""
+    plan.write_text(plan.read_text(encoding="utf-8").replace('"mission": "yard"', '"mission": null'), encoding="utf-8")
+    assert muster(verb, "renamed.yaml", plan)[2] == ""

@@ -1,0 +1,59 @@
+"""`muster verify`."""
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.cli.yard import table_rows
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+
+def test_verify(plan, muster):
+    code, out, err = muster("verify", "yard.yaml", plan)
+    assert (code, err) == (0, "")
+    assert table_rows(out)[-1] == ["valid", "yes"]
+
+
+def test_verify_in_json(plan, muster):
+    code, out, err = muster("verify", "yard.yaml", plan, "--format", "json")
+    assert (code, err) == (0, "")
+    data = json.loads(out)
+    assert (data["valid"], data["violations"]) == (True, [])
+    assert {"objective", "total_cost", "max_usage", "makespan_s"} <= set(data)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kind"),
+    [
+        ('"tasks": ["look"]', '"tasks": ["look", "lift"]', "skill"),
+        ('"tasks": ["look"]', '"tasks": []', "figure"),
+        ('"tasks": ["open", "enter"]', '"tasks": ["enter", "open"]', "deadlock"),
+        ('"tasks": ["open", "enter"]', '"tasks": ["enter"]', "prerequisite"),
+        ('"tasks": ["open", "enter"]', '"tasks": ["open", "enter", "open"]', "repeated-task"),
+        ('"robot": "r_1", "tasks"', '"robot": "r_7", "tasks"', "unknown-robot"),
+        ('"tasks_completed": 3', '"tasks_completed": 4', "figure"),
+        ('"total_cost": ', '"total_cost": 1', "figure"),
+    ],
+)
+def test_verify_rejects_a_tampered_plan(old, new, kind, plan, muster):
+    text = plan.read_text(encoding="utf-8")
+    assert old in text
+    plan.write_text(text.replace(old, new), encoding="utf-8")
+    code, out, err = muster("verify", "yard.yaml", plan)
+    assert (code, err) == (1, "")
+    assert any(row[0] == kind for row in table_rows(out))
+    assert "valid             no: " in out
+    code, out, err = muster("verify", "yard.yaml", plan, "--format", "json")
+    assert (code, err) == (1, "")
+    assert json.loads(out)["valid"] is False
+    assert kind in [violation["kind"] for violation in json.loads(out)["violations"]]
+
+
+def test_verify_a_plan_that_cannot_be_read(muster):
+    Path("plan.json").write_text('{"schema": "muster-plan/1",\n "routes": [}', encoding="utf-8")
+    assert muster("verify", "yard.yaml", "plan.json") == (
+        2,
+        "",
+        "plan.json:2: Expecting value; expected a plan in JSON\n",
+    )
