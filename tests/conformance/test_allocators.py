@@ -83,6 +83,17 @@ def test_an_interrupted_run_returns_an_admissible_plan(allocator):
     assert muster.verify(mission, plan).valid
 
 
+def test_a_second_interruption_leaves_out_the_reasons():
+    problem = Problem.compile(muster.load("31T-6R50")).ready()
+    stop = Stop()
+    stop.interrupt()
+    assert all(item.reasons for item in ALLOCATORS["greedy"].solve(problem, stop).unassigned)
+    stop.interrupt()
+    plan = ALLOCATORS["greedy"].solve(problem, stop)
+    assert [item.reasons for item in plan.unassigned] == [()] * 31
+    assert muster.verify(problem.mission, plan).valid
+
+
 @pytest.mark.parametrize("allocator", [name for name, a in ALLOCATORS.items() if a.anytime])
 def test_a_time_limit_is_kept_on_the_given_clock(allocator):
     problem = Problem.compile(muster.load("16T-3R")).ready()

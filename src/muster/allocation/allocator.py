@@ -140,7 +140,7 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
-        unassigned=unassigned(problem, lists),
+        unassigned=unassigned(problem, lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from muster import core
 from muster.allocation.problem import Problem
-from muster.mission.book import Award
+from muster.mission.book import Award, Book
 from muster.mission.plan import Reason, Unassigned
 
 
-def unassigned(problem: Problem, routes: Sequence[Sequence[int]]) -> tuple[Unassigned, ...]:
-    """The tasks that a plan leaves out, in mission order, each with a reason for every robot."""
+def unassigned(
+    problem: Problem, routes: Sequence[Sequence[int]], hurried: Callable[[], bool] = lambda: False
+) -> tuple[Unassigned, ...]:
+    """The tasks that a plan leaves out, in mission order, each with a reason for every robot.
+
+    From when `hurried` says so tasks come without reasons.
+    """
     inspection = core.Inspection(problem.core, [list(route) for route in routes])
     done = {j for route in routes for j in route}
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
     left_out = sorted((j for j in range(len(problem.tasks)) if j not in done), key=lambda j: order[problem.tasks[j].id])
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
-    return tuple(
-        Unassigned(problem.tasks[j].id, tuple(_reason(problem, inspection, done, i, j) for i in robots))
-        for j in left_out
-    )
+
+    def reasons(j: int) -> tuple[Reason, ...]:
+        return () if hurried() else tuple(_reason(problem, inspection, done, i, j) for i in robots)
+
+    return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in left_out)
 
 
 def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:
@@ -46,14 +52,14 @@ def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: in
     return Reason(robot, "not-chosen", f"fits as number {insertion.at + 1}, for {insertion.usage:.2f} {unit} in all")
 
 
-def without_bid(problem: Problem, award: Award) -> tuple[Reason, ...]:
+def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...]:
     """Why robots could not bid for a task in the round in which it was won, in mission order.
 
-    Where an award does not name all bids only the robots are given that may not do the task at all.
+    Only robots that may not do the task at all, where not all bids are named, or a robot need not bid if it can.
     """
     j = problem.task_index[award.task]
     bidders = {robot for robot, _ in award.bids}
-    all_named = award.bidders == len(award.bids)
+    all_named = book.central and award.bidders == len(award.bids)
     reasons = []
     for robot in problem.mission.robots:
         i = problem.robot_index[robot.id]

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from muster.allocation.allocator import Allocator
 from muster.allocation.auction import AUCTION
+from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
 from muster.allocation.genetic import GENETIC
 from muster.allocation.greedy import GREEDY
 from muster.allocation.greedy_genetic import GREEDY_GENETIC
@@ -16,7 +17,16 @@ from muster.allocation.market import MARKET
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import did_you_mean
 
-_IMPLEMENTATIONS = (GREEDY, HILL_CLIMBING, GENETIC, GREEDY_HILL_CLIMBING, GREEDY_GENETIC, AUCTION, MARKET)
+_IMPLEMENTATIONS = (
+    GREEDY,
+    HILL_CLIMBING,
+    GENETIC,
+    GREEDY_HILL_CLIMBING,
+    GREEDY_GENETIC,
+    AUCTION,
+    MARKET,
+    CONSENSUS_BUNDLE,
+)
 
 ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
 

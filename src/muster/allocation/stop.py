@@ -59,7 +59,7 @@ class Stop:
         self._on_progress = on_progress
         self._begin = self._clock.now()
         self._reported = self._begin
-        self._interrupted = False
+        self._interrupted = self._hurried = False
         self.iterations_done = 0
         self.best: tuple[float, float] | None = None
         self.history: list[tuple[float, float]] = []
@@ -72,8 +72,14 @@ class Stop:
     def interrupted(self) -> bool:
         return self._interrupted
 
+    @property
+    def hurried(self) -> bool:
+        """Whether it was interrupted once more: reasons for tasks left out are then not worth waiting for."""
+        return self._hurried
+
     def interrupt(self) -> None:
-        """End the algorithm at the next chance; it returns the best it has."""
+        """End the algorithm at the next chance; it returns the best it has. A second time: leave out the reasons."""
+        self._hurried = self._interrupted
         self._interrupted = True
 
     def due(self) -> bool:

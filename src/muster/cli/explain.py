@@ -17,7 +17,7 @@ from muster.mission.plan import Plan, json_text, read_plan
 if TYPE_CHECKING:
     from muster.allocation.explanations import Alternative
     from muster.allocation.problem import Problem
-    from muster.mission.book import Award
+    from muster.mission.book import Award, Book
     from muster.verification import Verdict
 
 _MOST_SILENT = 10  # robots that could not bid, and are named
@@ -105,8 +105,8 @@ def _one_task(mission: Mission, plan: Plan, task: str, form: str) -> None:
         click.echo(json_text(data | ({} if award is None else {"award": award.as_dict()})), nl=False)
         return
     _print_place(verdict, task, now)
-    if award is not None:
-        click.echo(_award_text(problem, award))
+    if plan.book is not None and award is not None:
+        click.echo(_award_text(problem, plan.book, award))
     _print_alternatives(found, now, objective)
 
 
@@ -123,19 +123,23 @@ def _print_place(verdict: Verdict, task: str, now: str | None) -> None:
         click.echo(f"{now} arrives at {visit.arrives_s:.2f} s{waiting} and ends at {visit.ends_s:.2f} s")
 
 
-def _award_text(problem: Problem, award: Award) -> str:
+def _award_text(problem: Problem, book: Book, award: Award) -> str:
     """How a task was won, who bid what, and why others could not."""
     from muster.allocation.explanations import without_bid
 
-    parts = [f"task {award.task} went to {award.robot} in round {award.round} for {award.price:.2f}"]
-    parts += [f"{robot} bid {bid:.2f}" for robot, bid in award.bids if robot != award.robot]
+    parts = [f"task {award.task} went to {award.robot} in round {award.round} for {_price(award.price)}"]
+    parts += [f"{robot} bid {_price(bid)}" for robot, bid in award.bids if robot != award.robot]
     if award.bidders > len(award.bids):
         parts.append(f"{award.bidders - len(award.bids)} others made worse bids")
-    silent = without_bid(problem, award)
+    silent = without_bid(problem, book, award)
     parts += [f"{reason.robot} could not: {reason.reason}, {reason.detail}" for reason in silent[:_MOST_SILENT]]
     if len(silent) > _MOST_SILENT:
         parts.append(f"{len(silent) - _MOST_SILENT} others could not, either")
     return "; ".join(parts)
+
+
+def _price(bid: float) -> str:
+    return f"{bid:.2f}" if abs(bid) >= 0.1 else f"{bid:.2g}"
 
 
 def _print_alternatives(found: tuple[Alternative, ...], now: str | None, objective: float | None) -> None:

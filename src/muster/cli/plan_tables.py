@@ -21,6 +21,9 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
     print_table(columns, rows, title=title, right=columns[2:])
     print_figures(verdict)
+    if plan.book is not None:
+        messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
+        click.echo(f"rounds            {plan.book.rounds}{messages}")
     if plan.unassigned:
         left_out = [item.task for item in plan.unassigned]
         click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")

@@ -127,9 +127,10 @@ def command(
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
-    _show(loaded, plan, form, output, plot, gantt)
-    if book is not None and plan.book is not None:
-        plan.book.save(book)
+    with _ctrl_c_interrupts(stop):
+        _show(loaded, plan, form, output, plot, gantt)
+        if book is not None and plan.book is not None:
+            plan.book.save(book)
     if stop.interrupted:
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
@@ -168,11 +169,14 @@ def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
 
 def _terms(allocator: Allocator, **words: str | None) -> dict[str, Any]:
     """The terms of an auction that are given."""
-    known = {f.name for f in fields(allocator.parameters)}
-    for name, word in words.items():
-        if word is not None and name not in known:
-            raise ParameterError(f"--{name}: {allocator.name} has no such terms; expected --allocator {_auctions()}")
-    return {name: word for name, word in words.items() if word is not None}
+    from muster.allocation.registry import ALLOCATORS
+
+    given = {name: word for name, word in words.items() if word is not None}
+    for name in given:
+        takers = [a.name for a in ALLOCATORS.values() if name in {f.name for f in fields(a.parameters)}]
+        if allocator.name not in takers:
+            raise ParameterError(f"--{name}: {allocator.name} has no such terms; expected {' or '.join(takers)}")
+    return given
 
 
 def _auctions() -> str:
@@ -208,10 +212,10 @@ def _require_drawable(*files: Path | None) -> None:
 
 @contextmanager
 def _ctrl_c_interrupts(stop: Stop) -> Iterator[None]:
-    """The first Ctrl-C ends the search and keeps its plan; the second ends everything."""
+    """The first Ctrl-C ends the search and keeps its plan; the second leaves out reasons; the third ends everything."""
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
-        if stop.interrupted:
+        if stop.hurried:
             raise KeyboardInterrupt
         stop.interrupt()
 

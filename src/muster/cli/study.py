@@ -36,7 +36,11 @@ _LEAST_SECONDS = 0.01
 )
 @format_option
 @click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables, too; as JSON into .json."
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write the tables (.json, .md, or text).",
 )
 @quiet_option
 def command(
@@ -92,6 +96,11 @@ def _show(report: Report, form: str, output: Path | None) -> None:
     else:
         _print_report(report)
     if output is None:
+        return
+    if output.suffix == ".md":
+        from muster.studies.markdown import as_markdown
+
+        output.write_text(as_markdown(report, f"muster {' '.join(sys.argv[1:])}"), encoding="utf-8")
         return
     with redirect_stdout(StringIO()) as text:
         if form == "json" or output.suffix == ".json":

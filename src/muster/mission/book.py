@@ -67,6 +67,11 @@ class Book:
     recite: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
 
     @property
+    def central(self) -> bool:
+        """Whether somebody asks the robots, so that each bids for all that it can do in every round."""
+        return self.messages is None
+
+    @property
     def bids(self) -> tuple[Bid, ...]:
         """Every bid. Of a large auction there are many: `save` keeps none of them in memory."""
         bids: list[Bid] = []

@@ -19,28 +19,30 @@ from muster.verification import Verdict, verify
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is run. Without `iterations` the allocator ends by itself, and the seed makes no difference."""
+    """What is run. Without a limit the allocator ends by itself, and the seed makes no difference."""
 
     mission: str
     allocator: str
     ignored: tuple[str, ...] = ()
     objective: str = "total+max"
     iterations: int | None = None
+    time_limit: float | None = None
 
     @property
     def random(self) -> bool:
-        return self.iterations is not None
+        return self.iterations is not None or self.time_limit is not None
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """One run: what the judge says of its plan, and the processor time of the allocator alone."""
+    """One run: what the judge says of its plan, the allocator's processor time, and when it had found the plan."""
 
     case: Case
     seed: int
     verdict: Verdict
     iterations: int
     cpu_s: float
+    found_s: float
 
     @property
     def value(self) -> float:
@@ -103,7 +105,7 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
         if unwanted is not None and unwanted():
             stop.interrupt()
 
-    stop = Stop(iterations=case.iterations, on_progress=end_if_unwanted)
+    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, on_progress=end_if_unwanted)
     begin = time.process_time()
     plan = allocator.solve(problem, stop, seed=seed)
     cpu_s = time.process_time() - begin
@@ -114,4 +116,4 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
             f"internal error: the judge rejects the plan of {case.allocator} for {case.mission} with seed {seed}: "
             f"{found.kind} {found.detail}"
         )
-    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s)
+    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])

@@ -1,0 +1,115 @@
+"""Terms and books of auctions on the command line."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+
+def rows_of(path):
+    with Path(path).open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_terms_make_a_difference(muster):
+    def routes(*terms):
+        code, out, _ = muster("solve", "auction-2-as-run", "-a", "auction", *terms, "--format", "json")
+        assert code == 0
+        return [route["tasks"] for route in json.loads(out)["routes"]]
+
+    plans = [
+        routes("--bid", "total"),
+        routes("--bid", "max"),
+        routes("--bid", "total", "--placement", "append"),
+        routes("--bid", "total", "--winner", "least-contested"),
+    ]
+    assert plans[0][0] == ["task1", "task5"]
+    assert len({str(plan) for plan in plans}) == 4
+
+
+def test_the_default_bid_is_the_objective(muster):
+    plans = [
+        json.loads(muster("solve", "auction-2", "-a", "auction", "--format", "json", *arguments)[1])["routes"]
+        for arguments in (["--objective", "max"], ["--objective", "max", "--bid", "max"])
+    ]
+    assert plans[0] == plans[1]
+
+
+@pytest.mark.parametrize("allocator", ["auction", "market", "consensus-bundle"])
+def test_a_book_is_written(muster, allocator):
+    code, _, err = muster(
+        "solve", "yard.yaml", "-a", allocator, "--iterations", 3, "--book", "book.csv", "-o", "plan.json", "-q"
+    )
+    assert (code, err) == (0, "")
+    rows = rows_of("book.csv")
+    plan = json.loads(Path("plan.json").read_text(encoding="utf-8"))
+    won = {(int(row["round"]), row["task"], row["robot"]) for row in rows if row["winner"] == row["robot"]}
+    assert {(award["round"], award["task"], award["robot"]) for award in plan["book"]} <= won
+    assert {award["task"] for award in plan["book"]} == {"look", "open", "enter"}
+
+
+def test_an_allocator_that_holds_no_auction_has_no_book_and_no_terms(muster):
+    code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "--book", "b.csv")
+    assert (code, out) == (2, "")
+    assert err == "--book: greedy keeps no book; expected auction or market or consensus-bundle\n"
+    code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "--bid", "max")
+    assert (code, err) == (2, "--bid: greedy has no such terms; expected auction or market\n")
+
+
+@pytest.mark.parametrize("option", ["--bid", "--placement", "--winner"])
+def test_a_wrong_word_is_refused(muster, option):
+    code, out, err = muster("solve", "yard.yaml", "-a", "auction", option, "cheapest")
+    assert (code, out) == (2, "")
+    assert "'cheapest' is not one of" in err
+
+
+def test_the_book_may_not_replace_the_mission(muster):
+    code, _, err = muster("solve", "yard.yaml", "-a", "auction", "--book", "yard.yaml")
+    assert code == 2
+    assert err.startswith("yard.yaml: given twice")
+
+
+def test_explain_tells_the_auction(muster):
+    muster("solve", "yard.yaml", "-a", "auction", "-o", "plan.json")
+    code, out, _ = muster("explain", "yard.yaml", "plan.json", "--task", "look")
+    assert code == 0
+    assert "task look went to r_0 in round 3 for 4.00; r_1 could not: skill, lacks camera\n" in out
+    code, out, _ = muster("explain", "yard.yaml", "plan.json", "--task", "enter")
+    assert "task enter went to r_1 in round 2" in out
+    assert "r_0 could not: suitability, type beta scores 0.5 for E, below 0.65" in out
+
+
+def test_explain_tells_who_had_no_capacity_left(muster):
+    Path("two.yaml").write_text(
+        "schema: muster/1\nrobots:\n  - {id: a, position: [0, 0], work_capacity: 5}\n"
+        "  - {id: b, position: [9, 0]}\ntasks:\n  - {id: t, position: [6, 0]}\n",
+        encoding="utf-8",
+    )
+    muster("solve", "two.yaml", "-a", "auction", "-o", "plan.json")
+    out = muster("explain", "two.yaml", "plan.json", "--task", "t")[1]
+    assert "task t went to b in round 1 for 6.00; a could not: capacity" in out
+
+
+def test_explain_gives_the_award_to_programs(muster):
+    muster("solve", "yard.yaml", "-a", "auction", "-o", "plan.json")
+    data = json.loads(muster("explain", "yard.yaml", "plan.json", "--task", "look", "--format", "json")[1])
+    expected = {"round": 3, "task": "look", "robot": "r_0", "price": 4.0, "bids": {"r_0": 4.0}, "bidders": 1}
+    assert data["award"] == expected
+
+
+def test_rounds_and_messages_are_told(muster):
+    assert "rounds            3\n" in muster("solve", "yard.yaml", "-a", "auction")[1]
+    assert " messages\n" in muster("solve", "yard.yaml", "-a", "consensus-bundle")[1]
+
+
+def test_words_are_parameters_too(muster):
+    code, out, _ = muster("solve", "31T-6R", "-a", "consensus-bundle", "--set", "topology=line", "--format", "json")
+    assert code == 0
+    assert json.loads(out)["messages"] % 10 == 0
+    code, _, err = muster("solve", "31T-6R", "-a", "consensus-bundle", "--set", "topology=star")
+    assert (code, err) == (2, "topology: star; expected complete, ring or line\n")
+    code, _, err = muster("solve", "31T-6R", "-a", "auction", "--set", "battery_weight=heavy")
+    assert (code, err) == (2, 'battery_weight: "heavy"; expected a number\n')
