@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -32,6 +33,7 @@ COUNTS = {  # robots, tasks
     "auction-1": (2, 6),
     "auction-2": (5, 20),
     "auction-2-as-run": (5, 20),
+    "auction-3-seeded": (20, 50),
     "berlin52-5": (5, 51),
     "berlin52-5-thesis": (5, 56),
     "eil51-3": (3, 50),
@@ -43,6 +45,7 @@ COUNTS = {  # robots, tasks
     "eil76-7": (7, 75),
     "eil76-7-thesis": (7, 82),
     "market-rescue": (3, 5),
+    "market-rescue-20": (5, 20),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]
 SALESMEN = [("berlin52-5", "berlin52", 5), ("eil76-7", "eil76", 7), *((f"eil51-{k}", "eil51", k) for k in (3, 5, 7))]
@@ -301,12 +304,20 @@ def test_auction_2_as_run_differs_in_task0_alone():
     assert shipped("auction-2-as-run") == replace(printed, name="auction-2-as-run", tasks=tasks)
 
 
-@pytest.mark.parametrize("name", ["auction-1", "auction-2", "auction-2-as-run"])
+@pytest.mark.parametrize("name", ["auction-1", "auction-2", "auction-2-as-run", "auction-3-seeded"])
 def test_auction_missions_are_of_drones_that_start_on_the_ground(name):
     mission = shipped(name)
     assert mission.rules.objective == "total"
     assert mission.dimensions == 3
     assert all(r.kind == "air" and r.position[2] == 0 for r in mission.robots)
+
+
+def test_auction_3_seeded_is_drawn_as_its_file_says():
+    mission, random = shipped("auction-3-seeded"), Random(2019)
+    starts = [(random.randint(28, 47), random.randint(28, 47), 0) for _ in range(20)]
+    places = [(random.randint(0, 75), random.randint(0, 75), random.randint(1, 20)) for _ in range(50)]
+    assert {r.id: r.position for r in mission.robots} == {f"firefly{k}": start for k, start in enumerate(starts)}
+    assert {t.id: t.position for t in mission.tasks} == {f"task{k}": place for k, place in enumerate(places)}
 
 
 def test_market_rescue_is_figure_3_in_si_units():

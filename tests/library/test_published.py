@@ -15,7 +15,7 @@ from muster.mission.yaml_reader import read_yaml
 
 TABLES = {
     "auction-1": [f"5.{k}" for k in range(1, 16)],
-    "auction-2": [f"5.{k}" for k in range(16, 21)],
+    "auction-2": [f"5.{k}" for k in range(16, 24)],
     "market-rescue": ["Figure 3", "Figure 5"],
     "tcf-experiments": ["6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11"],
     "tcf-objectives": ["3.21", "3.22"],
@@ -321,6 +321,16 @@ def test_navigation_paths_of_auction_2():
     assert [len(route["tasks"]) for route in routes.values()] == [4, 5, 4, 5, 2]
     routes = table("5.20")["plans"][0]["routes"]
     assert [len(route["tasks"]) for route in routes.values()] == [3, 4, 5, 5, 3]
+
+
+@pytest.mark.parametrize(("number", "most", "idle"), [("5.21", 15, 12), ("5.22", 8, 1), ("5.23", 4, 0)])
+def test_navigation_paths_of_scenario_3_hold_every_task_once(number, most, idle):
+    paths = table(number)["paths"]
+    assert list(paths) == [f"firefly{k}" for k in range(20)]
+    done = [name for path in paths.values() for name in path]
+    assert sorted(done) == sorted(f"task{k}" for k in range(50))
+    assert (max(map(len, paths.values())), sum(not path for path in paths.values())) == (most, idle)
+    assert paths["firefly19"][0] == "task9"  # as the text says
 
 
 def test_market_allocation_gives_every_survivor_a_robot_of_its_skill():

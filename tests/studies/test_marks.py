@@ -7,7 +7,7 @@ import pytest
 from muster.mission.errors import ParameterError
 from muster.studies import Effort, study_named
 from muster.studies.runs import Case, Outcome, Sample, perform
-from muster.studies.tables import Notes
+from muster.studies.tables import Notes, Table, span
 from muster.studies.thesis_3_3.budgets import budgets
 from muster.studies.thesis_3_3.marks import differences, reached
 from muster.studies.thesis_3_3.rules import step_kept
@@ -25,6 +25,7 @@ def sample(*runs: tuple[int, float]) -> Sample:
                 seed,
                 replace(verdict, tasks_completed=tasks, weight_completed=tasks, total_cost=value, max_usage=0.0),
                 1,
+                0.0,
                 0.0,
             )
             for seed, (tasks, value) in enumerate(runs)
@@ -87,6 +88,14 @@ def test_a_step_of_a_chain():
 def test_effort_checks_itself(wrong):
     with pytest.raises(ParameterError, match="expected a whole number"):
         Effort(**wrong)
+
+
+def test_numbers_of_tables_in_short():
+    assert span(("3.2", "3.3", "3.22")) == "3.2 to 3.22"
+    assert span(("5.2", "5.20", "scenario-1")) == "5.2 to 5.20, scenario-1"
+    assert span(("6T-2R", "a", "b", "c", "d", "e")) == "6T-2R, a, b, c, 2 more"
+    headings = [Table(number, "Tasks", (), ()).heading for number in ("3.2", "Figure 5", "6T-2R")]
+    assert headings == ["Table 3.2. Tasks", "Figure 5. Tasks", "6T-2R. Tasks"]
 
 
 def test_unknown_names():

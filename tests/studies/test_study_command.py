@@ -30,9 +30,9 @@ def test_lists_studies(capsys, arguments):
 
 def test_lists_studies_as_json(capsys):
     assert run(["study", "--format", "json"]) == 0
-    (study,) = json.loads(capsys.readouterr().out)
-    assert study["name"] == "thesis-3.3"
-    assert len(study["tables"]) == 21
+    studies = {study["name"]: study["tables"] for study in json.loads(capsys.readouterr().out)}
+    counts = {"thesis-3.3": 21, "auction-5": 22, "market-rescue": 3}
+    assert {name: len(studies[name]) for name in counts} == counts
 
 
 @pytest.mark.parametrize(
@@ -40,6 +40,8 @@ def test_lists_studies_as_json(capsys):
     [
         (["thesis-3"], "did you mean 'thesis-3.3'?"),
         (["thesis-3.3", "--tables", "3.5,3.1"], "table: 3.1; expected 3.2 to 3.22"),
+        (["auction-5", "--tables", "5.21"], "table: 5.21; expected 5.2 to 5.20, scenario-1, "),
+        (["market-rescue", "--tables", "figure 5"], "did you mean 'Figure 5'?"),
         (["thesis-3.3", "-o", "nowhere/at/all.txt"], "nowhere/at/all.txt: cannot be written"),
         (["thesis-3.3", "--seeds", "0"], "--seeds"),
     ],
@@ -66,6 +68,29 @@ def test_quick_study_prints_all_tables(capsys, tmp_path):
         r for r in report["tables"][5]["rows"] if (r["scenario"], r["tasks"], r["iterations"]) == ("16T-3R", 16, None)
     ]
     assert row["F"] == pytest.approx(364.71, abs=0.011)
+
+
+@pytest.mark.parametrize("name", ["auction-5", "market-rescue"])
+def test_other_quick_studies_print_all_tables(capsys, tmp_path, name):
+    file = tmp_path / "study.json"
+    assert run(["study", name, "--quick", "--workers", "1", "-o", str(file)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    report = json.loads(file.read_text(encoding="utf-8"))
+    assert [table["number"] for table in report["tables"]] == list(STUDIES[name].tables)
+    for table in report["tables"]:
+        word = "" if table["number"][0].isalpha() else "Table "
+        assert f"\n{word}{table['number']}. {table['title']}"[:30] in captured.out
+        assert all(list(row) == table["columns"] for row in table["rows"])
+
+
+@pytest.mark.parametrize(("name", "seeds"), [("auction-5", None), ("market-rescue", 2)])
+def test_seeds_are_told_where_something_is_random(capsys, name, seeds):
+    tables = STUDIES[name].tables[0]
+    assert run(["study", name, "--tables", tables, "--seeds", "2", "--iterations", "1", "--workers", "1"]) == 0
+    assert ("seeds 0 to 1" in capsys.readouterr().out) == (seeds is not None)
+    assert run(["study", name, "--tables", tables, "--seeds", "2", "--iterations", "1", "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["seeds"] == seeds
 
 
 def test_json_on_standard_output(capsys, tmp_path):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.studies.tables import span
 
 SEEDS, QUICK_SEEDS = 10, 2
 
@@ -44,3 +47,17 @@ class Effort:
     @property
     def seed_count(self) -> int:
         return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+
+    def wanted(self, tables: Sequence[str]) -> tuple[str, ...]:
+        """Those of a study's tables that are asked for.
+
+        Raises
+        ------
+        ParameterError
+            if there is no table of that number.
+        """
+        for number in self.tables:
+            if number not in tables:
+                hint = did_you_mean(number, tables)
+                raise ParameterError(f"table: {number}; expected {span(tables)}{hint}")
+        return self.tables or tuple(tables)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,13 +12,19 @@ Cell = str | int | float | tuple[str, ...] | tuple[float, float] | None
 
 @dataclass(frozen=True)
 class Table:
-    """One table; each row has a cell for each column."""
+    """One table; each row has a cell for each column. `decimals` are those of figures on a person's screen."""
 
     number: str
     title: str
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
+    decimals: int = 2
+
+    @property
+    def heading(self) -> str:
+        """Number and title; a number that is a name stands for itself."""
+        return f"{'Table ' if _is_printed(self.number) else ''}{self.number}. {self.title}"
 
     def records(self) -> list[dict[str, Cell]]:
         """The rows as mappings from column to cell."""
@@ -36,11 +42,15 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """What a study found. `cpu_s` is the processor time of all `runs`; only times differ between repetitions."""
+    """What a study found.
+
+    `cpu_s` is the processor time of all `runs`; only times differ between repetitions. `seeds` is None where nothing is
+    random.
+    """
 
     study: str
     document: str
-    seeds: int
+    seeds: int | None
     runs: int
     cpu_s: float
     legend: tuple[str, ...]
@@ -75,3 +85,19 @@ class Notes:
 def row(columns: tuple[str, ...], cells: Mapping[str, Cell]) -> tuple[Cell, ...]:
     """Cells by name in the order of the columns; what is not there is empty."""
     return tuple(cells.get(column) for column in columns)
+
+
+MOST_NAMES = 4
+
+
+def span(numbers: Sequence[str]) -> str:
+    """The numbers of tables in short, such as `3.2 to 3.22`; of those that are names the first few."""
+    printed = [number for number in numbers if _is_printed(number)]
+    names = [number for number in numbers if not _is_printed(number)]
+    more = [f"{len(names) - MOST_NAMES} more"] if len(names) > MOST_NAMES else []
+    return ", ".join([*([f"{printed[0]} to {printed[-1]}"] if printed else []), *names[:MOST_NAMES], *more])
+
+
+def _is_printed(number: str) -> bool:
+    """Whether this is the number of a table in a document, such as `3.2`."""
+    return number.replace(".", "").isdecimal()

@@ -1,0 +1,5 @@
+"""Auction thesis, chapter 5: its three scenarios, Tables 5.2 to 5.23."""
+
+from muster.studies.auction_5.study import Auction5
+
+__all__ = ["Auction5"]
