@@ -6,10 +6,10 @@ import pytest
 
 from muster.mission.errors import ParameterError
 from muster.studies import Effort, study_named
+from muster.studies.marks import differences, reached
 from muster.studies.runs import Case, Outcome, Sample, perform
 from muster.studies.tables import Notes, Table, span
 from muster.studies.thesis_3_3.budgets import budgets
-from muster.studies.thesis_3_3.marks import differences, reached
 from muster.studies.thesis_3_3.rules import step_kept
 
 CASE = Case(mission="6T-2R", allocator="greedy", iterations=1)

@@ -4,7 +4,7 @@ import pytest
 
 from muster.library import as_corrected, published
 from muster.studies import Effort, study_named
-from muster.studies.thesis_3_3.published import TOLERANCE
+from muster.studies.marks import TOLERANCE
 
 ROUTES = {
     "3.5": "tcf-unconstrained",

@@ -4,8 +4,9 @@ import pytest
 
 from muster.library import published, published_names
 from muster.studies import Effort, study_named
+from muster.studies.marks import TOLERANCE
+from muster.studies.misprints import corrected
 from muster.studies.thesis_3_3.plans import published_plans
-from muster.studies.thesis_3_3.published import TOLERANCE, corrected
 
 ROWS = {
     "3.2": 11,

@@ -32,7 +32,7 @@ def _table(table: Table) -> Iterator[str]:
     yield _row(table.columns)
     yield _row(["---"] + ["--:"] * (len(table.columns) - 1))
     for row in table.rows:
-        yield _row([_text(cell) for cell in row])
+        yield _row([_text(cell, table.decimals) for cell in row])
     yield ""
     for note in table.notes:
         yield note
@@ -43,9 +43,9 @@ def _row(cells: tuple[str, ...] | list[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def _text(cell: Cell) -> str:
+def _text(cell: Cell, decimals: int) -> str:
     if isinstance(cell, float):
-        return f"{cell:.2f}"
+        return f"{cell:.{decimals}f}"
     if isinstance(cell, tuple):
-        return ", ".join(_text(part) for part in cell)
+        return ", ".join(_text(part, decimals) for part in cell)
     return "" if cell is None else str(cell)

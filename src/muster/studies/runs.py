@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean, stdev
+from typing import Any
 
 from muster._api import load
 from muster.allocation.problem import Problem
@@ -14,6 +15,7 @@ from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Progress, Stop
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
+from muster.mission.plan import Plan, Route
 from muster.verification import Verdict, verify
 
 
@@ -88,6 +90,12 @@ class Sample:
 def mission_named(name: str) -> Mission:
     """A shipped mission, read once."""
     return load(name)
+
+
+def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
+    """What the judge says of routes that state nothing else."""
+    stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
+    return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
 
 
 def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -> Outcome:

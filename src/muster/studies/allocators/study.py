@@ -7,8 +7,6 @@ from statistics import fmean
 
 from muster.allocation.registry import ALLOCATORS
 from muster.library import mission_names, mission_path
-from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
 from muster.mission.model import OBJECTIVES
 from muster.studies.effort import Effort
 from muster.studies.processes import run_cases
@@ -40,7 +38,7 @@ class Allocators:
         ParameterError
             if there is no such table.
         """
-        missions = self._missions(effort)
+        missions = tuple(name for name in effort.wanted(self.tables) if name != SUMMARY) or MISSIONS
         seeds = effort.seeds or 1
         cases = [case for name in missions for case in _cases(name, effort).values()]
         samples = run_cases(cases, seeds, workers, on_done)
@@ -60,13 +58,6 @@ class Allocators:
             ),
             tables=tuple(tables),
         )
-
-    def _missions(self, effort: Effort) -> tuple[str, ...]:
-        for name in effort.tables:
-            if name not in self.tables:
-                hint = did_you_mean(name, self.tables)
-                raise ParameterError(f"table: {name}; expected {SUMMARY} or a shipped mission{hint}")
-        return tuple(name for name in effort.tables if name != SUMMARY) or MISSIONS
 
 
 def _limit(effort: Effort) -> str:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from muster.studies.auction_5.auctions import Auction, Held
 from muster.studies.auction_5.published import content, judged_paths
+from muster.studies.marks import EQUAL, ERRATUM
+from muster.studies.misprints import corrected, errata, printed
 from muster.studies.runs import mission_named
 from muster.studies.tables import Cell, Notes, Table, row
-from muster.studies.thesis_3_3.marks import EQUAL, ERRATUM
-from muster.studies.thesis_3_3.published import corrected, errata, printed
 from muster.verification import RouteFigures
 
 OTHER_TASKS = "other tasks"

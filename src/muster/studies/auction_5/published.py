@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from muster.library import as_corrected, published
-from muster.studies.thesis_3_3.plans import judged
+from muster.studies.runs import judged
 from muster.verification import Verdict
 
 _SECTIONS = ("auction-1", "auction-2")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from muster.mission.book import Bid
 from muster.studies.auction_5.auctions import Auction, Held
 from muster.studies.auction_5.published import content
+from muster.studies.marks import EQUAL
 from muster.studies.tables import Cell, Table, row
-from muster.studies.thesis_3_3.marks import EQUAL
 
 DECIMALS = 1
 """Of a published bid: all are rounded so, none is cut off."""

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.studies.effort import Effort
-from muster.studies.runs import Case, Sample, mission_named
+from muster.studies.runs import Case, Sample, judged, mission_named
 from muster.studies.tables import Cell, Table, row
-from muster.studies.thesis_3_3.plans import judged
 
 MISSION = "market-rescue-20"
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from muster.library import published
 from muster.studies.effort import Effort
+from muster.studies.marks import EQUAL, equal
 from muster.studies.runs import Case, Sample
 from muster.studies.tables import Cell, Table, row
-from muster.studies.thesis_3_3.marks import EQUAL, equal
 from muster.verification import RouteFigures
 
 ITERATIONS = 100

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from muster.mission.plan import Plan, Route
-from muster.studies.runs import Case, mission_named
-from muster.studies.thesis_3_3.published import corrected, is_random, printed, publication
-from muster.verification import Verdict, verify
+from muster.studies.misprints import corrected, printed
+from muster.studies.runs import Case, judged
+from muster.studies.thesis_3_3.published import is_random, publication
+from muster.verification import Verdict
 
 
 @dataclass(frozen=True)
@@ -49,12 +49,6 @@ def _judged(data: Mapping[str, Any], ignored: tuple[str, ...]) -> PublishedPlan:
         as_printed=judged(mission, ignored, {robot: printed(route)["tasks"] for robot, route in routes.items()}),
         as_corrected=judged(mission, ignored, {robot: corrected(route)["tasks"] for robot, route in routes.items()}),
     )
-
-
-def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
-    """What the judge says of routes that state nothing else."""
-    stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
-    return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
 
 
 def rejection(verdict: Verdict) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from muster.library import as_corrected, as_printed, published
+from muster.library import published
 
 _SECTIONS = (
     "tcf-salesmen",
@@ -21,9 +21,6 @@ _AS_RUN = (
     "as the published runs were, with the types E and F of tasks 9 to 15 swapped against Table A.3. "
     "The missions as printed are not run here."
 )
-
-TOLERANCE = 0.011
-"""Of a published figure: the document rounds or cuts off after two decimals."""
 
 
 @dataclass(frozen=True)
@@ -77,30 +74,6 @@ def _complete(row: Mapping[str, Any], content: Mapping[str, Any], section: Mappi
 def is_random(allocator: str) -> bool:
     """Whether an allocator is iterated; the greedy one is not, and of the benchmark only results are known."""
     return allocator not in ("greedy", "benchmark")
-
-
-def errata(record: Mapping[str, Any]) -> Iterator[str]:
-    """What is misprinted in a row: what is printed, what is right, and why."""
-    for key, value in record.items():
-        if isinstance(value, dict) and "erratum" in value:
-            there, right = _shown(value["printed"]), _shown(value["corrected"])
-            yield f"{key.replace('_', ' ')} printed {there}, right {right}: {value['erratum']}"
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.2f}"
-    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-
-
-def printed(record: Mapping[str, Any]) -> dict[str, Any]:
-    """A row as the document prints it."""
-    return dict(as_printed(dict(record)))
-
-
-def corrected(record: Mapping[str, Any]) -> dict[str, Any]:
-    """A row as it should have been printed."""
-    return dict(as_corrected(dict(record)))
 
 
 def as_run_notes(missions: Iterable[str]) -> tuple[str, ...]:

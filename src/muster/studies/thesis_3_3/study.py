@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Protocol
 
-from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
 from muster.studies.effort import Effort
 from muster.studies.processes import run_cases
 from muster.studies.runs import Case, Sample
@@ -80,7 +78,8 @@ class Thesis33:
         ParameterError
             if there is no such table.
         """
-        wanted = [table for table in _TABLES if table.number in self._numbers(effort)]
+        numbers = effort.wanted(self.tables)
+        wanted = [table for table in _TABLES if table.number in numbers]
         cases = [case for table in wanted for case in table.cases(effort)]
         samples = run_cases(cases, effort.seed_count, workers, on_done)
         outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
@@ -93,10 +92,3 @@ class Thesis33:
             legend=_LEGEND,
             tables=tuple(table.table(effort, samples) for table in wanted),
         )
-
-    def _numbers(self, effort: Effort) -> tuple[str, ...]:
-        for number in effort.tables:
-            if number not in self.tables:
-                hint = did_you_mean(number, self.tables)
-                raise ParameterError(f"table: {number}; expected {self.tables[0]} to {self.tables[-1]}{hint}")
-        return effort.tables or self.tables

@@ -7,19 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.studies.effort import Effort
+from muster.studies.marks import ERRATUM, INFORMATION, differences, reached
+from muster.studies.misprints import corrected, errata, printed
 from muster.studies.runs import Case, Sample
 from muster.studies.tables import Cell, Notes, Table, row
 from muster.studies.thesis_3_3.budgets import budgets
-from muster.studies.thesis_3_3.marks import ERRATUM, INFORMATION, differences, reached
 from muster.studies.thesis_3_3.plans import published_plans, rejection
-from muster.studies.thesis_3_3.published import (
-    as_run_notes,
-    corrected,
-    errata,
-    is_random,
-    printed,
-    publication,
-)
+from muster.studies.thesis_3_3.published import as_run_notes, is_random, publication
 
 _UNEVEN = "mean is over plans with different numbers of tasks completed, and worst that of the fewest tasks."
 THESIS, OWN = "thesis", "own"
