@@ -67,7 +67,7 @@ def test_penalties_are_shares():
         ({"bid": "least"}, "bid: least; expected total or max or average"),
         ({"placement": "front"}, f"placement: front; expected {' or '.join(PLACEMENTS)}"),
         ({"winner": "highest"}, "winner: highest; expected lowest or least-contested"),
-        ({"battery_weight": -1}, "battery_weight: -1; expected a number of at least 0"),
+        ({"battery_weight": -1}, "battery_weight: -1; expected a number from 0 to 1e"),
         ({"suitability_weight": float("nan")}, "suitability_weight: nan"),
     ],
 )

@@ -113,3 +113,55 @@ def test_words_are_parameters_too(muster):
     assert (code, err) == (2, "topology: star; expected complete, ring or line\n")
     code, _, err = muster("solve", "31T-6R", "-a", "auction", "--set", "battery_weight=heavy")
     assert (code, err) == (2, 'battery_weight: "heavy"; expected a number\n')
+
+
+def test_the_book_may_not_replace_the_start_plan(muster):
+    muster("solve", "yard.yaml", "-a", "auction", "-o", "start.csv")
+    before = Path("start.csv").read_bytes()
+    for arguments in (["--book", "start.csv"], ["--book", "start.csv", "-o", "plan.json"]):
+        code, _, err = muster("solve", "yard.yaml", "-a", "auction", "--start", "start.csv", *arguments)
+        assert code == 2
+        assert err.startswith("start.csv: given twice")
+    assert Path("start.csv").read_bytes() == before
+    assert muster("solve", "yard.yaml", "-a", "auction", "--start", "start.csv", "-o", "start.csv")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--book", "book.json"], "--book: book.json; expected a file that ends in .csv\n"),
+        (["--bid", "max", "--set", "bid=total"], "--set: bid given twice; expected it once, as --bid\n"),
+        (
+            ["--set", "battery_weight=1", "--set", "battery_weight=2"],
+            "--set: battery_weight given twice; expected it once\n",
+        ),
+        (["--set", "battery_weight=1e308"], "battery_weight: 1e+308; expected a number from 0 to 1e+06\n"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(muster, arguments, message):
+    code, out, err = muster("solve", "yard.yaml", "-a", "auction", *arguments)
+    assert (code, out, err) == (2, "", message)
+
+
+def test_a_disk_without_room_for_the_book(muster):
+    Path("full.csv").symlink_to("/dev/full")
+    code, _, err = muster("solve", "yard.yaml", "-a", "auction", "--book", "full.csv", "-q")
+    assert code == 2
+    assert err.startswith("full.csv")
+
+
+def test_explain_says_when_there_was_no_way(muster):
+    Path("island.yaml").write_text(
+        "schema: muster/1\nrules: {travel: matrix}\ntravel: {a: a.csv, b: b.csv}\nrobots:\n"
+        "  - {id: r, type: a, position: [0, 0]}\n  - {id: s, type: b, position: [9, 0]}\ntasks:\n"
+        "  - {id: t, position: [6, 0]}\n",
+        encoding="utf-8",
+    )
+    Path("a.csv").write_text(",r,s,t\nr,0,9,inf\ns,9,0,inf\nt,inf,inf,0\n", encoding="utf-8")
+    Path("b.csv").write_text(",r,s,t\nr,0,9,6\ns,9,0,3\nt,6,3,0\n", encoding="utf-8")
+    code, _, err = muster("solve", "island.yaml", "-a", "auction", "-o", "plan.json")
+    assert (code, err) == (0, "")
+    assert (
+        "r could not: unreachable, there is no way to it"
+        in muster("explain", "island.yaml", "plan.json", "--task", "t")[1]
+    )

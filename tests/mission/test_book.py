@@ -38,8 +38,10 @@ def test_a_plan_file_keeps_the_awards(plan, tmp_path):
     assert back.book.rounds == 6
     assert back.book.award_of("task5").robot == "firefly1"
     assert back.book.award_of("task7") is None
-    with pytest.raises(ValueError, match="not every bid"):
+    (tmp_path / "again.csv").write_text("kept")
+    with pytest.raises(muster.MusterError, match="every bid"):
         back.book.save(tmp_path / "again.csv")
+    assert (tmp_path / "again.csv").read_text() == "kept"
 
 
 def test_a_plan_that_is_not_of_an_auction_has_none():
@@ -68,6 +70,18 @@ def test_a_book_that_is_none_is_refused(book, tmp_path):
     (tmp_path / "plan.json").write_text(json.dumps({"schema": "muster-plan/1", "routes": [], "book": book}))
     with pytest.raises(muster.MusterError, match="book"):
         read_plan(tmp_path / "plan.json")
+
+
+def test_the_message_names_what_is_wrong(tmp_path):
+    award = {"round": 1, "task": "t", "robot": "r", "price": "cheap", "bids": {}, "bidders": 0}
+    (tmp_path / "plan.json").write_text(json.dumps({"schema": "muster-plan/1", "routes": [], "book": [award]}))
+    with pytest.raises(muster.MusterError, match=r'book\[0\].price: "cheap"; expected a finite number'):
+        read_plan(tmp_path / "plan.json")
+
+
+def test_a_disk_without_room(plan):
+    with pytest.raises(OSError, match="/dev/full"):
+        plan.book.save("/dev/full")
 
 
 def test_books_are_equal_if_their_awards_are():

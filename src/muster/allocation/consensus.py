@@ -157,6 +157,7 @@ class Ledger:
         for row, (_, j, i, _) in enumerate(self._rows):
             last.setdefault(j, {})[i] = row
         won = {last[j][i]: j for j, i in winner.items() if j in last}
+        sold = {self._rows[row][:2]: row for row in won}
 
         def award(row: int, j: int) -> Award:
             ranked = sorted(last[j].items(), key=lambda item: (-self._rows[item[1]][3], item[0]))
@@ -165,9 +166,11 @@ class Ledger:
             return Award.of(number, tasks[j], robots[i], _score(bid), bids)
 
         def recite(take: TakeBid) -> None:
-            for row, (number, j, i, bid) in enumerate(self._rows):
-                winner, price = (robots[i], _score(bid)) if row in won else (None, None)
-                take(Bid(number, tasks[j], robots[i], _score(bid), winner, price))
+            for number, j, i, bid in self._rows:
+                row = sold.get((number, j))
+                won_by = None if row is None else robots[self._rows[row][2]]
+                price = None if row is None else _score(self._rows[row][3])
+                take(Bid(number, tasks[j], robots[i], _score(bid), won_by, price))
 
         messages = self.rounds * sum(map(len, network))
         awards = tuple(award(row, j) for row, j in sorted(won.items()))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from muster import core
+from muster.allocation.feasibility import least_usage
 from muster.allocation.problem import Problem
 from muster.mission.book import Award, Book
 from muster.mission.plan import Reason, Unassigned
@@ -66,8 +67,10 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
         refusal = problem.refusal(i, j)
         if refusal is not None:
             reasons.append(Reason(robot.id, *refusal))
+        elif all_named and robot.id not in bidders and math.isinf(least_usage(problem, i)[j]):
+            reasons.append(Reason(robot.id, "unreachable", "there is no way to it"))
         elif all_named and robot.id not in bidders:
-            reasons.append(Reason(robot.id, "capacity", "too little was left of it, or there was no way"))
+            reasons.append(Reason(robot.id, "capacity", "too little was left of it"))
     return tuple(reasons)
 
 

@@ -10,6 +10,7 @@ BIDS = ("total", "max", "average", "average-as-printed", "total+max", "makespan"
 PLACEMENTS = ("append", "insert")
 WINNERS = ("lowest", "least-contested")
 
+_MOST_WEIGHT = 1e6
 _WORDS = {"bid": BIDS, "placement": PLACEMENTS, "winner": WINNERS}
 
 
@@ -17,9 +18,9 @@ _WORDS = {"bid": BIDS, "placement": PLACEMENTS, "winner": WINNERS}
 class Terms:
     """Terms of an auction.
 
-    `bid` None is the rule named as the objective. The weights make bids worse, by the share of its capacity that a
-    robot has used up, and by what its suitability for the task lacks to 1: what the auction thesis leaves to future
-    work.
+    `bid` None is the rule named as the objective. The weights make bids worse by a factor: 1, plus battery_weight times
+    the share of its capacity that a robot has used up, plus suitability_weight times what its suitability for the task
+    lacks to 1. The auction thesis leaves both to future work.
 
     Raises
     ------
@@ -39,5 +40,5 @@ class Terms:
             if value not in words and not (name == "bid" and value is None):
                 raise ParameterError(f"{name}: {value}; expected {' or '.join(words)}")
         for name in ("battery_weight", "suitability_weight"):
-            if not 0 <= getattr(self, name) < float("inf"):
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number of at least 0")
+            if not 0 <= getattr(self, name) <= _MOST_WEIGHT:
+                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to {_MOST_WEIGHT:g}")

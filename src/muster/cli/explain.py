@@ -130,11 +130,11 @@ def _award_text(problem: Problem, book: Book, award: Award) -> str:
     parts = [f"task {award.task} went to {award.robot} in round {award.round} for {_price(award.price)}"]
     parts += [f"{robot} bid {_price(bid)}" for robot, bid in award.bids if robot != award.robot]
     if award.bidders > len(award.bids):
-        parts.append(f"{award.bidders - len(award.bids)} others made worse bids")
+        parts.append(f"{award.bidders - len(award.bids)} more made worse bids")
     silent = without_bid(problem, book, award)
     parts += [f"{reason.robot} could not: {reason.reason}, {reason.detail}" for reason in silent[:_MOST_SILENT]]
     if len(silent) > _MOST_SILENT:
-        parts.append(f"{len(silent) - _MOST_SILENT} others could not, either")
+        parts.append(f"{len(silent) - _MOST_SILENT} more could not, either")
     return "; ".join(parts)
 
 
@@ -151,7 +151,8 @@ def _print_alternatives(found: tuple[Alternative, ...], now: str | None, objecti
         if other.reason is not None:
             rows.append((other.robot + mark, "no", f"{other.reason.reason}: {other.reason.detail}"))
         elif other.objective is not None:
-            change = f" ({other.objective - objective:+.2f})" if objective is not None and now is not None else ""
+            more = other.objective - objective if objective is not None and now is not None else None
+            change = "" if more is None else f" ({round(more, 2) + 0.0:+.2f})"
             rows.append(
                 (other.robot + mark, "yes", f"best as number {other.number}: objective {other.objective:.2f}{change}")
             )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
@@ -112,13 +113,17 @@ def command(
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
-    _require_writable((output, book, plot, gantt), (mission, robots, suitability))
+    _require_writable(output, (book, plot, gantt), (mission, robots, suitability), start)
+    _require_csv(book)
     _require_drawable(plot, gantt)
     chosen = allocator_named(allocator)
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
     terms = _terms(chosen, bid=bid, placement=placement, winner=winner)
-    params = make_parameters(chosen, {**terms, **_settings(settings)})
+    others = _settings(settings)
+    for name in terms.keys() & others.keys():
+        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
+    params = make_parameters(chosen, terms | others)
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore).ready()
@@ -129,8 +134,8 @@ def command(
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
     with _ctrl_c_interrupts(stop):
         _show(loaded, plan, form, output, plot, gantt)
-        if book is not None and plan.book is not None:
-            plan.book.save(book)
+    if book is not None and not _write_book(plan, book, quiet):
+        return INTERRUPTED
     if stop.interrupted:
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
@@ -147,17 +152,23 @@ def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     from muster.cli.tables import print_table
 
     rows = [
-        (a.name, a.summary, ", ".join(f"{f.name}={f.default}" for f in fields(a.parameters)) or "-")
+        (a.name, a.summary, ", ".join(f"{f.name}={_default(f.default)}" for f in fields(a.parameters)) or "-")
         for a in ALLOCATORS.values()
     ]
     print_table(("allocator", "what it is", "parameters and defaults"), rows)
     ctx.exit()
 
 
+def _default(value: object) -> object:
+    return "(objective)" if value is None else value
+
+
 def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
+        if name.strip() in values:
+            raise ParameterError(f"--set: {name.strip()} given twice; expected it once")
         if not equals or not name.strip() or not text.strip():
             raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
         try:
@@ -185,13 +196,36 @@ def _auctions() -> str:
     return " or ".join(allocator.name for allocator in ALLOCATORS.values() if allocator.auctions)
 
 
-def _require_writable(outputs: tuple[Path | None, ...], inputs: tuple[str | Path | None, ...]) -> None:
-    """Find out before a long search, not after it, that its result cannot be written or would replace something."""
+def _write_book(plan: Plan, file: Path, quiet: bool) -> bool:
+    """Write every bid, which takes a while where there are many; whether all are written."""
+    if not quiet and sys.stderr.isatty():
+        click.echo(f"writing {file} ...", err=True)
+    try:
+        if plan.book is not None:
+            plan.book.save(file)
+    except KeyboardInterrupt:
+        click.echo(f"interrupted: {file} does not hold all bids", err=True)
+        return False
+    return True
+
+
+def _require_csv(book: Path | None) -> None:
+    if book is not None and book.suffix.lower() != ".csv":
+        raise ParameterError(f"--book: {book}; expected a file that ends in .csv")
+
+
+def _require_writable(
+    plan: Path | None, others: tuple[Path | None, ...], inputs: tuple[str | Path | None, ...], start: Path | None
+) -> None:
+    """Find out before a long search, not after it, that its result cannot be written or would replace something.
+
+    The plan may replace the start plan.
+    """
     taken = {Path(name).resolve() for name in inputs if name is not None and Path(name).is_file()}
-    for file in outputs:
+    for file, not_onto in ((plan, None), *((other, start) for other in others)):
         if file is None:
             continue
-        if file.resolve() in taken:
+        if file.resolve() in taken or (not_onto is not None and file.resolve() == not_onto.resolve()):
             raise ParameterError(f"{file}: given twice; expected a file that is neither read nor written otherwise")
         taken.add(file.resolve())
         if file.is_dir() or not file.parent.is_dir():

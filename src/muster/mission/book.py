@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from muster.mission.errors import MusterError
+
 COLUMNS = ("round", "task", "robot", "bid", "winner", "price")
 MOST_BIDS_OF_AN_AWARD = 10
 """Bids that an award names; `Book.save` writes all."""
@@ -75,7 +77,7 @@ class Book:
     def bids(self) -> tuple[Bid, ...]:
         """Every bid. Of a large auction there are many: `save` keeps none of them in memory."""
         bids: list[Bid] = []
-        self._recite(bids.append)
+        self._every_bid()(bids.append)
         return tuple(bids)
 
     def award_of(self, task: str) -> Award | None:
@@ -84,19 +86,19 @@ class Book:
 
     def save(self, path: str | Path) -> None:
         """Write every bid as CSV, a line each, with the columns COLUMNS."""
-        with Path(path).open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
+        recite = self._every_bid()
+        try:
+            with Path(path).open("w", encoding="utf-8", newline="") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(COLUMNS)
+                recite(lambda b: writer.writerow((b.round, b.task, b.robot, b.bid, b.winner or "", _text(b.price))))
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(path)) from None
 
-            def write(bid: Bid) -> None:
-                writer.writerow((bid.round, bid.task, bid.robot, bid.bid, bid.winner or "", _text(bid.price)))
-
-            self._recite(write)
-
-    def _recite(self, take: TakeBid) -> None:
+    def _every_bid(self) -> Callable[[TakeBid], None]:
         if self.recite is None:
-            raise ValueError("a plan file holds the awards, not every bid")
-        self.recite(take)
+            raise MusterError("book: read from a plan file; expected that of a plan just made, which holds every bid")
+        return self.recite
 
 
 def _text(price: float | None) -> str:

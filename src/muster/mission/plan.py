@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -268,26 +268,23 @@ class _Reading:
         if data.get("book") is None:
             return None
         awards = self._given(data, "book", list, [])
-        for k, award in enumerate(awards):
-            if not _is_award(award):
-                expected = "a mapping with round, task, robot, price, bids (robot: bid) and bidders"
-                self._refuse(f"book[{k}]", award, expected)
-                return None
+        right = [self._is_award(award, k) for k, award in enumerate(awards)]
+        if not all(right):
+            return None
         return Book(
             rounds=self._given(data, "rounds", int, 0),
             messages=self._given(data, "messages", int),
             awards=tuple(Award(**award | {"bids": tuple(award["bids"].items())}) for award in awards),
         )
 
-
-def _is_award(value: object) -> bool:
-    kinds = {"round": int, "task": str, "robot": str, "price": int | float, "bids": dict, "bidders": int}
-    return (
-        isinstance(value, dict)
-        and value.keys() == kinds.keys()
-        and all(isinstance(value[name], kind) for name, kind in kinds.items())
-        and all(map(_finite, (value["price"], *value["bids"].values())))
-    )
+    def _is_award(self, award: object, k: int) -> bool:
+        if not isinstance(award, dict) or award.keys() != _AWARD.keys():
+            self._refuse(f"book[{k}]", award, f"a mapping with {', '.join(_AWARD)} and nothing else")
+            return False
+        wrong = [name for name, (fits, _) in _AWARD.items() if not fits(award[name])]
+        for name in wrong:
+            self._refuse(f"book[{k}].{name}", award[name], _AWARD[name][1])
+        return not wrong
 
 
 def _finite(value: object) -> bool:
@@ -298,8 +295,25 @@ def _finite(value: object) -> bool:
         return False
 
 
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
 def _is_id(value: object) -> bool:
     return isinstance(value, str | int) and not isinstance(value, bool)
+
+
+_AWARD: Mapping[str, tuple[Callable[[object], bool], str]] = {
+    "round": (_is_count, "a whole number of at least 0"),
+    "task": (_is_id, "an id"),
+    "robot": (_is_id, "an id"),
+    "price": (_finite, "a finite number"),
+    "bids": (
+        lambda bids: isinstance(bids, dict) and all(map(_finite, bids.values())),
+        "a mapping from robot to number",
+    ),
+    "bidders": (_is_count, "a whole number of at least 0"),
+}
 
 
 def tie_order(names: Sequence[str]) -> list[int]:

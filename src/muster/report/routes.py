@@ -41,6 +41,8 @@ MOST_NUMBERS = 200
 """Tasks up to which each bears its place in the route."""
 MOST_STARTS = 30
 """Robots up to which starts are named."""
+MOST_IDLE = 4
+"""Robots without tasks up to which these are named like the others."""
 _LONG_SIDE_IN = 6.6
 
 
@@ -109,6 +111,8 @@ class _Scene:
     dimensions: int
     detail: _Detail
     names: Names
+    idle: frozenset[str]
+    """Robots that are not named, as many have nothing to do."""
 
     def places(self, points: Sequence[Point]) -> Places:
         return places(points, self.dimensions)
@@ -116,13 +120,16 @@ class _Scene:
 
 def _scene(mission: Mission, verdict: Verdict, spatial: bool) -> _Scene:
     dimensions = 3 if spatial else 2
+    drawn = traces(mission, verdict, dimensions)
+    idle = [trace.robot.id for trace in drawn if not trace.tasks]
     return _Scene(
         mission=mission,
-        traces=traces(mission, verdict, dimensions),
+        traces=drawn,
         left_out=left_out(mission, verdict),
         dimensions=dimensions,
         detail=_detail(len(mission.tasks)),
         names=Names(mission),
+        idle=frozenset(idle if len(idle) > MOST_IDLE else ()),
     )
 
 
@@ -266,14 +273,17 @@ def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
     from matplotlib.lines import Line2D
 
     entries: list[tuple[Any, str]] = []
-    shown = named_rows(len(scene.traces))
-    for trace in scene.traces[:shown]:
+    named = [trace for trace in scene.traces if trace.robot.id not in scene.idle]
+    shown = named_rows(len(named))
+    for trace in named[:shown]:
         style = robot_style(trace.index)
         mark = Line2D([], [], color=style.color, marker=style.marker, markersize=5.5, linestyle="none")
         line = Line2D([], [], **_stroke(style, 1.6))
         entries.append(((line, mark), f"{shortened(scene.names.robot(trace.robot.id))}  {_usage_text(trace, unit)}"))
-    if shown < len(scene.traces):
-        entries.append((Line2D([], [], linestyle="none"), f"... and {len(scene.traces) - shown} more"))
+    if shown < len(named):
+        entries.append((Line2D([], [], linestyle="none"), f"... and {len(named) - shown} more"))
+    if scene.idle:
+        entries.append((Line2D([], [], linestyle="none"), f"{len(scene.idle)} robots without tasks"))
     return entries
 
 
@@ -312,6 +322,8 @@ def _name_places(ax: Any, scene: _Scene) -> None:
     if len(scene.mission.robots) <= MOST_STARTS:
         look = {"fontsize": 7.5, "color": TEXT, "fontweight": "bold", "zorder": 4}
         for position, group in _starts(scene):
+            if all(scene.mission.robots[index].id in scene.idle for index in group):
+                continue
             gid = f"start-name-{scene.mission.robots[group[0]].id}"
             names.append((position, _group_name(scene, group), {**look, "gid": gid}))
     if scene.detail.ids:
