@@ -165,3 +165,9 @@ def test_explain_says_when_there_was_no_way(muster):
         "r could not: unreachable, there is no way to it"
         in muster("explain", "island.yaml", "plan.json", "--task", "t")[1]
     )
+
+
+def test_a_number_of_four_hundred_digits_is_refused(muster):
+    code, _, err = muster("solve", "yard.yaml", "-a", "market", "--set", f"ro={'9' * 400}")
+    assert code == 2
+    assert err.endswith("expected a number of fewer digits\n")

@@ -174,8 +174,10 @@ def make_parameters(allocator: Allocator, values: dict[str, Any]) -> Any:
 
 
 def _check_kind(name: str, default: object, value: object) -> None:
-    if isinstance(default, int | float) and not isinstance(value, int | float):
+    if isinstance(default, int | float) and (isinstance(value, bool) or not isinstance(value, int | float)):
         raise ParameterError(f"{name}: {shown(value)}; expected a number")
+    if isinstance(default, float) and isinstance(value, int) and abs(value) >= 2**63:
+        raise ParameterError(f"{name}: {shown(value)}; expected a number of fewer digits")
     if isinstance(default, int) and not isinstance(value, int):
         raise ParameterError(f"{name}: {value}; expected a whole number")
     if isinstance(default, int) and isinstance(value, int) and value > _MOST:

@@ -12,7 +12,7 @@ from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty,
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.terms import Terms
-from muster.allocation.winners import WINNER_RULES, Indices, Sale
+from muster.allocation.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
 
 Sales = dict[int, tuple[int, Sale, Floats]]
 """By task: round, sale and (m,) the bids for the task, of the last time that it was sold."""
@@ -36,7 +36,9 @@ class Auctioneer:
         self._terms = terms
         self._rule = BID_RULES[terms.bid or problem.objective]
         self._bidders = core.Bidders(problem.core, insert=terms.placement == "insert", figure=self._rule.figure)
-        self._winner_rule = WINNER_RULES[terms.winner](self)
+        by_figure = not terms.suitability_weight  # else the lowest bid need not be that with the lowest figure
+        rule = WINNER_RULES[terms.winner]
+        self._winner_rule: WinnerRule = rule(self) if by_figure or rule is not Lowest else KeptLowest(self)
         self._on_round = on_round
         self._robots = range(len(problem.robots))
         self._linked = any(problem.prerequisites)
@@ -103,10 +105,6 @@ class Auctioneer:
 
     def lowest_bids(self) -> tuple[Indices, Floats]:
         """(m,) the task that each robot bids least for, and that bid; inf for a robot without bids."""
-        if self._terms.suitability_weight:  # the lowest bid need not be that with the lowest figure
-            rows = np.array([self.bids(robot) for robot in self._robots])
-            tasks = rows.argmin(axis=1)
-            return tasks, rows[self._robots, tasks]
         chosen, figures = self._bidders.lowest()
         tasks = np.array(chosen)
         return tasks, self._weighted(self._rule.bid(figures, self._standing(slice(None))), slice(None), tasks)

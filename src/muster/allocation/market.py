@@ -23,6 +23,8 @@ from muster.allocation.stop import Stop
 from muster.allocation.terms import Terms
 from muster.mission.errors import ParameterError
 
+_TRADING = 0.9  # share of a time limit; the rest is for the annealing
+
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(Terms):
@@ -73,11 +75,14 @@ def trade(
     """Lines 8 to 23; the best allocation."""
     random = Random(seed)
     auctioneer = Auctioneer(problem, params, start, on_round)
-    best = current = _allocation(problem, auctioneer)
+    before = _allocation(problem, auctioneer)
     auctioneer.sell(stop)
-    best = current = min(best, _allocation(problem, auctioneer), key=_rank)
+    current = _allocation(problem, auctioneer)
+    best = min(before, current, key=_rank)
     stop.improved(-best.rank[0], best.rank[1])
     for _ in stop.iterations():
+        if stop.share_of_time > _TRADING:
+            break
         relinquish(auctioneer, random)  # 15, of the iteration before
         auctioneer.sell(stop)  # 10 to 14
         new = _allocation(problem, auctioneer)
@@ -93,19 +98,19 @@ def trade(
 
 def relinquish(auctioneer: Auctioneer, random: Random) -> None:
     """Every robot gives one random task back."""
-    returned: list[int] = []
+    returned: set[int] = set()
     for route in auctioneer.routes:
         left = [task for task in route if task not in returned]
         if left:
-            returned += auctioneer.relinquish(random.choice(left))
-    auctioneer.announce(returned)
+            returned.update(auctioneer.relinquish(random.choice(left)))
+    auctioneer.announce(sorted(returned))
 
 
 def optimize(problem: Problem, stop: Stop, seed: int, params: Parameters, routes: Routes) -> Routes:
     """Simulated annealing of each robot's order."""
     annealing = core.Annealing(problem.core, routes, seed)
     for robot in range(len(routes)):
-        if stop.interrupted:
+        if stop.due():
             break
         annealing.anneal(robot, params.annealing_steps)
     stop.improved(*problem.value(annealing.routes))

@@ -15,7 +15,7 @@ from muster.allocation.greedy_hill_climbing import GREEDY_HILL_CLIMBING
 from muster.allocation.hill_climbing import HILL_CLIMBING
 from muster.allocation.market import MARKET
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.hints import did_you_mean
 
 _IMPLEMENTATIONS = (
     GREEDY,

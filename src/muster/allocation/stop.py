@@ -95,6 +95,26 @@ class Stop:
             self.iterations_done += 1
             yield self.iterations_done
 
+    def batches(self, size: int) -> Iterator[int]:
+        """Count iterations in batches of at most this size until it is time to stop; yields how many each has."""
+        while not self.due():
+            left = size if self._iterations is None else min(size, self._iterations - self.iterations_done)
+            if left <= 0:
+                return
+            self.iterations_done += left
+            yield left
+
+    @property
+    def share(self) -> float:
+        """How much of its iterations or time an algorithm has had, 0 to 1; 0 where neither is limited."""
+        of_iterations = self.iterations_done / self._iterations if self._iterations else 0.0
+        return min(1.0, max(of_iterations, self.share_of_time))
+
+    @property
+    def share_of_time(self) -> float:
+        """How much of its time an algorithm has had, from 0; 0 where time is not limited."""
+        return self.elapsed_s / self._time_limit if self._time_limit else 0.0
+
     def improved(self, weight: float, objective: float) -> None:
         """Note the figures of a plan, if it is the best so far."""
         if self.best is not None and (-weight, objective) >= (-self.best[0], self.best[1]):

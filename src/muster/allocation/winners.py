@@ -61,9 +61,35 @@ class Lowest:
 
     def winner(self) -> Sale | None:
         """The lowest of all bids."""
-        tasks, bids = self._bidding.lowest_bids()
-        robot = int(np.argmin(bids))
-        return Sale(robot, int(tasks[robot]), float(bids[robot])) if np.isfinite(bids[robot]) else None
+        return _lowest(*self._bidding.lowest_bids())
+
+
+class KeptLowest:
+    """The same where a robot's lowest bid need not be that with its lowest figure: it is kept until it changes."""
+
+    def __init__(self, bidding: Bidding) -> None:
+        self._bidding = bidding
+        self._tasks: Indices = np.full(bidding.shape[0], -1, dtype=np.int64)
+        self._lowest = np.full(bidding.shape[0], np.inf)
+
+    def note(self, robots: Sequence[int], sold: int | None = None) -> None:
+        """Find the lowest bids of these robots anew, and of those that bid for what is sold."""
+        if not self._bidding.shape[1]:
+            return
+        also = () if sold is None else np.flatnonzero(self._tasks == sold).tolist()
+        for robot in {*robots, *also}:
+            bids = self._bidding.bids(robot)
+            self._tasks[robot] = np.argmin(bids)
+            self._lowest[robot] = bids[self._tasks[robot]]
+
+    def winner(self) -> Sale | None:
+        """The lowest of all bids."""
+        return _lowest(self._tasks, self._lowest)
+
+
+def _lowest(tasks: Indices, bids: Floats) -> Sale | None:
+    robot = int(np.argmin(bids))
+    return Sale(robot, int(tasks[robot]), float(bids[robot])) if np.isfinite(bids[robot]) else None
 
 
 class LeastContested:

@@ -10,7 +10,7 @@ import click
 
 from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
 from muster.mission.errors import Finding, ParameterError, PlanError
-from muster.mission.kinds import did_you_mean
+from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 

@@ -1,6 +1,7 @@
 // Simulated annealing of the order of tasks in single routes (market paper, section 3.1: "optimize").
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "draft.hpp"
@@ -20,14 +21,23 @@ class Annealing {
   const Draft& draft() const { return draft_; }
 
  private:
-  void vary(std::vector<int>& route);
-  bool ordered(int robot, const std::vector<int>& route);
-  double cost(int robot, const std::vector<int>& route);
+  using Route = std::vector<int>;
+
+  void look_at_others(int robot);
+  double usual_change(int robot, const Route& route);
+  void vary(Route& route);
+  bool ordered(const Route& route);
+  double cost(int robot, const Route& route);
+  double end(int robot, const Route& route) const;
 
   const Problem& problem_;
   Random random_;
   Evaluator evaluator_;
   Draft draft_;
+  std::vector<std::pair<int, int>> before_;  // tasks of the route that must come one before the other
+  std::vector<double> release_;              // by task: when its prerequisites in other routes end
+  std::vector<int> place_, seen_, stack_;
+  int stamp_ = 0;
 };
 
 }  // namespace muster

@@ -68,6 +68,10 @@ class Book:
     awards: tuple[Award, ...]
     recite: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: as in a plan file, the awards and not every bid."""
+        return {**self.__dict__, "recite": None}
+
     @property
     def central(self) -> bool:
         """Whether somebody asks the robots, so that each bids for all that it can do in every round."""

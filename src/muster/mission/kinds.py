@@ -14,7 +14,7 @@ from dataclasses import MISSING, Field, dataclass, field, fields
 from numbers import Real
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
-from muster.mission.hints import did_you_mean as did_you_mean
+from muster.mission.hints import did_you_mean
 
 Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]

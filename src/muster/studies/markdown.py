@@ -48,4 +48,4 @@ def _text(cell: Cell, decimals: int) -> str:
         return f"{cell:.{decimals}f}"
     if isinstance(cell, tuple):
         return ", ".join(_text(part, decimals) for part in cell)
-    return "" if cell is None else str(cell)
+    return "" if cell is None else " ".join(str(cell).split()).replace("|", "\\|")

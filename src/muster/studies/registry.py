@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Protocol
 
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import did_you_mean
+from muster.mission.hints import did_you_mean
 from muster.studies.allocators import Allocators
 from muster.studies.auction_5 import Auction5
 from muster.studies.effort import Effort

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
+from muster.mission.book import Book
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification.verdict import Verdict, Violation
@@ -19,6 +20,29 @@ def false_statements(mission: Mission, plan: Plan, verdict: Verdict) -> Iterator
     yield from _left_out(mission, plan)
     yield from _figures(plan, verdict)
     yield from _usages(plan, verdict)
+    if plan.book is not None:
+        yield from _book(mission, plan, plan.book)
+
+
+def _book(mission: Mission, plan: Plan, book: Book) -> Iterator[Violation]:
+    """Find where the account of an auction contradicts the routes, or itself."""
+    robot_of = {task: route.robot for route in plan.routes for task in route.tasks}
+    times = Counter(award.task for award in book.awards)
+    known = {robot.id for robot in mission.robots}
+    for award in book.awards:
+        bids = dict(award.bids)
+        wrong = (
+            (award.task not in robot_of, "won, but in no route"),
+            (robot_of.get(award.task, award.robot) != award.robot, f"won by {award.robot}, but done by another"),
+            (times[award.task] > 1, f"won {times[award.task]} times"),
+            (not 1 <= award.round <= book.rounds, f"won in round {award.round} of {book.rounds}"),
+            (not known >= bids.keys(), "a bid of no robot of the mission"),
+            (award.bidders < len(bids), f"{len(bids)} bids of {award.bidders} robots"),
+            (not _agrees(bids.get(award.robot), award.price), f"won for {award.price}, which was not the bid"),
+        )
+        for found, detail in wrong:
+            if found:
+                yield Violation("book", award.robot, award.task, detail)
 
 
 def _figures(plan: Plan, verdict: Verdict) -> Iterator[Violation]:

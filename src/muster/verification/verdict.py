@@ -21,6 +21,7 @@ KINDS = (
     "prerequisite",
     "deadlock",
     "unassigned",
+    "book",
     "figure",
 )
 """The kinds of violation."""
