@@ -1,60 +1,157 @@
-"""What holds for every sequential auction, and the bound of the literature."""
+"""What holds for every sequential auction, of the market too, and the bound of the literature."""
 
 import itertools
 import math
+import pickle
 from functools import cache
 from random import Random
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.random_missions import random_mission
+from tests.random_missions import random_mission, with_travel_tables
 
 import muster
+from muster.allocation.allocator import make_parameters
+from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS, Terms
+from muster.mission.clock import VirtualClock
 
+both_auctions = pytest.mark.parametrize("allocator", ["auction", "market"])
+every_winner = pytest.mark.parametrize("winner", WINNERS)
+seeds = st.integers(0, 10**6)
+weights = {"battery_weight": st.sampled_from([0, 0, 2.0]), "suitability_weight": st.sampled_from([0, 0, 1.5])}
+other_terms = st.fixed_dictionaries(
+    {"bid": st.sampled_from((*BIDS, None)), "placement": st.sampled_from(PLACEMENTS), **weights}
+)
+ignored = st.sampled_from([(), ("prerequisites",)])
 every_terms = pytest.mark.parametrize(
     ("bid", "placement", "winner"), list(itertools.product((*BIDS, None), PLACEMENTS, WINNERS))
 )
 
 
+def mission_by(seed, tables, *, tasks):
+    mission = random_mission(seed, tasks=tasks)
+    return with_travel_tables(mission, seed) if tables else mission
+
+
 @every_terms
-@given(seed=st.integers(0, 10**6), battery=st.sampled_from([0, 0, 2.0]), suitability=st.sampled_from([0, 0, 1.5]))
-def test_plans_are_admissible_and_nobody_can_take_what_is_left(bid, placement, winner, seed, battery, suitability):
-    mission = random_mission(seed, tasks=9)
-    plan = muster.solve(
-        mission,
-        "auction",
-        bid=bid,
-        placement=placement,
-        winner=winner,
-        battery_weight=battery,
-        suitability_weight=suitability,
-    )
+@given(seed=seeds, tables=st.booleans(), weights=st.fixed_dictionaries(weights))
+def test_plans_are_admissible_and_nobody_can_take_what_is_left(bid, placement, winner, seed, tables, weights):
+    mission = mission_by(seed, tables, tasks=9)
+    plan = muster.solve(mission, "auction", bid=bid, placement=placement, winner=winner, **weights)
     assert muster.verify(mission, plan).violations == ()
-    if placement == "insert" and not any(task.prerequisites for task in mission.tasks):
+    if placement == "insert":
         assert all(reason.reason != "not-chosen" for item in plan.unassigned for reason in item.reasons)
 
 
-@given(seed=st.integers(0, 10**6), bid=st.sampled_from(BIDS), placement=st.sampled_from(PLACEMENTS))
-def test_each_round_goes_to_the_lowest_bid_in_the_book(seed, bid, placement):
-    mission = random_mission(seed, tasks=8)
-    plan = muster.solve(mission, "auction", bid=bid, placement=placement)
+def rounds_of(book):
     rounds = {}
-    for row in plan.book.bids:
+    for row in book.bids:
         rounds.setdefault(row.round, []).append(row)
-    assert sorted(rounds) == list(range(1, plan.book.rounds + 1))
+    assert sorted(rounds) == list(range(1, book.rounds + 1))
+    return rounds
+
+
+def sale(rows, winner):
+    """Who gets which task in a round with these bids, and for how much: worked out from them alone."""
+    bids = {}
+    for row in rows:
+        bids.setdefault(row.task, []).append((row.bid, row.robot))
+    sales = []
+    for task, offers in bids.items():
+        (price, robot), *others = sorted(offers)
+        gap = min(others)[0] - price if others else math.inf
+        sales.append((price if winner == "lowest" else -gap, robot, task, price))
+    return min(sales)[1:]
+
+
+@both_auctions
+@every_winner
+@given(seed=seeds, tables=st.booleans(), terms=other_terms, ignore=ignored)
+def test_each_round_goes_to_the_winner_by_the_bids_in_the_book(allocator, winner, seed, tables, terms, ignore):
+    mission = mission_by(seed, tables, tasks=8)
+    more = {"iterations": 8, "annealing_steps": 0} if allocator == "market" else {}
+    plan = muster.solve(mission, allocator, seed=seed, ignore=ignore, winner=winner, **terms, **more)
+    for rows in rounds_of(plan.book).values():
+        assert {(row.winner, row.task, row.price) for row in rows if row.winner} == {sale(rows, winner)}
+
+
+class Interrupted(Stop):
+    """Is interrupted when it is looked at for the last of a number of times."""
+
+    def __init__(self, looks):
+        super().__init__()
+        self._looks = looks
+
+    def due(self):
+        return self.interrupted or super().due()
+
+    @property
+    def interrupted(self):
+        self._looks -= 1
+        return self._looks < 0
+
+
+STOPS = {
+    "after iterations": lambda k: Stop(iterations=k // 2),
+    "interrupted": Interrupted,
+    "out of time": lambda k: Stop(time_limit=k, clock=VirtualClock(step_s=1.0)),
+}
+
+
+@both_auctions
+@pytest.mark.parametrize("end", STOPS)
+@given(seed=seeds, k=st.integers(0, 50), terms=other_terms, winner=st.sampled_from(WINNERS), begun=st.booleans())
+def test_the_awards_agree_with_the_bids_and_the_routes_however_it_ends(allocator, end, seed, k, terms, winner, begun):
+    mission = random_mission(seed, tasks=8)
+    start = muster.solve(mission, "genetic", iterations=1, seed=seed) if begun else None
+    params = make_parameters(ALLOCATORS[allocator], terms | {"winner": winner})
+    plan = ALLOCATORS[allocator].solve(Problem.compile(mission), STOPS[end](k), seed=seed, params=params, start=start)
+    assert muster.verify(mission, plan).violations == ()
+    robots = {(task, route.robot) for route in plan.routes for task in route.tasks}
+    sold = {(award.task, award.robot) for award in plan.book.awards}
+    assert sold <= robots
+    assert robots - sold <= {(task, route.robot) for route in (start.routes if begun else ()) for task in route.tasks}
+    rounds = rounds_of(plan.book)
     for award in plan.book.awards:
-        rows = rounds[award.round]
-        assert award.price == min(row.bid for row in rows)
-        assert {row.task for row in rows if row.winner} == {award.task}
-        assert {row.winner for row in rows if row.task == award.task} == {award.robot}
-        assert dict(award.bids) == {row.robot: row.bid for row in rows if row.task == award.task}
-    routes = {task: route.robot for route in plan.routes for task in route.tasks}
-    assert {award.task: award.robot for award in plan.book.awards} == routes
+        rows = [row for row in rounds[award.round] if row.task == award.task]
+        assert {(row.winner, row.price) for row in rows} == {(award.robot, award.price)}
+        assert dict(award.bids) == {row.robot: row.bid for row in rows}
+        assert award.bids[0] == (award.robot, award.price)
+
+
+@every_winner
+@given(seed=seeds, tables=st.booleans(), terms=other_terms, ignore=ignored)
+def test_bids_are_always_those_of_an_auction_begun_with_the_same_routes(winner, seed, tables, terms, ignore):
+    problem, random = Problem.compile(mission_by(seed, tables, tasks=7), ignored=ignore), Random(seed)
+    terms = Terms(winner=winner, **terms)
+    auctioneer = Auctioneer(problem, terms)
+    states = [auctioneer.routes]
+    for _ in range(14):
+        step = random.random()
+        sold = [task for route in auctioneer.routes for task in route]
+        if step < 0.1:
+            auctioneer.restore(random.choice(states), {})
+        elif step < 0.3 and sold:
+            auctioneer.announce(auctioneer.relinquish(random.choice(sold)))
+        elif next_sale := auctioneer.select():
+            auctioneer.assign(next_sale)
+        states.append(auctioneer.routes)
+        fresh = Auctioneer(problem, terms, states[-1])
+        assert auctioneer.select() == fresh.select()
+        for i in range(len(problem.robots)):
+            assert auctioneer.bids(i).tolist() == fresh.bids(i).tolist()
+
+
+@pytest.mark.parametrize("allocator", [a.name for a in ALLOCATORS.values() if a.auctions])
+def test_a_plan_with_a_book_can_be_pickled(allocator):
+    plan = muster.solve(muster.load("6T-2R"), allocator, iterations=3)
+    assert plan.book.awards
+    assert pickle.loads(pickle.dumps(plan)) == plan
 
 
 def uniform(seed, tasks, robots):
@@ -90,7 +187,7 @@ def least_total(mission):
     return team(0, frozenset(range(len(points))))
 
 
-@given(seed=st.integers(0, 10**6), tasks=st.integers(1, 6), robots=st.integers(1, 3))
+@given(seed=seeds, tasks=st.integers(1, 6), robots=st.integers(1, 3))
 def test_minisum_is_at_most_twice_the_optimum(seed, tasks, robots):
     """Lagoudakis et al. (2005), Theorem 1: open routes, metric travel, no limits."""
     mission = uniform(seed, tasks, robots)

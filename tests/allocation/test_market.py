@@ -1,4 +1,4 @@
-"""The market: what relinquishing and annealing keep, and what they gain."""
+"""The market: what relinquishing and annealing keep, and what they gain. Its books: in test_auction.py."""
 
 import itertools
 import math
@@ -9,8 +9,13 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 import muster
+from muster.allocation import market
+from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.market import Parameters
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.mission.model import OBJECTIVES
 
 
 @given(
@@ -29,16 +34,34 @@ def test_plans_are_admissible_and_no_worse_than_the_first_auction(seed, bid, pla
     assert (-plan.weight_completed, plan.objective_value) <= (-first.weight_completed, first.objective_value)
 
 
-@given(seed=st.integers(0, 10**6))
-def test_the_book_holds_the_sales_of_the_plan(seed):
-    mission = random_mission(seed, tasks=8)
-    plan = muster.solve(mission, "market", iterations=12, seed=seed)
-    won = {(row.round, row.task, row.robot): row.bid for row in plan.book.bids if row.winner == row.robot}
-    for award in plan.book.awards:
-        assert won[award.round, award.task, award.robot] == award.price
-    routes = {task: route.robot for route in plan.routes for task in route.tasks}
-    assert {award.task: award.robot for award in plan.book.awards} == routes
-    assert plan.book.rounds >= max((award.round for award in plan.book.awards), default=0)
+@pytest.mark.parametrize(("ro", "least", "most"), [(0.0, 0.0, 0.0), (0.3, 0.15, 0.45), (1.0, 1.0, 1.0)])
+def test_a_worse_allocation_stands_as_often_as_ro_says(monkeypatch, ro, least, most):
+    """Spies on the routes from which each iteration begins, and on those to which its auction leads."""
+    problem = Problem.compile(muster.load("eil51-5")).ready()
+    begun, sold = [], []
+    relinquish, sell = market.relinquish, Auctioneer.sell
+
+    def spied_relinquish(auctioneer, *args):
+        begun.append(auctioneer.routes)
+        relinquish(auctioneer, *args)
+
+    def spied_sell(auctioneer, stop):
+        sell(auctioneer, stop)
+        sold.append(auctioneer.routes)
+
+    monkeypatch.setattr(market, "relinquish", spied_relinquish)
+    monkeypatch.setattr(Auctioneer, "sell", spied_sell)
+    market.MARKET.solve(problem, Stop(iterations=200), params=Parameters(ro=ro, placement="append", annealing_steps=0))
+    assert begun[0] == sold[0]
+    worse_stands = []
+    for current, new, after in zip(begun, sold[1:], begun[1:], strict=False):
+        if problem.value(new)[1] > problem.value(current)[1]:
+            worse_stands.append(after == new)
+            assert after in (current, new)
+        else:
+            assert after == new
+    assert len(worse_stands) > 50
+    assert least <= sum(worse_stands) / len(worse_stands) <= most
 
 
 def test_the_cost_is_the_papers_a_plus_b_within_the_battery():
@@ -68,6 +91,18 @@ def test_annealing_comes_after_the_trade():
     plain, annealed = (muster.solve(mission, "market", annealing_steps=steps, **terms) for steps in (0, 20_000))
     assert annealed.objective_value < 0.95 * plain.objective_value
     assert [sorted(r.tasks) for r in annealed.routes] == [sorted(r.tasks) for r in plain.routes]
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_annealing_improves_every_route(objective):
+    robots = tuple(muster.Robot(id=name, position=(0, y)) for y, name in enumerate("abc"))
+    tasks = tuple(muster.Task(id=f"{r.id}{x}", position=(x, y)) for y, r in enumerate(robots) for x in range(1, 8))
+    mission = muster.Mission(rules=muster.Rules(objective=objective), robots=robots, tasks=tasks)
+    start = muster.Plan(
+        routes=tuple(muster.Route(r.id, tuple(f"{r.id}{x}" for x in (4, 7, 1, 6, 3, 5, 2))) for r in robots)
+    )
+    plan = muster.solve(mission, "market", start=start, iterations=0)
+    assert [route.tasks for route in plan.routes] == [tuple(f"{r.id}{x}" for x in range(1, 8)) for r in robots]
 
 
 @pytest.mark.parametrize(("name", "value"), [("ro", -0.1), ("ro", 1.1), ("annealing_steps", -1)])
