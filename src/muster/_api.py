@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 
-DEFAULT_ALLOCATOR = "greedy+genetic"
+DEFAULT_ALLOCATOR = "search"
 
 
 def load(
@@ -99,6 +99,7 @@ def solve(
     objective: str | None = None,
     ignore: Collection[str] = (),
     start: Plan | None = None,
+    bound: str | None = None,
     **parameters: Any,
 ) -> Plan:
     """Plan a mission.
@@ -116,6 +117,8 @@ def solve(
         rules that do not hold: prerequisites, suitability, skills, capacity.
     start
         a plan to go on from.
+    bound
+        `quick` or `exact`: prove how good the plan is, as its `lower_bound`.
     parameters
         of the allocator, such as `population_size`.
 
@@ -125,6 +128,7 @@ def solve(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
+    from muster.allocation.proofs import with_bound
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
 
@@ -135,7 +139,8 @@ def solve(
     problem = Problem.compile(mission, objective, ignore).ready()
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
     stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
-    return chosen.solve(problem, stop, seed=seed, params=params, start=start)
+    plan = chosen.solve(problem, stop, seed=seed, params=params, start=start)
+    return plan if bound is None else with_bound(problem, plan, bound, stop, time_limit)
 
 
 def verify(mission: Mission, plan: Plan) -> Verdict:

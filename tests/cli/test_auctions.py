@@ -56,7 +56,7 @@ def test_an_allocator_that_holds_no_auction_has_no_book_and_no_terms(muster):
     assert (code, out) == (2, "")
     assert err == "--book: greedy keeps no book; expected auction or market or consensus-bundle\n"
     code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "--bid", "max")
-    assert (code, err) == (2, "--bid: greedy has no such terms; expected auction or market\n")
+    assert (code, err) == (2, "--bid: greedy takes none; expected --allocator auction or market\n")
 
 
 @pytest.mark.parametrize("option", ["--bid", "--placement", "--winner"])

@@ -42,7 +42,7 @@ def test_explain_a_task_that_is_left_out(plan, muster):
     code, out, err = muster("explain", "yard.yaml", plan, "--task", "lift")
     assert (code, err) == (0, "")
     assert out.splitlines()[0] == "task lift is left out"
-    assert [row[1] for row in table_rows(out) if row[0] in ("r_0", "r_1")] == ["no", "no"]
+    assert [row[1] for row in table_rows(out) if row[0] in ("r_0", "r_1")] == ["no", "no", "skill", "skill"]
 
 
 def test_explain_a_task_in_json(plan, muster):
@@ -64,3 +64,127 @@ def test_explain_a_plan_of_another_mission(plan, muster):
     assert (code, out) == (2, "")
     first = "plan.json: unknown-task: look, no task of the mission; expected a plan of this mission"
     assert err.splitlines()[0] == f"{first} (`muster verify` says more)"
+
+
+# --- what would have to change ---------------------------------------------------------------------------------------
+
+SHED = """\
+schema: muster/1
+name: shed
+suitability:
+  beta: {D: 0.9, E: 0.5}
+  tau: {E: 0.8}
+robots:
+  - {id: r_0, type: beta, position: [0, 0], work_capacity: 20, skills: [camera]}
+  - {id: r_1, type: tau, position: [20, 0], work_capacity: 20}
+tasks:
+  - {id: a, type: D, position: [5, 0]}
+  - {id: b, type: E, position: [15, 0]}
+  - {id: c, type: D, position: [0, 15], requires: [camera], only_robots: [r_0]}
+  - {id: lift, type: D, position: [1, 0], requires: [gripper]}
+  - {id: hang, type: D, position: [2, 0], prerequisites: [lift]}
+  - {id: far, type: E, position: [20, 30]}
+"""
+
+
+@pytest.fixture
+def shed(folder):
+    """A plan from elsewhere, of a mission in `shed.yaml`."""
+    (folder / "shed.yaml").write_text(SHED, encoding="utf-8")
+    routes = [{"robot": "r_0", "tasks": ["a"]}, {"robot": "r_1", "tasks": ["b"]}]
+    (folder / "shed.json").write_text(json.dumps({"schema": "muster-plan/1", "routes": routes}), encoding="utf-8")
+    return "shed.yaml", "shed.json"
+
+
+def needs(out):
+    """The lines of the table of what each robot would need, and what follows."""
+    lines = [" ".join(line.split()) for line in out.splitlines()]
+    at = next(k for k, line in enumerate(lines) if line.startswith("to do "))
+    return [line for line in lines[at + 4 :] if line]
+
+
+def test_the_smallest_change_for_each_task_left_out(shed, muster):
+    code, out, err = muster("explain", *shed)
+    assert (code, err) == (0, "")
+    lines = [" ".join(line.split()) for line in out.splitlines()]
+    at = lines.index("smallest changes, the rest as it is")
+    assert [line for line in lines[at + 4 :] if line] == [
+        "c r_0 capacity 20.82 m, not 20",
+        "lift r_0 skill gripper",
+        "hang r_0 first lift, left out as well",
+        "far r_1 capacity 35.42 m, not 20",
+    ]
+
+
+def test_the_smallest_changes_in_json(shed, muster):
+    data = json.loads(muster("explain", *shed, "--format", "json")[1])
+    assert list(data) == ["unassigned", "smallest"]
+    kinds = {item["task"]: (item["remedy"]["robot"], item["remedy"]["kinds"]) for item in data["smallest"]}
+    assert kinds == {
+        "c": ("r_0", ["capacity"]),
+        "lift": ("r_0", ["skill"]),
+        "hang": ("r_0", ["prerequisite"]),
+        "far": ("r_1", ["capacity"]),
+    }
+
+
+def test_a_change_of_each_kind(shed, muster):
+    assert needs(muster("explain", *shed, "--task", "c")[1]) == [
+        "r_0 capacity: needs at least 20.81 m (proven), 20.82 m is enough (a plan was found); it has 20",
+        "capacity with the rest of the plan as it is: 20.82 m",
+        "r_1 skill camera",
+        "suitability 0.65: tau scores 0 for D",
+        "a place in the lock: only r_0 may do it",
+        "capacity: needs at least 26.21 m (proven), 26.22 m is enough (a plan was found); it has 20",
+        "capacity with the rest of the plan as it is: 26.22 m",
+        "smallest change: r_0: capacity 20.82 m, not 20",
+    ]
+
+
+def test_a_prerequisite_that_can_never_be_done(shed, muster):
+    assert needs(muster("explain", *shed, "--task", "hang")[1]) == [
+        "r_0 first lift, left out as well",
+        "but lift can never be done: --task lift says more",
+        "r_1 suitability 0.65: tau scores 0 for D",
+        "first lift, left out as well",
+        "but lift can never be done: --task lift says more",
+    ]
+
+
+def test_a_task_that_another_robot_does(shed, muster):
+    assert needs(muster("explain", *shed, "--task", "a")[1]) == [
+        "r_0 (now) nothing: it fits into the plan as it is",
+        "r_1 suitability 0.65: tau scores 0 for D",
+        "nothing else: it fits into the plan as it is",
+    ]
+
+
+def test_tasks_that_can_be_moved(shed, folder, muster):
+    """Where r_1 may do a as well, r_0 has room for c."""
+    text = SHED.replace("tau: {E: 0.8}", "tau: {D: 0.7, E: 0.8}")
+    (folder / "shed.yaml").write_text(text, encoding="utf-8")
+    lines = needs(muster("explain", *shed, "--task", "c")[1])
+    assert lines[0] == "r_0 nothing: a plan was found in which other tasks are moved"
+    assert lines[-1] == "no change is needed: r_0 can do it beside all else"
+
+
+def test_the_reserve_is_mentioned(shed, folder, muster):
+    (folder / "shed.yaml").write_text(SHED + "rules: {capacity_reserve: 0.2}\n", encoding="utf-8")
+    lines = needs(muster("explain", *shed, "--task", "far")[1])
+    assert lines[-1] == "capacities are work_capacity, the reserve of 0.2 included"
+    assert "44.27 m is enough" in lines[-4]
+
+
+def test_lines_are_not_too_long(shed, muster):
+    for task in ("a", "c", "lift", "hang", "far"):
+        assert max(map(len, muster("explain", *shed, "--task", task)[1].splitlines())) <= 100
+
+
+def test_remedies_in_json(shed, muster):
+    data = json.loads(muster("explain", *shed, "--task", "far", "--format", "json")[1])
+    first, second = data["remedies"]
+    assert list(data) == ["task", "robot", "objective", "alternatives", "remedies"]
+    assert (first["suitability"]["score"], first["suitability"]["needed"]) == (0.5, 0.65)
+    assert second["capacity"]["now"] == 20
+    assert second["kinds"] == ["capacity"]
+    assert second["enough"] is True

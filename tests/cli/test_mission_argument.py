@@ -16,7 +16,7 @@ def test_task_list_csv(muster):
     assert muster("check", *flags) == (0, "t: 2 robots, 3 tasks; no errors\n", "")
     code, out, err = muster("solve", *flags, "--iterations", 10, "-o", "p.json", "--require-complete")
     assert (code, err) == (0, "")
-    assert out.startswith("t: greedy+genetic, seed 0")
+    assert out.startswith("t: search, seed 0")
     assert {task for route in read_plan("p.json").routes for task in route.tasks} == {"1", "2", "3"}
     assert muster("verify", *flags, "p.json")[0] == 0
     assert muster("explain", *flags, "p.json", "--task", 2)[0] == 0

@@ -20,7 +20,7 @@ def test_solve_prints_a_table(muster):
     code, out, err = muster("solve", "yard.yaml", "--iterations", 20, "--seed", 3)
     assert (code, err) == (0, "")
     rows = table_rows(out)
-    assert rows[0] == ["yard:", "greedy+genetic,", "seed", "3"]
+    assert rows[0] == ["yard:", "search,", "seed", "3"]
     assert ["r_0", "look", "4.00", "30.00"] in rows
     assert ["tasks", "completed", "3", "of", "4"] in rows
     assert ["left", "out", "lift", "(`muster", "explain`", "says", "why)"] in rows
@@ -157,11 +157,13 @@ def test_unknown_allocator(muster):
     ],
 )
 def test_bad_setting(setting, message, muster):
-    assert muster("solve", "yard.yaml", "--iterations", 5, "--set", setting) == (2, "", message)
+    flags = ["-a", "greedy+genetic", "--iterations", 5, "--set", setting]
+    assert muster("solve", "yard.yaml", *flags) == (2, "", message)
 
 
 def test_settings(muster):
-    flags = ["--iterations", 5, "--set", "population_size=3", "--set", " mutation_probability = .5"]
+    flags = ["-a", "greedy+genetic", "--iterations", 5]
+    flags += ["--set", "population_size=3", "--set", " mutation_probability = .5"]
     assert muster("solve", "yard.yaml", *flags)[0] == 0
 
 

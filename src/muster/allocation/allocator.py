@@ -104,7 +104,7 @@ def admissible_routes(problem: Problem, plan: Plan) -> Routes:
         f"{problem.robots[i].id} may not do {problem.tasks[j].id}"
         for i, route in enumerate(routes)
         for j in route
-        if not problem.allowed[i, j]
+        if not problem.may(i, j)
     ]
     if forbidden or not inspection.admissible:
         raise ParameterError(f"start: {forbidden[0] if forbidden else 'the plan is not admissible'}")

@@ -215,7 +215,7 @@ class _Bidder:
 
     def offer(self, tasks: Indices) -> None:
         """Begin with an empty bundle."""
-        self._columns = tasks[self._problem.allowed[self._i, tasks]]
+        self._columns = tasks[self._problem.allowed_by_kind[self._problem.kinds[self._i], tasks]]
         self._column = {j: column for column, j in enumerate(self._columns.tolist())}
         self._reward = self._priority[self._columns]
         self._free: Bools = np.ones(len(self._columns), dtype=np.bool_)

@@ -35,7 +35,7 @@ def unassigned(
 def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:
     """Why robot i does not do task j, which the plan leaves out."""
     robot = problem.robots[i].id
-    refusal = None if problem.allowed[i, j] else problem.refusal(i, j)
+    refusal = None if problem.may(i, j) else problem.refusal(i, j)
     if refusal is not None:
         return Reason(robot, *refusal)
     missing = [problem.tasks[k].id for k in problem.prerequisites[j] if k not in done]

@@ -60,7 +60,7 @@ def least_usage(problem: Problem, i: int) -> Floats:
     are looked at too.
     """
     tasks = np.arange(len(problem.tasks))
-    through = [int(j) for j in problem.shortcuts() if problem.allowed[i, j]]
+    through = [int(j) for j in problem.shortcuts() if problem.may(i, int(j))]
     work = problem.work_usage(i)
     there = problem.legs(i, [problem.start(i)], tasks)[0]
     between = problem.legs(i, through, tasks)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -74,6 +74,16 @@ class Problem:
         assert self.core is not None
         return self
 
+    def part(self, robots: Sequence[int], tasks: Sequence[int]) -> Problem:
+        """The problem of some of the mission's robots and tasks, in ascending order; none may wait for one outside."""
+        return replace(self, robots=tuple(self.robots[i] for i in robots), tasks=tuple(self.tasks[j] for j in tasks))
+
+    @property
+    def places(self) -> tuple[Floats, Floats]:
+        """Where tasks are entered, (n, 3), and robots start, (m, 3), in metres of the map frame."""
+        n, m = len(self.tasks), len(self.robots)
+        return self._entries[:n], self._entries[n : n + m]
+
     def holds(self, rule: str) -> bool:
         """Whether a rule of IGNORABLE holds."""
         return rule not in self.ignored
@@ -111,6 +121,10 @@ class Problem:
                 waiting[k].append(j)
         return waiting
 
+    def may(self, i: int, j: int) -> bool:
+        """Whether robot i may do task j: skills, suitability, locks."""
+        return bool(self.allowed_by_kind[self.kinds[i], j])
+
     def refusal(self, i: int, j: int) -> tuple[str, str] | None:
         """Why robot i may not do task j whatever its route (reason, detail); None if it may."""
         robot, task = self.robots[i], self.tasks[j]
@@ -128,15 +142,33 @@ class Problem:
 
     @cached_property
     def allowed(self) -> Bools:
-        """(m, n) whether robot i may do task j: skills, suitability, locks. Rows of like robots are worked out once."""
-        rows: dict[tuple[object, ...], Bools] = {}
+        """(m, n) whether robot i may do task j: skills, suitability, locks. Of a large team that is a large table."""
+        return self.allowed_by_kind[self.kinds]
+
+    @cached_property
+    def kinds(self) -> npt.NDArray[np.int32]:
+        """(m,) kinds of robots: of one kind are those that may do the same tasks for the same reasons."""
+        number = {key: k for k, key in enumerate(self._robots_by_kind)}
+        return np.array([number[key] for key in self._kind_keys], dtype=np.int32)
+
+    @cached_property
+    def allowed_by_kind(self) -> Bools:
+        """(kinds, n) whether a robot of a kind may do a task."""
+        rows = [self._allowed_row(i) for i in self._robots_by_kind.values()]
+        return np.array(rows, dtype=np.bool_).reshape(len(rows), len(self.tasks))
+
+    @cached_property
+    def _robots_by_kind(self) -> dict[tuple[object, ...], int]:
+        """The first robot of each kind."""
+        first: dict[tuple[object, ...], int] = {}
+        for i, key in enumerate(self._kind_keys):
+            first.setdefault(key, i)
+        return first
+
+    @cached_property
+    def _kind_keys(self) -> list[tuple[object, ...]]:
         locked = {name for task in self.tasks for name in task.only_robots or ()}
-        for i, robot in enumerate(self.robots):
-            key = robot.type, frozenset(robot.skills), robot.id if robot.id in locked else None
-            if key not in rows:
-                rows[key] = self._allowed_row(i)
-        keys = [(r.type, frozenset(r.skills), r.id if r.id in locked else None) for r in self.robots]
-        return np.array([rows[key] for key in keys], dtype=np.bool_).reshape(len(self.robots), len(self.tasks))
+        return [(r.type, frozenset(r.skills), r.id if r.id in locked else None) for r in self.robots]
 
     def _allowed_row(self, i: int) -> Bools:
         return np.array([self.refusal(i, j) is None for j in range(len(self.tasks))], dtype=np.bool_)
@@ -165,7 +197,8 @@ class Problem:
             actuation_cost=self._actuation_cost,
             duration=self._duration,
             priority=_floats(t.priority for t in self.tasks),
-            allowed=self.allowed,
+            allowed=self.allowed_by_kind,
+            kind=self.kinds,
             prerequisites=self.prerequisites,
             entry=self._entries,
             exit=self._exits,

@@ -14,6 +14,7 @@ from muster.allocation.greedy_genetic import GREEDY_GENETIC
 from muster.allocation.greedy_hill_climbing import GREEDY_HILL_CLIMBING
 from muster.allocation.hill_climbing import HILL_CLIMBING
 from muster.allocation.market import MARKET
+from muster.allocation.search import SEARCH
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 
@@ -26,6 +27,7 @@ _IMPLEMENTATIONS = (
     AUCTION,
     MARKET,
     CONSENSUS_BUNDLE,
+    SEARCH,
 )
 
 ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})

@@ -37,6 +37,8 @@ class Stop:
         what time is measured with.
     on_progress
         called when the best plan improves, and every now and then between.
+    whole
+        of which this is a part: it ends with it.
     """
 
     _REPORT_EVERY_S = 0.1
@@ -48,6 +50,7 @@ class Stop:
         time_limit: float | None = None,
         clock: Clock | None = None,
         on_progress: Callable[[Progress], None] | None = None,
+        whole: Stop | None = None,
     ) -> None:
         if iterations is not None and not (isinstance(iterations, int) and iterations >= 0):
             raise ParameterError(f"iterations: {iterations}; expected a whole number of at least 0")
@@ -60,6 +63,7 @@ class Stop:
         self._begin = self._clock.now()
         self._reported = self._begin
         self._interrupted = self._hurried = False
+        self._whole = whole
         self.iterations_done = 0
         self.best: tuple[float, float] | None = None
         self.history: list[tuple[float, float]] = []
@@ -70,7 +74,7 @@ class Stop:
 
     @property
     def interrupted(self) -> bool:
-        return self._interrupted
+        return self._interrupted or (self._whole is not None and self._whole.interrupted)
 
     @property
     def hurried(self) -> bool:
@@ -87,13 +91,27 @@ class Stop:
         now = self._clock.now()
         if self._on_progress is not None and now - self._reported > self._REPORT_EVERY_S:
             self._report(now)
-        return self._interrupted or (self._time_limit is not None and now - self._begin >= self._time_limit)
+        return self.interrupted or (self._time_limit is not None and now - self._begin >= self._time_limit)
 
     def iterations(self) -> Iterator[int]:
         """Count iterations until it is time to stop."""
         while (self._iterations is None or self.iterations_done < self._iterations) and not self.due():
             self.iterations_done += 1
             yield self.iterations_done
+
+    def part(self, *, time_limit: float | None, iterations: int | None) -> Stop:
+        """A stop for one piece of the work, which ends with the whole."""
+        return Stop(iterations=iterations, time_limit=time_limit, clock=self._clock, whole=self)
+
+    @property
+    def time_left_s(self) -> float | None:
+        """Seconds until the time limit, at least 0; None where there is none."""
+        return None if self._time_limit is None else max(0.0, self._time_limit - self.elapsed_s)
+
+    @property
+    def iterations_left(self) -> int | None:
+        """Iterations until the limit; None where there is none."""
+        return None if self._iterations is None else self._iterations - self.iterations_done
 
     def batches(self, size: int) -> Iterator[int]:
         """Count iterations in batches of at most this size until it is time to stop; yields how many each has."""

@@ -1,9 +1,10 @@
-"""`muster check`: what is wrong with a mission, and which tasks can never be done."""
+"""`muster check`: what is wrong with a mission, and which tasks can never be done, alone or together."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,9 +17,16 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
+from muster.cli.tables import sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
-from muster.mission.plan import Unassigned, json_text
+from muster.mission.plan import Plan, Unassigned, json_text
+
+if TYPE_CHECKING:
+    from muster.allocation.conflicts import Together
+
+_MINIMAL = "without any one of them a plan was found that does the others"
+_NOT_MINIMAL = "some of them may already be too many: not without each of them a plan for the others was found"
 
 
 @click.command()
@@ -26,6 +34,14 @@ from muster.mission.plan import Unassigned, json_text
 @ignore_option
 @format_option
 @require_complete_option
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(min=0),
+    default=2.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds for finding out whether all tasks can be done in one plan.",
+)
 @quiet_option
 def command(
     mission: str,
@@ -36,33 +52,47 @@ def command(
     ignore: tuple[str, ...],
     form: str,
     require_complete: bool,
+    time_limit: float,
     quiet: bool,
     verbose: bool,
 ) -> int:
-    """Find what is wrong with a MISSION, and name every task that can never be done and why."""
+    """Find what is wrong with a MISSION, and name every task that can never be done and why.
+
+    Where no plan can do all the others, name a smallest set of tasks of which one must be left out.
+    """
+    from muster.allocation.conflicts import together
     from muster.allocation.feasibility import impossible
     from muster.allocation.problem import Problem
 
     try:
         loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-        lost = impossible(Problem.compile(loaded, ignored=ignore))
+        problem = Problem.compile(loaded, ignored=ignore)
     except (MissionError, NotSupportedError) as error:
         if form == "json":
-            click.echo(json_text({"errors": [f.as_dict() for f in error.findings], "impossible": []}), nl=False)
+            click.echo(json_text(_answer(errors=[f.as_dict() for f in error.findings])), nl=False)
         else:
             click.echo(str(error), err=True)
         return BAD_INPUT
+    lost = impossible(problem)
+    found = together(problem, _admits, time_limit=time_limit)
     if form == "json":
-        click.echo(json_text({"errors": [], "impossible": [_plain(item) for item in lost]}), nl=False)
+        conflict = None if found.conflict is None else asdict(found.conflict)
+        answer = _answer(impossible=[asdict(item) for item in lost], conflict=conflict, unknown=found.unknown)
+        click.echo(json_text(answer), nl=False)
     else:
         _print(loaded, lost)
-    return INCOMPLETE if lost and require_complete else DONE
+        _print_together(found, "all other tasks" if lost else "all tasks")
+    return INCOMPLETE if (lost or found.conflict) and require_complete else DONE
 
 
-def _plain(item: Unassigned) -> dict[str, Any]:
-    from dataclasses import asdict
+def _answer(**given: Any) -> dict[str, Any]:
+    return {"errors": [], "impossible": [], "conflict": None, "unknown": False} | given
 
-    return asdict(item)
+
+def _admits(mission: Mission, plan: Plan) -> bool:
+    from muster.verification import verify
+
+    return verify(mission, plan).valid
 
 
 def _print(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
@@ -73,3 +103,20 @@ def _print(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
     if lost:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         print_table(("task", "robot", "reason", "detail"), rows, title=f"{len(lost)} tasks that can never be done")
+
+
+def _print_together(found: Together, tasks: str) -> None:
+    if found.unknown:
+        click.echo(f"no plan for {tasks} was found; none was proven impossible")
+    if found.conflict is None:
+        return
+    conflict = found.conflict
+    names = sequence(conflict.tasks)
+    before = f", with {sequence(conflict.prerequisites)} before" if conflict.prerequisites else ""
+    if len(conflict.tasks) == 1:
+        click.echo(f"no plan can do task {names}{before} (proven)")
+    else:
+        click.echo(f"no plan can do all of these {len(conflict.tasks)} tasks (proven): {names}{before}")
+    click.echo(f"  {conflict.detail}")
+    if len(conflict.tasks) > 1:
+        click.echo(f"  {_MINIMAL if conflict.minimal else _NOT_MINIMAL}")

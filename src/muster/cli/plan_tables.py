@@ -8,6 +8,9 @@ from muster.cli.tables import number, print_table, sequence
 from muster.mission.plan import Plan
 from muster.verification import Verdict
 
+OPTIMAL = 1e-6
+"""A gap below which a plan is as good as its bound: the rounding that proofs allow for."""
+
 
 def print_plan(plan: Plan, verdict: Verdict) -> None:
     """The routes, the figures, and what is left out."""
@@ -21,6 +24,7 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
     print_table(columns, rows, title=title, right=columns[2:])
     print_figures(verdict)
+    _print_bound(plan, verdict)
     if plan.book is not None:
         messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
         click.echo(f"rounds            {plan.book.rounds}{messages}")
@@ -29,6 +33,16 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
         click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")
     if plan.ignored:
         click.echo(f"ignored           {', '.join(plan.ignored)}")
+
+
+def _print_bound(plan: Plan, verdict: Verdict) -> None:
+    bound, value = plan.lower_bound, verdict.value()
+    if bound is None or value is None:
+        return
+    gap = (value - bound) / value if value > 0 else 0.0
+    unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
+    said = "the plan is optimal" if gap < OPTIMAL else f"gap {100 * gap:.2f} %"
+    click.echo(f"lower bound       {number(bound, unit)}  ({said})")
 
 
 def print_figures(verdict: Verdict) -> None:

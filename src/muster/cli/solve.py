@@ -65,6 +65,14 @@ _FILE = click.Path(path_type=Path)
 @click.option(
     "--iterations", type=click.IntRange(min=0), metavar="N", help="Stop after so many; then a seed gives one plan."
 )
+@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]")
+@click.option(
+    "--bound",
+    type=click.Choice(["quick", "exact"]),
+    is_flag=False,
+    flag_value="quick",
+    help="Prove how good the plan is: at once, or by an exact solver (small missions; needs the extra exact).",
+)
 @click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]")
 @click.option("--placement", type=click.Choice(PLACEMENTS), help="Where a task goes in a route.  [default: insert]")
 @click.option("--winner", type=click.Choice(WINNERS), help="Which bid wins.  [default: lowest]")
@@ -89,6 +97,8 @@ def command(
     seed: int,
     time_limit: float | None,
     iterations: int | None,
+    threads: int | None,
+    bound: str | None,
     bid: str | None,
     placement: str | None,
     winner: str | None,
@@ -109,6 +119,7 @@ def command(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
+    from muster.allocation.proofs import with_bound
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
@@ -119,7 +130,7 @@ def command(
     chosen = allocator_named(allocator)
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
-    terms = _terms(chosen, bid=bid, placement=placement, winner=winner)
+    terms = _given(chosen, threads=threads, bid=bid, placement=placement, winner=winner)
     others = _settings(settings)
     for name in terms.keys() & others.keys():
         raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
@@ -132,6 +143,8 @@ def command(
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
+            if bound is not None and not stop.interrupted:
+                plan = with_bound(problem, plan, bound, stop, time_limit)
     with _ctrl_c_interrupts(stop):
         _show(loaded, plan, form, output, plot, gantt)
     if book is not None and not _write_book(plan, book, quiet):
@@ -178,15 +191,15 @@ def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
     return values
 
 
-def _terms(allocator: Allocator, **words: str | None) -> dict[str, Any]:
-    """The terms of an auction that are given."""
+def _given(allocator: Allocator, **words: str | int | None) -> dict[str, Any]:
+    """Parameters that have options of their own, where these are given."""
     from muster.allocation.registry import ALLOCATORS
 
     given = {name: word for name, word in words.items() if word is not None}
     for name in given:
         takers = [a.name for a in ALLOCATORS.values() if name in {f.name for f in fields(a.parameters)}]
         if allocator.name not in takers:
-            raise ParameterError(f"--{name}: {allocator.name} has no such terms; expected {' or '.join(takers)}")
+            raise ParameterError(f"--{name}: {allocator.name} takes none; expected --allocator {' or '.join(takers)}")
     return given
 
 

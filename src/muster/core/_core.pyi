@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
-    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
         """
-        Robots (m), tasks (n) and travel: `allowed` is (m, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
+        Robots (m), tasks (n) and travel: `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
         """
 
     @property
@@ -206,6 +206,82 @@ class Annealing:
         """
         So many steps on one robot's route. The best order found stays, unless the plan would be worse for it.
         """
+
+    @property
+    def routes(self) -> list[list[int]]: ...
+
+class Search:
+    """
+    Ruin and recreate under simulated annealing (SISR). One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, start: Sequence[Sequence[int]], seed: int, *, removed: float, longest_string: int, blink: float, greatest_share: float, near: int) -> None:
+        """Raises ValueError if the routes are not admissible."""
+
+    def anneal(self, steps: int, hot: float, cold: float) -> None:
+        """
+        So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).
+        """
+
+    def go_on_from(self, routes: Sequence[Sequence[int]]) -> None:
+        """Go on from these routes; the best stays."""
+
+    @property
+    def best(self) -> list[list[int]]: ...
+
+    @property
+    def best_weight_left_out(self) -> float: ...
+
+    @property
+    def best_objective(self) -> float: ...
+
+    @property
+    def mean_way(self) -> float:
+        """The usual way from one task to the next, in the unit of usage."""
+
+class Team:
+    """
+    Routes while a search changes them, with undo. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None: ...
+
+    def insert(self, task: int, robot: int, at: int) -> None: ...
+
+    def remove(self, task: int) -> None: ...
+
+    def growth(self, robot: int, task: int, at: int) -> float:
+        """Of the route's usage by a task."""
+
+    def later_arrivals(self, robot: int, task: int, at: int) -> float:
+        """What a task adds to the sum of usages on arrival."""
+
+    def longer(self, robot: int, task: int, at: int) -> float:
+        """Seconds by which the route's last task ends later if nothing waits."""
+
+    def bounds(self, task: int) -> list[tuple[int, int]]:
+        """
+        For each robot the first and last place where the task deadlocks nothing, all its prerequisites present.
+        """
+
+    def commit(self) -> None:
+        """Keep all changes."""
+
+    def rollback(self) -> None:
+        """Undo all changes since the last commit."""
+
+    def makespan(self) -> float:
+        """Seconds, waiting included."""
+
+    @property
+    def usages(self) -> list[float]: ...
+
+    @property
+    def arrivals(self) -> list[float]:
+        """Of each route the sum of usages on arrival."""
+
+    @property
+    def absent(self) -> list[int]: ...
 
     @property
     def routes(self) -> list[list[int]]: ...

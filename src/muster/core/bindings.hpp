@@ -11,5 +11,7 @@ void bind_greedy(nanobind::module_& m);
 void bind_population(nanobind::module_& m);
 void bind_bidders(nanobind::module_& m);
 void bind_annealing(nanobind::module_& m);
+void bind_search(nanobind::module_& m);
+void bind_team(nanobind::module_& m);
 
 }  // namespace muster

@@ -10,4 +10,6 @@ NB_MODULE(_core, m) {
   muster::bind_population(m);
   muster::bind_bidders(m);
   muster::bind_annealing(m);
+  muster::bind_search(m);
+  muster::bind_team(m);
 }

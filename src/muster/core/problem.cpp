@@ -1,7 +1,9 @@
 #include "problem.hpp"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace muster {
@@ -35,15 +37,19 @@ Problem::Problem(ProblemData data)
       tasks_(static_cast<int>(data_.actuation_cost.size())),
       robots_(static_cast<int>(data_.capacity.size())),
       places_(tasks_ + 2 * robots_),
-      classes_(1) {
+      classes_(1),
+      given_table_(!data_.table.empty()) {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto places = static_cast<std::size_t>(places_);
   require(robots > 0, "a problem needs a robot");
   require(data_.speed.size() == robots && data_.efficiency.size() == robots && data_.available_from.size() == robots &&
               data_.must_end.size() == robots,
           "arrays of robots differ in length");
-  require(data_.duration.size() == tasks && data_.priority.size() == tasks && data_.allowed.size() == robots * tasks,
+  require(data_.duration.size() == tasks && data_.priority.size() == tasks && data_.kind.size() == robots,
           "arrays of tasks differ in length");
+  require(std::ranges::all_of(data_.kind, [](int k) { return k >= 0; }), "a kind is negative");
+  require(data_.allowed.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.kind))) * tasks,
+          "what kinds may do has the wrong size");
   require(data_.prerequisites.first.size() == tasks + 1, "prerequisites need a row for each task");
   require(std::ranges::all_of(data_.prerequisites.values, [&](int j) { return 0 <= j && j < tasks_; }),
           "a prerequisite is no task");
@@ -57,18 +63,29 @@ Problem::Problem(ProblemData data)
     require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
   }
   dependants_ = transposed(data_.prerequisites);
-  for (int task = 0; task < tasks_; ++task) {
-    for (int robot = 0; robot < robots_; ++robot) {
-      if (allowed(robot, task)) robots_allowed_.values.push_back(robot);
-    }
-    robots_allowed_.first.push_back(static_cast<int>(robots_allowed_.values.size()));
-  }
+  find_robots_allowed();
   if (data_.table.empty() && places_ <= kMostPlacesInTable) {
     std::vector<double> table(places * places);
     for (int from = 0; from < places_; ++from) {
       for (int to = 0; to < places_; ++to) table[from * places + to] = straight(from, to);
     }
     data_.table = std::move(table);
+  }
+}
+
+void Problem::find_robots_allowed() {
+  const auto kinds = tasks_ ? data_.allowed.size() / static_cast<std::size_t>(tasks_) : 0;
+  std::map<std::string, int> number;
+  for (int task = 0; task < tasks_; ++task) {
+    std::string column;
+    for (std::size_t kind = 0; kind < kinds; ++kind) column.push_back(data_.allowed[kind * tasks_ + task]);
+    const auto [found, is_new] = number.emplace(column, robots_allowed_.size());
+    like_.push_back(found->second);
+    if (!is_new) continue;
+    for (int robot = 0; robot < robots_; ++robot) {
+      if (allowed(robot, task)) robots_allowed_.values.push_back(robot);
+    }
+    robots_allowed_.first.push_back(static_cast<int>(robots_allowed_.values.size()));
   }
 }
 

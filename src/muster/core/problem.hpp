@@ -35,7 +35,8 @@ struct ProblemData {
   std::vector<double> actuation_cost;
   std::vector<double> duration;  // NaN: not given
   std::vector<double> priority;
-  std::vector<char> allowed;  // robots x tasks
+  std::vector<int> kind;      // of each robot
+  std::vector<char> allowed;  // kinds x tasks
   Rows prerequisites;
   // Travel: coordinates (places x 3), or a table (classes x places x places) with each robot's class.
   std::vector<double> entry;
@@ -61,9 +62,9 @@ class Problem {
   bool has_prerequisites() const { return !data_.prerequisites.values.empty(); }
   std::span<const int> prerequisites(int task) const { return data_.prerequisites[task]; }
   std::span<const int> dependants(int task) const { return dependants_[task]; }
-  std::span<const int> robots_allowed(int task) const { return robots_allowed_[task]; }
+  std::span<const int> robots_allowed(int task) const { return robots_allowed_[like_[task]]; }
   bool allowed(int robot, int task) const {
-    return data_.allowed[static_cast<std::size_t>(robot) * tasks_ + task] != 0;
+    return data_.allowed[static_cast<std::size_t>(data_.kind[robot]) * tasks_ + task] != 0;
   }
   double capacity(int robot) const { return data_.capacity[robot]; }
   double available_from(int robot) const { return data_.available_from[robot]; }
@@ -74,6 +75,10 @@ class Problem {
   int end(int robot) const { return tasks_ + robots_ + robot; }
   int travel_class(int robot) const { return data_.travel_class.empty() ? 0 : data_.travel_class[robot]; }
 
+  // Whether the mission gives travel as tables.
+  bool has_table() const { return given_table_; }
+  // Where a place is entered, in metres, by axis.
+  double entry(int place, int axis) const { return data_.entry[3 * static_cast<std::size_t>(place) + axis]; }
   // Metres from the exit of one place to the entry of another.
   double distance(int travel_class, int from, int to) const {
     if (!data_.table.empty()) {
@@ -116,6 +121,7 @@ class Problem {
   double growth(int robot, std::span<const int> route, int task, int at) const;
 
  private:
+  void find_robots_allowed();
   double straight(int from, int to) const {
     const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
     const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];
@@ -128,8 +134,10 @@ class Problem {
   int robots_;
   int places_;
   int classes_;
+  bool given_table_;
   Rows dependants_;
-  Rows robots_allowed_;
+  std::vector<int> like_;  // by task: a number that tasks share which the same robots may do
+  Rows robots_allowed_;    // by that number
 };
 
 }  // namespace muster

@@ -13,7 +13,7 @@ from muster.studies.processes import run_cases
 from muster.studies.runs import Case, Outcome, Sample, mission_named
 from muster.studies.tables import Cell, Report, Table
 
-SECONDS, QUICK_SECONDS = 1.0, 0.05
+SECONDS, QUICK_SECONDS = 0.25, 0.05
 SUMMARY = "summary"
 _COLUMNS = ("allocator", *OBJECTIVES, "s")
 

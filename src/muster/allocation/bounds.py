@@ -1,0 +1,196 @@
+"""Lower bounds of the objective over all plans that do every task, at once and without a solver.
+
+What every such plan pays is bounded by relaxing its routes to a spanning tree: see `route_bounds`. The bounds hold
+for all that a mission may ask: several speeds and travel tables, travel that is asymmetric or breaks the triangle
+inequality, closed and open routes, capacities, waiting. They are worked out in float64, and are true up to its
+rounding, some 1e-12 relative.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from graphlib import TopologicalSorter
+
+import numpy as np
+
+from muster.allocation.feasibility import least_usage
+from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.spanning import Ways, route_bounds
+
+_ROUNDING = 1e-9
+_MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
+_MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
+_MOST_CROWDED = 300  # tasks up to which crowding is looked at
+_TREES = "spanning trees with multipliers"
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A lower bound of the objective, and the argument that gave it; inf where no plan does every task."""
+
+    value: float
+    argument: str
+
+
+def lower_bound(problem: Problem) -> float:
+    """A number that no plan that does every task can have a lower objective than; inf where there is no such plan."""
+    return best_bound(problem).value
+
+
+def best_bound(problem: Problem) -> Bound:
+    """The best of the bounds of the problem's objective, with its argument."""
+    if not problem.tasks:
+        return Bound(0.0, "no tasks")
+    least = _least_usages(problem)
+    usable = usable_pairs(problem, least)
+    if not usable.any(axis=0).all():
+        return Bound(math.inf, "a task that nobody can do")
+    if problem.objective == "average":
+        return _average(problem, usable)
+    if problem.objective == "makespan":
+        return _makespan(problem, usable)
+    return _usage(problem, usable, least)
+
+
+def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
+    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
+    least = _least_usages(problem) if least is None else least
+    within = least <= problem.capacity[:, None] * (1 + _ROUNDING)
+    return np.asarray(problem.allowed & np.isfinite(least) & within)
+
+
+def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
+    """Bound `total`, `max` and `total+max`.
+
+    Theorem. Let L_k bound the total cost of the plans with k routes that do every task. Then (1) the greatest usage of
+    such a plan is at least the least U for which the k greatest capacities, each cut down to U, sum up to L_k; for
+    unlimited robots that is L_k / k. There is no such plan if they do not sum up to L_k at all. (2) It is at least what
+    the task that is farthest away takes by itself, the maximum over tasks of the minimum over robots of `least_usage`,
+    and what `_crowding` tells. (3) Total and greatest usage together are at least the sum of their bounds, for the same
+    k. The bound is the least over k.
+    """
+    alone = float(np.where(usable, least, math.inf).min(axis=0).max())
+    crowded = _crowding(problem, usable) if problem.objective != "total" else 0.0
+    capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
+
+    def worth(totals: Floats) -> Floats:
+        greatest = np.maximum(_evened(totals, capacity), max(alone, crowded))
+        values = {"total": totals, "max": greatest, "total+max": totals + greatest}[problem.objective]
+        return np.where(np.isfinite(greatest), values, math.inf)
+
+    totals = route_bounds(Ways.of(problem, usable), worth)
+    values = worth(totals)
+    k = int(values.argmin())
+    greatest = {
+        "the farthest task": alone,
+        "crowded tasks": crowded,
+        "an even share": float(_evened(totals, capacity)[k]),
+    }
+    best = max(greatest, key=lambda name: greatest[name])
+    return Bound(float(values[k]), {"total": _TREES, "max": best}.get(problem.objective, f"{_TREES}, and {best}"))
+
+
+def _evened(totals: Floats, capacity: Floats) -> Floats:
+    """(k,) the least U for which the first k capacities (descending), cut down to U, sum up to totals[k]; inf if none.
+
+    Of k robots the q with the least capacity take at most that, so that the others take (total - theirs) / (k - q):
+    the maximum over q is U.
+    """
+    if np.isinf(capacity).all():
+        return totals / np.arange(1, len(totals) + 1)
+    evened = []
+    for k, total in enumerate(totals.tolist(), 1):
+        held = np.concatenate(([0.0], np.cumsum(capacity[:k][::-1])))
+        if math.isinf(total) or total > held[k] * (1 + _ROUNDING):
+            evened.append(math.inf)
+        else:
+            shares = (total - held[:k]) / (k - np.arange(k))
+            evened.append(float(shares.max()))
+    return np.array(evened)
+
+
+def _crowding(problem: Problem, usable: Bools) -> float:
+    """Bound the greatest usage by the tasks that few robots can do.
+
+    Theorem. The greatest usage is at least the mean over any set S of robots, and so at least a bound of the total cost
+    in which the usage of the robots of S counts 1 / |S|, and of the others nothing. S are here the robots that can do
+    some task.
+    """
+    kinds = np.unique(usable, axis=1).T
+    if len(kinds) == 1 or len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_CROWDED:
+        return 0.0
+    weights = [kind / kind.sum() for kind in kinds]
+    return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray).min()) for w in weights)
+
+
+def _least_usages(problem: Problem) -> Floats:
+    """(m, n) what no route of a robot that holds a task uses less of.
+
+    That is `least_usage`; where too many ways through short cuts would have to be looked at, the work alone.
+    """
+    robots = range(len(problem.robots))
+    if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:
+        return np.array([least_usage(problem, i) for i in robots])
+    return np.array([problem.work_usage(i) for i in robots])
+
+
+def _open(problem: Problem) -> Problem:
+    """The problem whose routes may end anywhere."""
+    robots = tuple(replace(robot, return_to_start=False, end_position=None) for robot in problem.robots)
+    return replace(problem, robots=robots)
+
+
+def _in_time(problem: Problem) -> Problem:
+    """The problem whose usage is time; its capacities mean nothing."""
+    rules = replace(problem.mission.rules, usage="time")
+    return replace(problem, mission=replace(problem.mission, rules=rules))
+
+
+def _average(problem: Problem, usable: Bools) -> Bound:
+    """Bound the mean usage on arrival.
+
+    Theorem. (1) A robot arrives at a task with no less than the least way there, over all ways. (2) Let e_j be the
+    least that arriving at j adds to what its robot had on arrival at the task before, or at its start: the leg into
+    j, and the work of the task before. The sum of arrivals is at least that of e_j times the number of tasks from j to
+    the end of its route; no more than m tasks have the same number. So it is at least the sum of the e in descending
+    order times 1 (m of them), 2 (m of them), and so on, by the rearrangement inequality: the rule of the shortest
+    processing time first on parallel machines (Conway, Maxwell and Miller, Theory of Scheduling, 1967).
+    """
+    n, m = usable.shape[1], int(usable.any(axis=1).sum())
+    opened = _open(problem)
+    work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
+    arrivals = np.where(usable, _least_usages(opened) - work, math.inf)
+    alone = float(arrivals.min(axis=0).mean())
+    steps = np.sort(Ways.of(opened, usable).entering(after_work=True))[::-1]
+    in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
+    return max(Bound(alone, "the least way to each task"), Bound(in_turn, "tasks in turn"), key=lambda b: b.value)
+
+
+def _makespan(problem: Problem, usable: Bools) -> Bound:
+    """Bound the time at which the last task ends.
+
+    Theorem. (1) Critical path: a task begins no earlier than its robot can be there, over all ways, and no earlier than
+    its prerequisites can have ended; it ends its work later. (2) The robots of k routes are on their way or at work for
+    no longer than from when they are available to the last end: k times that is at least the least total time of k open
+    routes plus the k least times of availability. The bound is the least over k, and at least (1).
+    """
+    timed = _open(_in_time(problem))
+    work = np.array([timed.work_usage(i) for i in range(len(problem.robots))])
+    available = np.array([robot.available_from_s for robot in problem.robots])
+    there = np.where(usable, available[:, None] + _least_usages(timed) - work, math.inf)
+    ends = np.zeros(len(problem.tasks))
+    for j in TopologicalSorter(dict(enumerate(problem.prerequisites))).static_order():
+        ready = max((ends[k] for k in problem.prerequisites[j]), default=0.0)
+        ends[j] = (np.maximum(there[:, j], ready) + work[:, j]).min()
+    critical = float(ends.max())
+    waits = np.cumsum(np.sort(available[usable.any(axis=1)]))
+
+    def worth(totals: Floats) -> Floats:
+        routes = len(totals)
+        return np.asarray(np.maximum((totals + waits[:routes]) / np.arange(1, routes + 1), critical))
+
+    shared = float(worth(route_bounds(Ways.of(timed, usable), worth)).min())
+    if shared > critical:
+        return Bound(shared, "an even share")
+    return Bound(critical, "the critical path")

@@ -1,0 +1,108 @@
+"""What every robot's legs and work cost, as whole numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from muster.allocation.exact.scale import Scale, Whole
+from muster.allocation.problem import Bools, Floats, Problem
+
+Routes = Sequence[Sequence[int]]
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What legs and work cost each robot, in whole units of the scale; -1 where there is no leg.
+
+    Parameters
+    ----------
+    longest
+        what no route of all tasks is above, waiting included.
+    first
+        (m, n) the leg from the start.
+    between
+        (m, n, n) the leg from one task to another.
+    work
+        (m, n)
+    last
+        (m, n) the leg to where the robot must end; 0 where it may end anywhere.
+    """
+
+    scale: Scale
+    longest: int
+    first: Whole
+    between: Whole
+    work: Whole
+    last: Whole
+
+    @classmethod
+    def of(cls, problem: Problem, *, sums: int = 1, begin: float = 0.0) -> Costs:
+        """The costs in the problem's usage; `sums`: of how many routes; `begin`: what a route begins with at most."""
+        first, between, work, last = real_costs(problem)
+        real = [np.where(np.isfinite(some), some, 0.0) for some in (first, between, work, last)]
+        route = float(real[0].max() + (real[1].max(axis=(0, 1)) + real[2].max(axis=0)).sum() + real[3].max())
+        scale = Scale.of(problem, (begin + route) * sums)
+        return cls(scale, scale.at_most(begin + route), *(scale.down(some) for some in (first, between, work, last)))
+
+    def usage(self, i: int, route: Sequence[int]) -> int:
+        """What a route of robot i costs."""
+        if not route:
+            return 0
+        steps = sum(int(self.between[i, a, b]) for a, b in pairwise(route))
+        work = sum(int(self.work[i, j]) for j in route)
+        return int(self.first[i, route[0]]) + steps + work + int(self.last[i, route[-1]])
+
+
+def real_costs(problem: Problem) -> tuple[Floats, Floats, Floats, Floats]:
+    """`first`, `between`, `work` and `last` of all robots; inf where there is no leg."""
+    tasks = np.arange(len(problem.tasks))
+    robots = range(len(problem.robots))
+    return (
+        np.array([problem.legs(i, [problem.start(i)], tasks)[0] for i in robots]),
+        np.array([problem.legs(i, tasks, tasks) for i in robots]),
+        np.array([problem.work_usage(i) for i in robots]),
+        np.array([_last(problem, i) for i in robots]),
+    )
+
+
+def _last(problem: Problem, i: int) -> Floats:
+    tasks = np.arange(len(problem.tasks))
+    if problem.robots[i].place_at_end(problem.mission.rules) is None:
+        return np.zeros(len(tasks))
+    return problem.legs(i, tasks, [problem.end(i)])[:, 0]
+
+
+def in_time(problem: Problem) -> Problem:
+    """The problem whose usage is time, and whose routes may end anywhere; its capacities mean nothing."""
+    rules = replace(problem.mission.rules, usage="time")
+    robots = tuple(replace(robot, return_to_start=False, end_position=None) for robot in problem.robots)
+    return replace(problem, mission=replace(problem.mission, rules=rules), robots=robots)
+
+
+def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:
+    """Robots in groups whose members could change places in any plan."""
+    groups: dict[bytes, list[int]] = {}
+    first, between, work, last = real_costs(problem)
+    for i, robot in enumerate(problem.robots):
+        pace = robot.speed_mps, robot.efficiency, robot.available_from_s, problem.capacity[i]
+        parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace)]
+        groups.setdefault(b"".join(part.tobytes() for part in parts), []).append(i)
+    return list(groups.values())
+
+
+def ancestors(problem: Problem) -> list[set[int]]:
+    """For each task all tasks that must come before it."""
+    before: list[set[int]] = [set() for _ in problem.tasks]
+
+    def fill(j: int) -> set[int]:
+        for k in problem.prerequisites[j] if not before[j] else ():
+            before[j] |= {k} | fill(k)
+        return before[j]
+
+    for j in range(len(problem.tasks)):
+        fill(j)
+    return before

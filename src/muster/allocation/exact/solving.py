@@ -1,0 +1,183 @@
+"""Proven optimal plans: first the greatest weight of tasks, then the least objective."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from muster import core
+from muster.allocation.allocator import Routes
+from muster.allocation.bounds import lower_bound, usable_pairs
+from muster.allocation.exact.partition import few_partings, least_average
+from muster.allocation.exact.scale import whole_weights
+from muster.allocation.feasibility import impossible
+from muster.allocation.problem import Problem
+from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import MissingExtraError, ParameterError
+
+if TYPE_CHECKING:
+    from muster.allocation.exact.program import Program
+
+_WORKERS = 4
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class ExactResult:
+    """What was found and what was proven.
+
+    Parameters
+    ----------
+    routes
+        an admissible plan, the best that was found.
+    weight
+        of the tasks it completes.
+    weight_proven
+        whether no admissible plan completes more.
+    lower_bound
+        what no plan of that weight has a lower objective than; None unless the weight is proven.
+    optimal
+        whether the plan is proven to be the best, up to the rounding of costs, some 1e-9 relative.
+    """
+
+    routes: Routes
+    weight: float
+    weight_proven: bool
+    lower_bound: float | None
+    optimal: bool
+
+
+def solve_exactly(
+    problem: Problem,
+    time_limit: float,
+    start: Routes | None = None,
+    seed: int = 0,
+    clock: Clock | None = None,
+) -> ExactResult:
+    """Find the best plan of a small mission and prove it, or prove what can be proven in the time.
+
+    Parameters
+    ----------
+    problem
+        up to some 15 tasks and 5 robots.
+    time_limit
+        seconds.
+    start
+        routes of an admissible plan to begin with.
+
+    Raises
+    ------
+    MissingExtraError
+        if OR-Tools is not installed.
+    ParameterError
+        if the start is not admissible, or the priorities have too many digits.
+    """
+    try:
+        import ortools.sat.python.cp_model  # noqa: F401
+    except ImportError:
+        raise MissingExtraError("exact", "proving a plan optimal") from None
+    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
+
+
+class _Solving:
+    """The state of one call: the best plan, and what is proven."""
+
+    def __init__(self, problem: Problem, time_limit: float, start: Routes, seed: int, clock: Clock) -> None:
+        self._problem, self._seed, self._clock = problem, seed, clock
+        self._until = clock.now() + time_limit
+        self._usable = usable_pairs(problem)
+        self._routes = start
+        forbidden = any(not problem.allowed[i, j] for i, route in enumerate(start) for j in route)
+        if forbidden or not core.Inspection(problem.core, start).admissible:
+            raise ParameterError("start: the plan is not admissible")
+        weights = whole_weights([task.priority for task in problem.tasks])
+        if weights is None:
+            raise ParameterError("priority: too many digits for a proof; expected priorities like 1, 2.5 or 0.01")
+        self._weights: Sequence[int] = weights
+
+    def result(self) -> ExactResult:
+        if not self._problem.tasks:
+            return ExactResult(self._routes, 0.0, True, 0.0, True)
+        proven = self._maximise_weight()
+        weight = float(self._problem.value(self._routes)[0])
+        if not proven:
+            return ExactResult(self._routes, weight, False, None, False)
+        bound, slack = self._minimise()
+        optimal = self._value() <= (bound + slack) * (1 + _ROUNDING)
+        return ExactResult(self._routes, weight, True, bound, optimal)
+
+    def _maximise_weight(self) -> bool:
+        """Find the greatest weight; whether it is proven."""
+        hopeless = {self._problem.task_index[task.task] for task in impossible(self._problem)}
+        if self._weight() == sum(weight for j, weight in enumerate(self._weights) if j not in hopeless):
+            return True
+        program = self._program()
+        program.maximise_weight()
+        most = self._run(program)
+        return self._weight() >= most
+
+    def _minimise(self) -> tuple[float, float]:
+        """Find the least objective at the plan's weight: a bound of it, and how much of the bound rounding took."""
+        if not any(self._routes):
+            return 0.0, 0.0
+        least = lower_bound(self._problem) if self._weight() == sum(self._weights) else 0.0
+        if self._problem.objective == "average" and few_partings(self._problem):
+            parting = least_average(self._problem, self._usable, self._weights, self._weight())
+            if core.Inspection(self._problem.core, parting.routes).admissible:
+                self._take_over(parting.routes)
+            least = max(least, parting.value)
+        if self._value() <= least * (1 + _ROUNDING):
+            return self._value(), 0.0
+        bounds, slack = [], 0.0
+        for count in self._counts():
+            program = self._program()
+            program.minimise_value(self._weight(), count, least, self._value())
+            bounds.append(self._run(program) / (count or 1) / program.scale.units)
+            slack = program.scale.slack
+        return min(max(least, min(bounds)), self._value()), slack
+
+    def _counts(self) -> Sequence[int | None]:
+        """How many tasks the plans of the plan's weight may complete, where the objective asks for that."""
+        done, n = sum(map(len, self._routes)), len(self._weights)
+        if self._problem.objective != "average":
+            return [None]
+        if done == n or len(set(self._weights)) == 1:
+            return [done]
+        return [done, *(count for count in range(1, n) if count != done)]
+
+    def _value(self, routes: Routes | None = None) -> float:
+        return self._problem.value(self._routes if routes is None else routes)[1]
+
+    def _weight(self, routes: Routes | None = None) -> int:
+        return sum(self._weights[j] for route in (self._routes if routes is None else routes) for j in route)
+
+    def _program(self) -> Program:
+        from muster.allocation.exact.program import Program
+
+        program = Program(self._problem, self._usable, self._weights)
+        program.hint(self._routes)
+        return program
+
+    def _run(self, program: Program) -> float:
+        """Take over the program's best plan, if it is better; returns the bound of its objective, in units.
+
+        A plan that is within capacities only because costs were rounded is forbidden, and the program runs again.
+        """
+        while (left := self._until - self._clock.now()) > 0:
+            solved = program.solve(left, self._seed, _WORKERS)
+            if solved.routes is None:
+                return solved.bound
+            inspection = core.Inspection(self._problem.core, solved.routes)
+            if inspection.admissible:
+                self._take_over(solved.routes)
+                return solved.bound
+            for i, usage in enumerate(inspection.usages):
+                if usage > self._problem.capacity[i] * (1 + _ROUNDING):
+                    program.forbid(i, solved.routes[i])
+        return program.unproven
+
+    def _take_over(self, routes: Routes) -> None:
+        old = self._routes
+        if (-self._weight(routes), self._value(routes)) < (-self._weight(old), self._value(old)):
+            self._routes = routes

@@ -1,0 +1,352 @@
+"""What would have to change for a robot to do a task beside all that a plan does: the least of each kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from muster import core
+from muster.allocation.allocator import Routes
+from muster.allocation.conflicts import FEW, Judge, UsageBounds, attempt, bare_plan, closed
+from muster.allocation.feasibility import impossible
+from muster.allocation.problem import Problem
+from muster.mission.model import Robot, Task
+from muster.mission.plan import Route
+
+_NARROWINGS = 6  # of what is known of the least capacity: each halves what is not known
+_MOST_SEARCHED = 6  # robots, those that need least with the rest of the plan as it is, for which plans are searched
+_NEAR_ENOUGH = 1e-3  # relative
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Score:
+    """A suitability score that is too low."""
+
+    robot_type: str
+    task_type: str
+    score: float
+    needed: float
+
+
+@dataclass(frozen=True)
+class Before:
+    """A prerequisite that the plan leaves out, and whether it is possible by itself."""
+
+    task: str
+    possible: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Capacity:
+    """Work capacities of the robot, the reserve included, the other changes made.
+
+    `now` is the mission's, None where it is unlimited. With `as_is` the task fits into the robot's route and nothing
+    else of the plan changes: exactly that much is needed for it. With less than `at_least` no admissible plan does what
+    the plan does and the task by this robot: that is proven. With `enough` such a plan was found, and judged.
+    `grows` tells whether more is needed than there is now, as far as is known. Values are None where nothing is.
+    """
+
+    now: float | None
+    as_is: float | None = None
+    at_least: float | None = None
+    enough: float | None = None
+
+    @property
+    def grows(self) -> bool:
+        needed = max(self.enough or 0.0, self.at_least or 0.0)
+        return self.now is not None and needed > self.now * (1 + _ROUNDING)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remedy:
+    """What a robot would need to do a task beside all that a plan does.
+
+    Skills, score and lock are exactly what stands between the two: each is needed. `before` are the prerequisites that
+    the plan leaves out. `enough` tells whether a plan with all this was found and judged; its routes are in `routes`.
+    `unreachable` tells that there is no way to the task, `impossible` that no capacity is enough beside the other
+    changes: both are proven. Of many robots only those that seem to need least are `searched` for plans in which other
+    tasks are moved.
+    """
+
+    robot: str
+    skills: tuple[str, ...] = ()
+    suitability: Score | None = None
+    lock: tuple[str, ...] | None = None
+    before: tuple[Before, ...] = ()
+    unreachable: bool = False
+    impossible: bool = False
+    searched: bool = True
+    capacity: Capacity
+    enough: bool = False
+    routes: tuple[Route, ...] = field(default=(), repr=False)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of change, by the names of reasons."""
+        given = {
+            "skill": self.skills,
+            "suitability": self.suitability,
+            "lock": self.lock,
+            "prerequisite": self.before,
+            "capacity": self.capacity.grows,
+        }
+        return tuple(name for name, value in given.items() if value)
+
+    @property
+    def size(self) -> tuple[int, float]:
+        """What changes are compared by: the number of kinds, then by how much the capacity grows."""
+        grown = (self.capacity.enough or 0.0) - (self.capacity.now or 0.0) if self.capacity.grows else 0.0
+        return len(self.kinds), grown
+
+
+def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
+    """For every robot, in mission order, what it would need to do task j."""
+    first = dict(_first_look(problem, routes, j))
+    searched = set(sorted(first, key=lambda i: first[i].size)[:_MOST_SEARCHED])
+    found = {
+        i: _looked_into(problem, routes, i, j, remedy, judge)
+        if i in searched
+        else replace(_as_is(problem, routes, i, j, remedy, judge), searched=False)
+        for i, remedy in first.items()
+    }
+    return tuple(found[problem.robot_index[robot.id]] for robot in problem.mission.robots)
+
+
+def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Remedy | None:
+    """The smallest change for task j at any robot with the rest of the plan as it is; None if there is none.
+
+    Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
+    """
+    first = dict(_first_look(problem, routes, j))
+    order = sorted(first, key=lambda i: first[i].size)
+    if first[order[0]].before:
+        return first[order[0]]
+    for i in order:
+        if first[i].capacity.as_is is not None:
+            remedy = _as_is(problem, routes, i, j, first[i], judge)
+            if remedy.enough:
+                return remedy
+    return None
+
+
+def smallest(found: Sequence[Remedy]) -> Remedy | None:
+    """The smallest of the changes that are enough, the first if several are."""
+    return min((remedy for remedy in found if remedy.enough), key=lambda remedy: remedy.size, default=None)
+
+
+# --- what stands between a robot and a task --------------------------------------------------------------------------
+
+
+def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int, Remedy]]:
+    """What each robot lacks, and the capacity with which its route has room for the task; nothing is judged yet."""
+    rest = _without(routes, j)
+    inspection = core.Inspection(problem.core, rest)
+    done = {k for route in rest for k in route}
+    missing = [k for k in closed(problem, [j]) if k != j and k not in done]
+    never = {item.task for item in impossible(problem)} if missing else set()
+    before = tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing)
+    for i, robot in enumerate(problem.robots):
+        place = None if missing else _cheapest_place(problem, inspection, rest, i, j)
+        unlimited = math.isinf(problem.capacity[i])
+        now = None if unlimited else robot.work_capacity
+        room = None if place is None else _work_capacity(problem, place[1])
+        enough = room if room is None or now is None else max(room, now)
+        capacity = Capacity(now=now, as_is=room, enough=enough)
+        yield i, _barriers(problem, robot, problem.tasks[j], Remedy(robot=robot.id, before=before, capacity=capacity))
+
+
+def _cheapest_place(
+    problem: Problem, inspection: core.Inspection, rest: Routes, i: int, j: int
+) -> tuple[int, float] | None:
+    """Where in the route of robot i task j adds least usage and nothing deadlocks, and the usage; None if nowhere."""
+    if math.isfinite(inspection.usages[i]):
+        place = inspection.cheapest_insertion(i, j)
+        return None if place is None or math.isinf(place.usage) else (place.at, place.usage)
+    places = []  # there may be no way but through the task
+    for at in range(len(rest[i]) + 1):
+        routes = _put(rest, i, j, at)
+        tried = core.Inspection(problem.core, routes)
+        if tried.makespan is not None and math.isfinite(tried.usages[i]):
+            places.append((tried.usages[i], at))
+    return min(places)[::-1] if places else None
+
+
+def _put(rest: Routes, i: int, j: int, at: int) -> Routes:
+    """Routes with task j at a place of the route of robot i."""
+    return [[*route[:at], j, *route[at:]] if k == i else list(route) for k, route in enumerate(rest)]
+
+
+def _work_capacity(problem: Problem, usage: float) -> float:
+    """The work capacity of which this much is usable."""
+    return usage / (1.0 - problem.mission.rules.capacity_reserve)
+
+
+def _barriers(problem: Problem, robot: Robot, task: Task, remedy: Remedy) -> Remedy:
+    """The remedy with the skills, the score and the lock that stand between robot and task."""
+    mission = problem.mission
+    skills = tuple(skill for skill in task.requires if skill not in robot.skills) if problem.holds("skills") else ()
+    lock = task.only_robots if task.only_robots is not None and robot.id not in task.only_robots else None
+    low = None
+    if mission.suitability is not None and problem.holds("suitability"):
+        kind, wanted = robot.type or "", task.type or ""
+        score = mission.suitability[kind].get(wanted, 0.0)
+        if score < mission.rules.min_suitability:
+            low = Score(kind, wanted, score, mission.rules.min_suitability)
+    return replace(remedy, skills=skills, suitability=low, lock=lock)
+
+
+def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:
+    """The problem with the remedy's skills, score, lock and capacity."""
+    robot, task = problem.robots[i], problem.tasks[j]
+    enough = remedy.capacity.enough
+    capacity = robot.work_capacity if remedy.capacity.now is None or enough is None else enough
+    abler = replace(robot, skills=(*robot.skills, *remedy.skills), work_capacity=capacity)
+    freer = task if remedy.lock is None else replace(task, only_robots=(*remedy.lock, robot.id))
+    suitability = problem.mission.suitability
+    if remedy.suitability is not None and suitability is not None:
+        low = remedy.suitability
+        suitability = {**suitability, low.robot_type: {**suitability[low.robot_type], low.task_type: low.needed}}
+    mission = replace(
+        problem.mission,
+        robots=tuple(abler if one.id == robot.id else one for one in problem.mission.robots),
+        tasks=tuple(freer if one.id == task.id else one for one in problem.mission.tasks),
+        suitability=suitability,
+    )
+    return Problem.compile(mission, problem.objective, problem.ignored)
+
+
+def _without(routes: Routes, j: int) -> Routes:
+    return [[k for k in route if k != j] for route in routes]
+
+
+# --- what is enough, and what is needed ------------------------------------------------------------------------------
+
+
+def _as_is(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
+    """The remedy with which the task fits into the robot's route, the rest of the plan as it is."""
+    if remedy.capacity.as_is is None:
+        return _not_found(remedy)
+    return _fitted(changed(problem, remedy, i, j), _without(routes, j), i, j, remedy, judge)
+
+
+def _fitted(problem: Problem, rest: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
+    """The remedy, enough if the judge admits the plan with the task in the robot's route, of the changed problem."""
+    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    return _not_found(remedy) if place is None else _judged(problem, _put(rest, i, j, place[0]), remedy, judge)
+
+
+def _judged(problem: Problem, routes: Routes, remedy: Remedy, judge: Judge) -> Remedy:
+    plan = bare_plan(problem, routes)
+    if judge(problem.mission, plan):
+        return replace(remedy, enough=True, routes=plan.routes)
+    return _not_found(remedy)
+
+
+def _not_found(remedy: Remedy) -> Remedy:
+    return replace(remedy, capacity=replace(remedy.capacity, enough=None))
+
+
+def _looked_into(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
+    """The remedy with the capacity that is enough, and the one that is needed at least."""
+    rest = _without(routes, j)
+    now, as_is = remedy.capacity.now, remedy.capacity.as_is
+    remedy = replace(remedy, capacity=replace(remedy.capacity, enough=now))
+    base = changed(problem, remedy, i, j)
+    if remedy.before:
+        never = {item.task for item in impossible(base)}
+        remedy = replace(remedy, before=tuple(Before(name.task, name.task not in never) for name in remedy.before))
+    only = replace(base.tasks[j], only_robots=(remedy.robot,))
+    sole = replace(base, tasks=tuple(only if k == j else task for k, task in enumerate(base.tasks)))
+    bounds = UsageBounds(_with_capacity(sole, i, None))
+    if not bounds.possible[i, j]:
+        return _not_found(replace(remedy, unreachable=True, impossible=True))
+    if as_is is not None and (now is None or as_is <= now * (1 + _ROUNDING)):
+        fitted = _fitted(base, rest, i, j, remedy, judge)
+        if fitted.enough:
+            return fitted
+    needed = closed(problem, [j, *(k for route in rest for k in route)])
+    least = _work_capacity(problem, least_beside(bounds, i, j, needed))
+    if math.isinf(least):
+        return _not_found(replace(remedy, impossible=True))
+    remedy = replace(remedy, capacity=replace(remedy.capacity, at_least=None if now is None else least))
+    found = _narrowed(sole, rest, needed, i, j, remedy)
+    if found is None:
+        return _not_found(remedy)
+    if now is not None:
+        used = _work_capacity(problem, core.Inspection(sole.core, found).usages[i])
+        remedy = replace(remedy, capacity=replace(remedy.capacity, enough=max(used, now)))
+    return _judged(changed(problem, remedy, i, j), found, remedy, judge)
+
+
+def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, remedy: Remedy) -> Routes | None:
+    """Routes that do all that is needed, j by robot i, whose usage is as low as could be found where it must grow."""
+    now, low = remedy.capacity.now, remedy.capacity.at_least or 0.0
+    if now is None or low <= now * (1 + _ROUNDING):
+        first = _rearranged(sole, rest, needed, i, now) or _rearranged(sole, None, needed, i, now)
+        if first is not None or now is None:
+            return first
+    best = _with_task(sole, rest, i, j) or _rearranged(sole, rest, needed, i, None)
+    if best is None:
+        return None
+    low = tried = max(low, now)
+    for _ in range(_NARROWINGS):
+        used = _work_capacity(sole, core.Inspection(sole.core, best).usages[i])
+        if used - low <= _NEAR_ENOUGH * used:
+            break
+        found = _rearranged(sole, rest, needed, i, tried)
+        if found is None:
+            low = tried
+        else:
+            best, used = found, _work_capacity(sole, core.Inspection(sole.core, found).usages[i])
+        tried = (low + used) / 2
+    return best
+
+
+def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
+    """The routes with task j in that of robot i, if they are admissible with unlimited capacity of the robot."""
+    problem = _with_capacity(sole, i, None)
+    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    routes = None if place is None else _put(rest, i, j, place[0])
+    return routes if routes is not None and _admissible(problem, routes) else None
+
+
+def _rearranged(sole: Problem, rest: Routes | None, needed: list[int], i: int, capacity: float | None) -> Routes | None:
+    """Routes that do all that is needed with this work capacity of robot i, if a short search finds some.
+
+    The search begins with the rest of the plan, if that is given and admissible.
+    """
+    problem = _with_capacity(sole, i, capacity)
+    start = rest if rest is not None and _admissible(problem, rest) else None
+    routes = attempt(problem, needed, start=start)
+    return routes if not set(needed).difference(*routes) else None
+
+
+def _with_capacity(problem: Problem, i: int, capacity: float | None) -> Problem:
+    robots = list(problem.robots)
+    robots[i] = replace(robots[i], work_capacity=capacity)
+    return replace(problem, robots=tuple(robots))
+
+
+def _admissible(problem: Problem, routes: Routes) -> bool:
+    allowed = all(problem.allowed[i, j] for i, route in enumerate(routes) for j in route)
+    return allowed and core.Inspection(problem.core, routes).admissible
+
+
+def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> float:
+    """What robot i, of unlimited capacity, uses at least in a plan that does all the tasks; j, which only it may do."""
+    problem = bounds.problem
+    others = [k for k in range(len(problem.robots)) if k != i]
+    few, reached = list(tasks), [0]
+    if len(few) <= FEW:
+        reached = bounds.shares(others, few)
+    else:
+        own = [k for k in tasks if k != j and not bounds.possible[others, k].any()]
+        few = [j, *sorted(own, key=lambda k: -bounds.least[i, k])[: FEW - 1]]
+    usages, bit = bounds.least_usages(i, few), 1 << few.index(j)
+    least = min(float(usages[(len(usages) - 1) & ~share | bit]) for share in reached)
+    spare = float(problem.capacity[others].sum()) * (1 + _ROUNDING)
+    if math.isfinite(spare):
+        least = max(least, bounds.least_together(range(len(problem.robots)), tasks) * (1 - _ROUNDING) - spare)
+    return max(least, float(bounds.least[i, j]))

@@ -1,0 +1,135 @@
+"""Search: ruin and recreate under simulated annealing, from the greedy plan.
+
+Slack induction by string removals (SISR): Christiaens and Vanden Berghe, Slack Induction by String Removals for Vehicle
+Routing Problems, Transportation Science 54(2), 2020. Beyond it: a task is put back where the team's objective grows
+least, the robot that does most included; many ruins begin at that robot; places are those that no prerequisite
+forbids, through all routes; tasks left out are tried again in every step.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from muster import core
+from muster.allocation import greedy
+from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.partition import improve_in_parts, number_of_parts
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.mission.errors import ParameterError
+
+_EXCHANGES = 20  # how often threads take over the best plan, in a whole run
+_BATCH = 400_000  # tasks and robots times steps, between two looks at the clock: some milliseconds
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Parameters of the search. Temperatures are in ways: the usual way from one task to the next.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    threads: int = 1
+    parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
+    hot: float = 5.0
+    cold: float = 0.02
+    removed: float = 10.0  # tasks that a ruin takes out, on average
+    longest_string: int = 10  # of tasks taken out of one route
+    blink: float = 0.01  # how often a place is overlooked
+    near: int = 12  # tasks beside which a task is tried, in large teams
+
+    def __post_init__(self) -> None:
+        if self.parts < 0:
+            raise ParameterError(f"parts: {self.parts}; expected a whole number of at least 0")
+        for name in ("threads", "longest_string", "near"):
+            if getattr(self, name) < 1:
+                raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
+        if not 0 < self.cold <= self.hot < float("inf"):
+            raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot")
+        if not 1 <= self.removed < float("inf"):
+            raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1")
+        if not 0 <= self.blink < 1:
+            raise ParameterError(f"blink: {self.blink:g}; expected a number from 0 to below 1")
+
+
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
+    """Anneal the greedy plan; of a team that outgrows that, one part after the other."""
+    parts = params.parts or number_of_parts(len(problem.tasks))
+
+    def improve(part: Problem, until: Stop, part_seed: int, routes: Routes) -> Routes:
+        return anneal(part, until, part_seed, params if parts == 1 else replace(params, threads=1), routes)
+
+    if parts == 1:
+        return Outcome(improve(problem, stop, seed, start or [[] for _ in problem.robots]))
+    return Outcome(
+        improve_in_parts(problem, stop, seed, parts, max(params.threads, os.cpu_count() or 1), start, improve)
+    )
+
+
+def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
+    """From the greedy plan; several threads begin with other random numbers and take over the best now and then."""
+    first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start).routes
+    searches = [_search(problem, first, seed + thread, params) for thread in range(params.threads)]
+    way = searches[0].mean_way or 1.0
+    exchanged, known = 0, None
+    with ThreadPoolExecutor(params.threads) as pool:
+        for steps in stop.batches(max(20, min(1000, _BATCH // (len(problem.tasks) + len(problem.robots))))):
+            temperature = way * params.hot * (params.cold / params.hot) ** stop.share
+            annealing = [pool.submit(search.anneal, steps, temperature, temperature) for search in searches]
+            for one in annealing:
+                one.result()
+            best = _best(searches)
+            if _rank(best) != known:
+                known = _rank(best)
+                stop.improved(_weight(problem, best), best.best_objective)
+            if stop.share * _EXCHANGES >= exchanged + 1:
+                exchanged += 1
+                exchange(searches, best)
+    return _best(searches).best
+
+
+def exchange(searches: Sequence[core.Search], best: core.Search) -> None:
+    """All but the best go on from its plan."""
+    for search in searches:
+        if search is not best:
+            search.go_on_from(best.best)
+
+
+def _search(problem: Problem, first: Routes, seed: int, params: Parameters) -> core.Search:
+    return core.Search(
+        problem.core,
+        first,
+        seed % 2**64,
+        removed=params.removed,
+        longest_string=params.longest_string,
+        blink=params.blink,
+        greatest_share=0.8 if problem.objective in ("max", "makespan") else 0.5,
+        near=params.near,
+    )
+
+
+def _best(searches: Sequence[core.Search]) -> core.Search:
+    return min(searches, key=_rank)
+
+
+def _rank(search: core.Search) -> tuple[float, float]:
+    return search.best_weight_left_out, search.best_objective
+
+
+def _weight(problem: Problem, search: core.Search) -> float:
+    return sum(problem.tasks[j].priority for j in sorted(j for route in search.best for j in route))
+
+
+SEARCH = Allocator(
+    name="search",
+    summary="ruin and recreate under simulated annealing; the best plans",
+    anytime=True,
+    parameters=Parameters,
+    algorithm=allocate,
+)

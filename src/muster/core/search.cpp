@@ -1,0 +1,348 @@
+#include "search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace muster {
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kSplit = 0.5;        // strings that leave a part in between where it is
+constexpr double kLongerGap = 0.01;   // how often that part is longer by one
+constexpr double kTie = 1e-3;         // weight of the route's own growth where the objective does not see it
+constexpr int kAdjacent = 100;        // tasks that a ruin may spread to
+constexpr int kNearRobots = 4;        // robots whose starts are tried for a task, in large teams
+constexpr int kMostEverywhere = 400;  // tasks and robots, up to which a task is tried at every place
+constexpr int kRetried = 20;          // tasks left out that a step tries again
+
+// More than leaving out a task of weight 1 can ever save.
+double penalty_of(const Problem& problem, const Team& team) {
+  double way = 0.0, work = 0.0, least = kNever;
+  for (int task = 0; task < problem.tasks(); ++task) {
+    least = std::min(least, problem.priority(task));
+    for (const int robot : problem.robots_allowed(task)) {
+      const double there = problem.travel_usage(robot, problem.start(robot), task);
+      const double time = problem.travel_time(robot, problem.start(robot), task);
+      if (std::isfinite(there)) way = std::max({way, there, time});
+      work = std::max({work, problem.work_usage(robot, task), problem.work_time(robot, task)});
+    }
+  }
+  double most = 0.0;
+  for (int robot = 0; robot < problem.robots(); ++robot) most = std::max(most, team.cost(robot).usage);
+  const double each = 4.0 * way + 2.0 * work;
+  return (problem.objective() == Objective::average ? each + 2.0 * most : each) / (least > 0.0 ? least : 1.0);
+}
+
+}  // namespace
+
+Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, SearchSettings settings)
+    : problem_(problem),
+      settings_(settings),
+      random_(seed),
+      neighbours_(problem, kAdjacent, kNearRobots),
+      everywhere_(problem.tasks() + problem.robots() <= kMostEverywhere),
+      penalty_(0.0),
+      team_(problem, start),
+      ruined_(problem.robots(), 0) {
+  penalty_ = penalty_of(problem, team_);
+  current_ = cost();
+  best_.resize(problem.robots());
+  best_value_.weight = -kNever;
+  note_best();
+  team_.commit();
+}
+
+void Search::go_on_from(const Routes& routes) {
+  team_.begin(routes);
+  current_ = cost();
+  note_best();
+}
+
+void Search::anneal(int steps, double hot, double cold) {
+  if (problem_.tasks() == 0) return;
+  const double cooling = std::pow(cold / hot, 1.0 / steps);
+  double temperature = hot;
+  for (int k = 0; k < steps; ++k, temperature *= cooling) step(temperature);
+}
+
+void Search::step(double temperature) {
+  ruin();
+  recreate();
+  drop_orphans();
+  const double next = cost();
+  if (team_.fits() && next < current_ - temperature * std::log(random_.uniform() + 1e-300)) {
+    current_ = next;
+    note_best();
+    team_.commit();
+  } else {
+    team_.rollback();
+  }
+}
+
+// Strings of tasks are taken out of routes that pass near one task.
+void Search::ruin() {
+  removed_.clear();
+  int used = 0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) used += !team_.route(robot).empty();
+  if (used == 0) return;
+  const int seed = seed_task();
+  const double present = static_cast<double>(problem_.tasks()) - static_cast<double>(team_.absent().size());
+  const double longest = std::min<double>(settings_.longest_string, std::max(1.0, present / used));
+  const double most_strings = 4.0 * settings_.removed / (1.0 + longest) - 1.0;
+  const int strings = std::max(1, static_cast<int>(1.0 + random_.uniform() * most_strings));
+  int taken = 0;
+  std::vector<int> ruined;
+  const auto visit = [&](int task) {
+    const int robot = team_.robot_of(task);
+    if (robot == Team::kAbsent || ruined_[robot]) return;
+    const double most = std::min<double>(longest, static_cast<double>(team_.route(robot).size()));
+    take_string(task, static_cast<int>(1.0 + random_.uniform() * most));
+    ruined_[robot] = 1;
+    ruined.push_back(robot);
+    ++taken;
+  };
+  visit(seed);
+  for (const int task : neighbours_.of(seed)) {
+    if (taken >= strings) break;
+    visit(task);
+  }
+  for (const int robot : ruined) ruined_[robot] = 0;
+}
+
+int Search::seed_task() {
+  const auto& absent = team_.absent();
+  if (!absent.empty() && random_.uniform() < 0.5) return absent[random_.below(static_cast<int>(absent.size()))];
+  const bool sees_greatest = problem_.objective() != Objective::total && problem_.objective() != Objective::average;
+  if (sees_greatest && random_.uniform() < settings_.greatest_share) {
+    const auto& route = team_.route(greatest());
+    if (!route.empty()) return route[random_.below(static_cast<int>(route.size()))];
+  }
+  return random_.below(problem_.tasks());
+}
+
+// Takes `length` tasks around a task out of its route, in one string, or in one with a gap.
+void Search::take_string(int task, int length) {
+  const int robot = team_.robot_of(task), at = team_.at(task);
+  const int size = static_cast<int>(team_.route(robot).size());
+  int gap = 0;
+  if (length < size && length > 1 && random_.uniform() < kSplit) {
+    gap = 1;
+    while (length + gap < size && random_.uniform() < kLongerGap) ++gap;
+  }
+  const int span = length + gap;
+  const int first_least = std::max(0, at - span + 1), first_most = std::min(at, size - span);
+  const int first = first_least + random_.below(first_most - first_least + 1);
+  const int gap_at = gap ? first + 1 + random_.below(length - 1) : first + span;
+  const std::size_t before = removed_.size();
+  for (int k = first; k < first + span; ++k) {
+    if (k < gap_at || k >= gap_at + gap) removed_.push_back(team_.route(robot)[k]);
+  }
+  for (std::size_t k = before; k < removed_.size(); ++k) team_.remove(removed_[k]);
+}
+
+// Puts tasks back one by one, each where it costs least; those that wait for others after these.
+void Search::recreate() {
+  pending_ = removed_;
+  const auto& absent = team_.absent();
+  if (static_cast<int>(absent.size()) - static_cast<int>(removed_.size()) <= kRetried) {
+    pending_ = absent;
+  } else {
+    for (int k = 0; k < kRetried; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
+  }
+  order_pending();
+  peak_ = load(greatest());
+  const auto ready = [&](int task) {
+    return std::ranges::all_of(problem_.prerequisites(task), [&](int before) { return team_.present(before); });
+  };
+  for (bool more = true; more;) {
+    more = false;
+    for (int& task : pending_) {
+      if (task == Team::kAbsent || team_.present(task) || !ready(task)) continue;
+      more |= insert(task);
+      task = Team::kAbsent;
+    }
+    more &= problem_.has_prerequisites();
+  }
+}
+
+// In random order, the farthest first, the nearest first, or those first that few robots may do.
+void Search::order_pending() {
+  for (std::size_t k = pending_.size(); k > 1; --k) {
+    std::swap(pending_[k - 1], pending_[random_.below(static_cast<int>(k))]);
+  }
+  const int kind = random_.below(8);
+  if (kind < 4) return;
+  const auto key = [&](int task) {
+    if (kind == 7) return static_cast<double>(problem_.robots_allowed(task).size());
+    const auto robots = neighbours_.robots(task);
+    if (robots.empty()) return 0.0;
+    const double distance = problem_.distance(problem_.travel_class(robots[0]), problem_.start(robots[0]), task);
+    return kind == 6 ? distance : -distance;
+  };
+  std::ranges::stable_sort(pending_, {}, key);
+}
+
+bool Search::insert(int task) {
+  team_.bound(task);
+  place_.robot = Team::kAbsent;
+  place_score_ = kNever;
+  if (everywhere_) {
+    for (const int robot : problem_.robots_allowed(task)) try_route(robot, task);
+  } else {
+    int tried = 0;
+    for (const int near : neighbours_.of(task)) {
+      if (!team_.present(near)) continue;
+      const int robot = team_.robot_of(near);
+      if (problem_.allowed(robot, task)) {
+        try_place(robot, task, team_.at(near));
+        try_place(robot, task, team_.at(near) + 1);
+      }
+      if (++tried == settings_.near) break;
+    }
+    for (const int robot : neighbours_.robots(task)) try_place(robot, task, 0);
+  }
+  if (place_.robot == Team::kAbsent) return false;
+  team_.insert(task, place_.robot, place_.at);
+  peak_ = std::max(peak_, load(place_.robot));
+  return true;
+}
+
+// The place where the route grows least; scores never fall with growth but for `average`, which sees every place.
+void Search::try_route(int robot, int task) {
+  const auto& route = team_.route(robot);
+  const int first = team_.earliest(robot), last = team_.latest(robot), size = static_cast<int>(route.size());
+  const bool every_place = problem_.objective() == Objective::average;
+  const double work = problem_.work_usage(robot, task);
+  double least = kNever;
+  int best = -1;
+  for (int at = first; at <= last; ++at) {
+    if (settings_.blink > 0.0 && random_.uniform() < settings_.blink) continue;
+    const int before = at ? route[at - 1] : problem_.start(robot);
+    const double there = problem_.travel_usage(robot, before, task) + work;
+    const double on = at < size ? problem_.travel_usage(robot, task, route[at]) : problem_.end_usage(robot, task);
+    const double growth = there + on - team_.way(robot, at);
+    if (every_place) {
+      propose(robot, task, at, growth);
+    } else if (growth < least) {
+      least = growth;
+      best = at;
+    }
+  }
+  if (best >= 0) propose(robot, task, best, least);
+}
+
+void Search::try_place(int robot, int task, int at) {
+  if (at < team_.earliest(robot) || at > team_.latest(robot)) return;
+  if (random_.uniform() < settings_.blink) return;
+  propose(robot, task, at, team_.growth(robot, task, at));
+}
+
+void Search::propose(int robot, int task, int at, double growth) {
+  if (!problem_.fits(robot, team_.cost(robot).usage + growth)) return;
+  const double value = score(robot, task, at, growth);
+  if (value < place_score_) {
+    place_score_ = value;
+    place_ = {robot, at, growth};
+  }
+}
+
+// What the objective grows by.
+double Search::score(int robot, int task, int at, double growth) const {
+  switch (problem_.objective()) {
+    case Objective::total:
+      return growth;
+    case Objective::max:
+      return kTie * growth + std::max(0.0, team_.cost(robot).usage + growth - peak_);
+    case Objective::total_max:
+      return growth + std::max(0.0, team_.cost(robot).usage + growth - peak_);
+    case Objective::average:
+      return team_.later_arrivals(robot, task, at, growth);
+    case Objective::makespan: {
+      const double longer = team_.longer(robot, task, at);
+      return kTie * longer + std::max(0.0, team_.cost(robot).done + longer - peak_);
+    }
+  }
+  return growth;
+}
+
+// Tasks whose prerequisites found no place cannot stay.
+void Search::drop_orphans() {
+  if (!problem_.has_prerequisites() || team_.absent().empty()) return;
+  std::vector<int> gone = team_.absent();
+  for (std::size_t k = 0; k < gone.size(); ++k) {
+    for (const int dependant : problem_.dependants(gone[k])) {
+      if (!team_.present(dependant)) continue;
+      team_.remove(dependant);
+      gone.push_back(dependant);
+    }
+  }
+}
+
+double Search::load(int robot) const {
+  const RouteCost& cost = team_.cost(robot);
+  if (problem_.objective() != Objective::makespan) return cost.usage;
+  return team_.route(robot).empty() ? 0.0 : cost.done;
+}
+
+int Search::greatest() const {
+  int greatest = 0;
+  for (int robot = 1; robot < problem_.robots(); ++robot) {
+    if (load(robot) > load(greatest)) greatest = robot;
+  }
+  return greatest;
+}
+
+double Search::objective() {
+  if (problem_.objective() == Objective::makespan) return team_.makespan();
+  double total = 0.0, most = 0.0, arrivals = 0.0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    const RouteCost& cost = team_.cost(robot);
+    total += cost.usage;
+    most = std::max(most, cost.usage);
+    arrivals += cost.arrivals;
+  }
+  switch (problem_.objective()) {
+    case Objective::total:
+      return total;
+    case Objective::max:
+      return most;
+    case Objective::average:
+      return arrivals;
+    default:
+      return total + most;
+  }
+}
+
+// What annealing compares: the objective (`average` as a sum), and a penalty for what is left out.
+double Search::cost() {
+  double ties = 0.0;
+  if (problem_.objective() == Objective::max || problem_.objective() == Objective::makespan) {
+    for (int robot = 0; robot < problem_.robots(); ++robot) ties += team_.cost(robot).usage;
+  }
+  return objective() + kTie * ties + penalty_ * team_.absent_weight();
+}
+
+void Search::note_best() {
+  const double done = static_cast<double>(problem_.tasks()) - static_cast<double>(team_.absent().size());
+  Value value{-team_.absent_weight(), objective()};
+  if (problem_.objective() == Objective::average && done > 0.0) value.objective /= done;
+  if (!value.better_than(best_value_)) return;
+  best_value_ = value;
+  for (const int robot : team_.take_changed()) best_[robot] = team_.route(robot);
+}
+
+double Search::mean_way() const {
+  double sum = 0.0;
+  int ways = 0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    for (std::size_t at = 0; at < team_.route(robot).size(); ++at, ++ways)
+      sum += team_.way(robot, static_cast<int>(at));
+  }
+  return ways ? sum / ways : 0.0;
+}
+
+}  // namespace muster

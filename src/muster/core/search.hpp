@@ -1,0 +1,74 @@
+// Ruin and recreate under simulated annealing: slack induction by string removals (SISR; Christiaens and Vanden Berghe,
+// Transportation Science 54(2), 2020), for teams whose objective may look at the robot that does most.
+#pragma once
+
+#include <vector>
+
+#include "draft.hpp"
+#include "neighbours.hpp"
+#include "random.hpp"
+#include "team.hpp"
+
+namespace muster {
+
+struct SearchSettings {
+  double removed = 10.0;        // tasks that a ruin takes out, on average
+  int longest_string = 10;      // of tasks taken out of one route
+  double blink = 0.01;          // how often a place is overlooked
+  double greatest_share = 0.5;  // of ruins that begin at the robot that does most
+  int near = 30;                // tasks beside which a task is tried, in large teams
+};
+
+class Search {
+ public:
+  // The routes must be admissible.
+  Search(const Problem& problem, const Routes& start, std::uint64_t seed, SearchSettings settings);
+
+  // So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).
+  void anneal(int steps, double hot, double cold);
+  // Goes on from these routes; the best stays.
+  void go_on_from(const Routes& routes);
+
+  const Routes& best() const { return best_; }
+  const Value& best_value() const { return best_value_; }
+  // The usual way from one task to the next.
+  double mean_way() const;
+
+ private:
+  void step(double temperature);
+  void ruin();
+  int seed_task();
+  void take_string(int task, int longest);
+  void recreate();
+  void order_pending();
+  bool insert(int task);
+  void try_route(int robot, int task);
+  void try_place(int robot, int task, int at);
+  void propose(int robot, int task, int at, double growth);
+  double score(int robot, int task, int at, double growth) const;
+  void drop_orphans();
+  int greatest() const;
+  double load(int robot) const;
+  double objective();
+  double cost();
+  void note_best();
+
+  const Problem& problem_;
+  SearchSettings settings_;
+  Random random_;
+  Neighbours neighbours_;
+  bool everywhere_;  // whether a task is tried at every place
+  double penalty_;   // of a unit of weight left out
+  Team team_;
+  double current_;
+  Routes best_;
+  Value best_value_;
+  double peak_ = 0.0;  // the greatest load, while tasks are put back
+  std::vector<int> pending_, removed_;
+  std::vector<double> keys_;
+  std::vector<char> ruined_;
+  Place place_;  // the best found for a task
+  double place_score_ = 0.0;
+};
+
+}  // namespace muster

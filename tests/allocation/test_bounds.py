@@ -1,0 +1,173 @@
+"""The bounds against the best of all plans of small missions, and on missions whose best plan is known."""
+
+import math
+from dataclasses import replace
+from itertools import permutations
+from random import Random
+
+import numpy as np
+import pytest
+from tests.random_missions import TYPES, random_mission
+
+import muster
+from muster import Mission, Robot, Rules, Task, core
+from muster.allocation.bounds import best_bound, lower_bound
+from muster.allocation.problem import Problem
+from muster.allocation.spanning import Ways, route_bounds
+from muster.mission.model import OBJECTIVES, TravelTable
+
+ROUNDING = 1e-9
+
+
+def best_plan(problem):
+    """(weight, objective, routes) of the best of all admissible plans; complete plans are all looked at."""
+    tasks, robots = range(len(problem.tasks)), range(len(problem.robots))
+
+    def plans(left, i):
+        if i == len(robots):
+            yield []
+            return
+        mine = [j for j in left if problem.allowed[i, j]]
+        for size in range(len(mine) + 1):
+            for route in permutations(mine, size):
+                for others in plans([j for j in left if j not in route], i + 1):
+                    yield [list(route), *others]
+
+    def rank(routes):
+        weight, objective = problem.value(routes)
+        return -weight, objective
+
+    admissible = (routes for routes in plans(list(tasks), 0) if core.Inspection(problem.core, routes).admissible)
+    best = min(admissible, key=rank)
+    return *problem.value(best), best
+
+
+def forgiving(seed, **rules):
+    """A random mission of 4 or 5 tasks in which all tasks can often be done."""
+    tasks = 4 + seed % 2
+    mission = random_mission(seed, tasks=tasks, robots=2 + (seed // 2) % 2 if tasks == 4 else 2, **rules)
+    return replace(
+        mission,
+        suitability=mission.suitability if seed % 5 == 0 else None,
+        tasks=tuple(replace(task, requires=task.requires if seed % 3 == 0 else ()) for task in mission.tasks),
+    )
+
+
+def by_table(seed):
+    """A mission by travel tables that are asymmetric, break the triangle inequality, and lack some ways."""
+    random, mission = Random(seed), forgiving(seed, return_to_start=seed % 2 == 0)
+    places = tuple(one.id for one in (*mission.robots, *mission.tasks))
+
+    def metres():
+        return math.inf if random.random() < 0.1 else random.choice((0, 1, random.uniform(0, 20), 30))
+
+    tables = {kind: TravelTable(places, tuple(tuple(metres() for _ in places) for _ in places)) for kind in TYPES}
+    return replace(
+        mission,
+        rules=replace(mission.rules, travel="matrix"),
+        robots=tuple(replace(robot, end_position=None) for robot in mission.robots),
+        tasks=tuple(replace(task, entry=None, exit=None) for task in mission.tasks),
+        travel={kind: f"{kind}.csv" for kind in TYPES},
+        travel_tables=tables,
+    )
+
+
+@pytest.mark.parametrize("make", [forgiving, by_table])
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
+    complete = gap = 0
+    for seed in range(45):
+        problem = Problem.compile(make(seed), objective)
+        _, value, routes = best_plan(problem)
+        bound = lower_bound(problem)
+        if sum(map(len, routes)) == len(problem.tasks):
+            complete += 1
+            assert bound <= value * (1 + ROUNDING) + ROUNDING, (seed, bound, value)
+            gap += 1 - bound / value if value else 0
+    assert complete >= 10
+    assert gap / complete < 0.7  # a bound that is always 0 is none
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(seed):
+    random = Random(seed)
+    problem = Problem.compile((by_table if seed % 2 else forgiving)(seed), "total", ("capacity", "prerequisites"))
+    weights = np.array([random.choice((0.0, 0.5, 1.0, 2.0)) for _ in problem.robots])
+    if not problem.allowed.any(axis=0).all():
+        return
+    bounds = route_bounds(Ways.of(problem, problem.allowed, weights), np.asarray)
+    tasks = list(range(len(problem.tasks)))
+    for _ in range(200):
+        routes = [[] for _ in problem.robots]
+        for j in random.sample(tasks, len(tasks)):
+            routes[random.choice(np.flatnonzero(problem.allowed[:, j]).tolist())].append(j)
+        usages = np.array(core.Inspection(problem.core, routes).usages)
+        used = sum(bool(route) for route in routes)
+        if np.isfinite(usages).all():
+            assert bounds[used - 1] <= usages @ weights * (1 + ROUNDING) + ROUNDING
+
+
+def test_large_missions_are_bounded_row_by_row_as_well(monkeypatch):
+    problem = Problem.compile(by_table(3), "total")
+    usual = best_bound(problem).value
+    monkeypatch.setattr("muster.allocation.spanning._DENSE", 0)
+    assert best_bound(problem).value == pytest.approx(usual, rel=1e-12)
+    monkeypatch.setattr("muster.allocation.spanning._MOST_KINDS", 0)
+    monkeypatch.setattr("muster.allocation.bounds._MOST_WAYS", 0)
+    assert best_bound(problem).value <= usual * (1 + ROUNDING)
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_of_one_task_the_bound_is_exact(objective):
+    mission = Mission(
+        rules=Rules(objective=objective, return_to_start=True),
+        robots=(Robot(id="near", position=(0, 0), speed_mps=0.5), Robot(id="far", position=(50, 0))),
+        tasks=(Task(id="1", position=(3, 4), actuation_cost=2),),
+    )
+    problem = Problem.compile(mission)
+    assert lower_bound(problem) == pytest.approx(best_plan(problem)[1])
+
+
+def test_no_tasks():
+    mission = Mission(robots=(Robot(id="r", position=(0, 0)),), tasks=())
+    assert lower_bound(Problem.compile(mission)) == 0
+
+
+@pytest.mark.parametrize("robots", [1, 2])
+def test_it_is_infinite_where_capacities_cannot_hold_all_tasks(robots):
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(0, 0), work_capacity=24) for k in range(robots)),
+        tasks=tuple(Task(id=str(k), position=(0, 10), actuation_cost=10) for k in range(3)),
+    )
+    assert lower_bound(Problem.compile(mission, "total")) == math.inf
+
+
+def test_farthest_task_bounds_the_greatest_usage():
+    """eil51 with 7 salesmen: twice the way to the farthest node, which the best plan known has."""
+    bound = best_bound(Problem.compile(muster.load("eil51-7"), "max"))
+    assert bound.value == pytest.approx(112.0714, abs=1e-4)
+    assert bound.argument == "the farthest task"
+
+
+@pytest.mark.parametrize(
+    ("name", "best_known", "gap"),
+    [("31T-6R", 213.5616, 0.17), ("16T-3R", 342.9002, 0.11), ("24T-5R", 189.2523, 0.14), ("eil51-5", 629.9602, 0.11)],
+)
+def test_shipped_missions(name, best_known, gap):
+    bound = lower_bound(Problem.compile(muster.load(name), "total+max"))
+    assert (1 - gap) * best_known <= bound <= best_known
+
+
+def test_critical_path_bounds_the_makespan():
+    """Three tasks in a chain, each by another robot, at the robots' starts: they wait for each other."""
+    mission = Mission(
+        rules=Rules(objective="makespan"),
+        robots=tuple(Robot(id=f"r_{k}", position=(100 * k, 0), available_from_s=2) for k in range(3)),
+        tasks=tuple(
+            Task(id=str(k), position=(100 * k, 0), duration_s=10, prerequisites=(str(k - 1),) if k else ())
+            for k in range(3)
+        ),
+    )
+    bound = best_bound(Problem.compile(mission))
+    assert bound.value == pytest.approx(32)
+    assert bound.argument == "the critical path"

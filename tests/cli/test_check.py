@@ -1,0 +1,119 @@
+"""`muster check`: tasks that no plan does together."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+TWO = """\
+schema: muster/1
+name: two
+robots:
+  - {id: r_0, position: [0, 0], work_capacity: CAPACITY}
+tasks:
+  - {id: west, position: [-40, 0]}
+  - {id: near, position: [1, 0]}
+  - {id: east, position: [40, 0]}
+"""
+CHAIN = """\
+schema: muster/1
+name: chain
+robots:
+  - {id: r_0, position: [0, 0], work_capacity: 10}
+tasks:
+  - {id: first, position: [4, 0]}
+  - {id: then, position: [-4, 0], prerequisites: [first]}
+"""
+RING = """\
+schema: muster/1
+name: ring
+rules: {return_to_start: true}
+robots:
+  - {id: r_0, position: [0, 0], work_capacity: 79}
+tasks:
+""" + "".join(
+    f"  - {{id: {k}, position: [{x}, {y}]}}\n"
+    for k, (x, y) in enumerate(
+        (sx * x, sy * y)
+        for sx in (1, -1)
+        for sy in (1, -1)
+        for x, y in [(9.877, 1.564), (8.910, 4.540), (7.071, 7.071), (4.540, 8.910), (1.564, 9.877)]
+    )
+)
+
+
+def write(text, capacity=60):
+    Path("m.yaml").write_text(text.replace("CAPACITY", str(capacity)), encoding="utf-8")
+    return "m.yaml"
+
+
+def test_tasks_that_no_plan_does_together(muster):
+    assert muster("check", write(TWO)) == (
+        0,
+        "two: 1 robots, 3 tasks; no errors\n"
+        "no plan can do all of these 2 tasks (proven): west, east\n"
+        "  only r_0 can do them, and would use at least 120.00 m, of 60.00 m\n"
+        "  without any one of them a plan was found that does the others\n",
+        "",
+    )
+
+
+def test_in_json(muster):
+    code, out, err = muster("check", write(TWO), "--format", "json")
+    assert (code, err) == (0, "")
+    assert json.loads(out) == {
+        "errors": [],
+        "impossible": [],
+        "conflict": {
+            "tasks": ["west", "east"],
+            "prerequisites": [],
+            "robots": ["r_0"],
+            "detail": "only r_0 can do them, and would use at least 120.00 m, of 60.00 m",
+            "minimal": True,
+            "proven": True,
+        },
+        "unknown": False,
+    }
+
+
+def test_a_task_too_far_behind_its_prerequisite(muster):
+    out = muster("check", write(CHAIN))[1]
+    assert out.splitlines()[1:] == [
+        "no plan can do task then, with first before (proven)",
+        "  only r_0 can do them, and would use at least 12.00 m, of 10.00 m",
+    ]
+    assert "tasks (proven): first, then\n" in muster("check", "m.yaml", "--ignore", "prerequisites")[1]
+
+
+def test_when_all_can_be_done(muster):
+    assert muster("check", write(TWO, 120)) == (0, "two: 1 robots, 3 tasks; no errors\n", "")
+    answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
+    assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False}
+
+
+@pytest.mark.parametrize(("capacity", "code"), [(60, 3), (120, 0)])
+def test_require_complete(capacity, code, muster):
+    assert muster("check", write(TWO, capacity), "--require-complete")[0] == code
+    assert muster("check", "m.yaml", "--require-complete", "--ignore", "capacity")[0] == 0
+
+
+def test_what_is_not_known(muster):
+    code, out, err = muster("check", write(RING), "--time-limit", "0.1", "--require-complete")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[1:] == ["no plan for all tasks was found; none was proven impossible"]
+    assert json.loads(muster("check", "m.yaml", "--time-limit", "0.1", "--format", "json")[1])["unknown"] is True
+
+
+def test_no_time(muster):
+    """Nothing is said that is not known."""
+    code, out, err = muster("check", write(TWO), "--time-limit", "0")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[1:] == ["no plan for all tasks was found; none was proven impossible"]
+
+
+def test_errors_in_json_have_all_keys(muster):
+    code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
+    assert (code, err) == (2, "")
+    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown"]
