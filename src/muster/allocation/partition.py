@@ -1,4 +1,4 @@
-"""Teams that outgrow a search: divided in space, improved part by part and on all cores, then divided otherwise.
+"""Teams that outgrow a search: divided in space, improved part by part, side by side, then divided otherwise.
 
 The first division goes by where robots start and tasks lie; the later ones by where routes run, along other lines, so
 that what was a border lies within a part. Robots keep their routes from one division to the next, so the plan never
@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,9 +18,7 @@ from muster.allocation import greedy
 from muster.allocation.allocator import Routes
 from muster.allocation.problem import Floats, Problem
 from muster.allocation.stop import Stop
-
-Improve = Callable[[Problem, Stop, int, Routes], Routes]
-"""Makes better routes of a part of the problem, from a seed and the routes it has."""
+from muster.allocation.workers import Improve, Job, Limits, Offer, Workers
 
 _MOST_WHOLE = 15_000  # tasks up to which a team is searched as a whole
 _IN_A_PART = 1_500  # tasks
@@ -43,44 +40,30 @@ class Part:
 
 
 def improve_in_parts(
-    problem: Problem, stop: Stop, seed: int, parts: int, threads: int, start: Routes | None, improve: Improve
+    problem: Problem, stop: Stop, seed: int, parts: int, workers: Workers, start: Routes | None, improve: Improve
 ) -> Routes:
     """Divide, improve every part, and divide otherwise, until it is time to stop."""
     routes = [list(route) for route in start or [[]] * len(problem.robots)]
-    with ThreadPoolExecutor(threads) as pool:
-        for division in range(_DIVISIONS):
-            pieces = list(divide(problem, routes, parts, division))
-            limits = _limits(stop, _DIVISIONS - division, len(pieces), threads)
-
-            team = _Team(problem, routes)
-
-            def work(number: int, piece: Part, routes: Routes = routes, limits: Limits = limits) -> _Offer:
-                part, number_in = problem.part(piece.robots, piece.tasks), {j: k for k, j in enumerate(piece.tasks)}
-                until = stop.part(time_limit=limits.time_s, iterations=limits.iterations)
-                own = [[number_in[j] for j in routes[i]] for i in piece.robots]
-                better = improve(part, until, seed + number, own)
-                more = part.value(better)[0] > part.value(own)[0]
-                usages = core.Inspection(part.core, better).usages
-                return _Offer([[piece.tasks[k] for k in route] for route in better], np.array(usages), more)
-
-            for piece, offer in zip(pieces, pool.map(work, range(len(pieces)), pieces), strict=True):
-                if team.takes(piece, offer):
-                    for i, route in zip(piece.robots, offer.routes, strict=True):
-                        routes[i] = route
-            stop.iterations_done += (limits.iterations or 0) * len(pieces)
-            stop.improved(*problem.value(routes))
-            if stop.due():
-                break
+    for division in range(_DIVISIONS):
+        pieces = list(divide(problem, routes, parts, division))
+        limits = _limits(stop, _DIVISIONS - division, len(pieces), workers.count)
+        team = _Team(problem, routes)
+        jobs = [_job(problem, piece, routes, seed + k, limits, improve) for k, piece in enumerate(pieces)]
+        for piece, offer in zip(pieces, workers.map(jobs, stop), strict=True):
+            if offer is not None and team.takes(piece, offer):
+                for i, route in zip(piece.robots, offer.routes, strict=True):
+                    routes[i] = [piece.tasks[k] for k in route]
+        stop.iterations_done += (limits.iterations or 0) * len(pieces)
+        stop.improved(*problem.value(routes))
+        if stop.due():
+            break
     return greedy.allocate(problem, stop, seed, greedy.Parameters(), routes).routes
 
 
-@dataclass(frozen=True)
-class _Offer:
-    """Routes of a part, their usages, and whether they do more than it did."""
-
-    routes: Routes
-    usages: Floats
-    does_more: bool
+def _job(problem: Problem, piece: Part, routes: Routes, seed: int, limits: Limits, improve: Improve) -> Job:
+    number_in = {j: k for k, j in enumerate(piece.tasks)}
+    own = [[number_in[j] for j in routes[i]] for i in piece.robots]
+    return Job(problem.part(piece.robots, piece.tasks), seed, own, limits, improve)
 
 
 class _Team:
@@ -90,7 +73,7 @@ class _Team:
         self._sees_both = problem.objective == "total+max"  # the others do not get worse where no part does
         self._usages = np.array(core.Inspection(problem.core, routes).usages)
 
-    def takes(self, piece: Part, offer: _Offer) -> bool:
+    def takes(self, piece: Part, offer: Offer) -> bool:
         """Whether the plan is no worse for it; if so it counts from now on."""
         before = self._usages[piece.robots]
         self._usages[piece.robots] = 0.0
@@ -104,19 +87,11 @@ def _cost(usages: Floats, others: float) -> float:
     return float(usages.sum()) + max(others, float(usages.max()))
 
 
-@dataclass(frozen=True)
-class Limits:
-    """What each part may take."""
-
-    time_s: float | None
-    iterations: int | None
-
-
-def _limits(stop: Stop, divisions: int, parts: int, threads: int) -> Limits:
+def _limits(stop: Stop, divisions: int, parts: int, workers: int) -> Limits:
     left, iterations = stop.time_left_s, stop.iterations_left
     if left is None and iterations is None:
         return Limits(_SECONDS, None)
-    turns = divisions * math.ceil(parts / threads)
+    turns = divisions * math.ceil(parts / workers)
     return Limits(
         None if left is None else left / turns,
         None if iterations is None else max(1, iterations // (divisions * parts)),

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.allocation.cut import cut_down
 from muster.allocation.travel import travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import shown
@@ -75,8 +77,16 @@ class Problem:
         return self
 
     def part(self, robots: Sequence[int], tasks: Sequence[int]) -> Problem:
-        """The problem of some of the mission's robots and tasks, in ascending order; none may wait for one outside."""
-        return replace(self, robots=tuple(self.robots[i] for i in robots), tasks=tuple(self.tasks[j] for j in tasks))
+        """The problem of some robots (at least one) and tasks, in ascending order; none may wait for one outside.
+
+        Of the mission it has what these need and no more (see `cut_down`).
+        """
+        own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
+        return replace(self, mission=cut_down(self.mission, own, work), robots=own, tasks=work)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields alone: what is made of them is made anew where the problem arrives."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @property
     def places(self) -> tuple[Floats, Floats]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 
 from muster import core
@@ -18,7 +19,9 @@ from muster.allocation import greedy
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.partition import improve_in_parts, number_of_parts
 from muster.allocation.problem import Problem
+from muster.allocation.ray_cluster import joined
 from muster.allocation.stop import Stop
+from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
 
 _EXCHANGES = 20  # how often threads take over the best plan, in a whole run
@@ -37,6 +40,7 @@ class Parameters:
 
     threads: int = 1
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
+    ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
     hot: float = 5.0
     cold: float = 0.02
     removed: float = 10.0  # tasks that a ruin takes out, on average
@@ -47,6 +51,10 @@ class Parameters:
     def __post_init__(self) -> None:
         if self.parts < 0:
             raise ParameterError(f"parts: {self.parts}; expected a whole number of at least 0")
+        if not isinstance(self.ray, str):
+            raise ParameterError(f"ray: {self.ray}; expected the address of a Ray cluster, or none")
+        if self.ray != "none" and self.threads > 1:
+            raise ParameterError(f"threads: {self.threads}, with a Ray cluster; expected one of the two")
         for name in ("threads", "longest_string", "near"):
             if getattr(self, name) < 1:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
@@ -65,11 +73,19 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     def improve(part: Problem, until: Stop, part_seed: int, routes: Routes) -> Routes:
         return anneal(part, until, part_seed, params if parts == 1 else replace(params, threads=1), routes)
 
+    if parts == 1 and params.ray != "none":
+        few = f"a team of {len(problem.tasks)} tasks, which is searched as a whole"
+        raise ParameterError(f"ray: {params.ray}, for {few}; expected a larger one, or parts (2 or more)")
     if parts == 1:
         return Outcome(improve(problem, stop, seed, start or [[] for _ in problem.robots]))
-    return Outcome(
-        improve_in_parts(problem, stop, seed, parts, max(params.threads, os.cpu_count() or 1), start, improve)
-    )
+    with _workers(params) as workers:
+        return Outcome(improve_in_parts(problem, stop, seed, parts, workers, start, improve))
+
+
+def _workers(params: Parameters) -> AbstractContextManager[Workers]:
+    if params.ray == "none":
+        return nullcontext(Threads(max(params.threads, os.cpu_count() or 1)))
+    return joined(params.ray)
 
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:

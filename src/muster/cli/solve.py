@@ -66,6 +66,7 @@ _FILE = click.Path(path_type=Path)
     "--iterations", type=click.IntRange(min=0), metavar="N", help="Stop after so many; then a seed gives one plan."
 )
 @click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]")
+@click.option("--ray", metavar="ADDRESS", help="Work on the parts of a large team on a Ray cluster (docs/search.md).")
 @click.option(
     "--bound",
     type=click.Choice(["quick", "exact"]),
@@ -98,6 +99,7 @@ def command(
     time_limit: float | None,
     iterations: int | None,
     threads: int | None,
+    ray: str | None,
     bound: str | None,
     bid: str | None,
     placement: str | None,
@@ -130,7 +132,7 @@ def command(
     chosen = allocator_named(allocator)
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
-    terms = _given(chosen, threads=threads, bid=bid, placement=placement, winner=winner)
+    terms = _given(chosen, threads=threads, ray=ray, bid=bid, placement=placement, winner=winner)
     others = _settings(settings)
     for name in terms.keys() & others.keys():
         raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")

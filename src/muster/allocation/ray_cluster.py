@@ -1,0 +1,189 @@
+"""Parts of a team improved on a Ray cluster (extra `ray`); the only file that knows Ray.
+
+A part is a task of Ray's on one CPU. Ctrl-C, or the end of the time, cancels what is still at work: Ray then sends the
+worker the signal that Ctrl-C sends, on which it returns the best it has. A worker that dies is replaced once.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any
+
+from muster.allocation.stop import Stop
+from muster.allocation.workers import Job, Offer
+from muster.mission.errors import MissingExtraError, MusterError, ParameterError
+
+EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
+
+_REACHED_WITHIN_S = 5.0
+_ANSWERED_WITHIN_S = 20.0  # Ray's own check has to start first
+_RETURNED_WITHIN_S = 5.0  # after a job was told to end
+_LOOK_EVERY_S = 0.1
+_LOCAL_STORE = 100_000_000  # bytes of shared memory, where Ray would take a third of the machine's
+
+_log = logging.getLogger(__name__)
+
+
+@contextmanager
+def joined(address: str) -> Iterator[Cluster]:
+    """The cluster at an address while the block lasts.
+
+    Parameters
+    ----------
+    address
+        `local`: a cluster of this machine's cores, for as long as it is needed; `auto`: the one that this process has
+        joined, or that runs on this machine; `HOST:PORT` of a head, on a machine of its cluster; `ray://HOST:PORT` of
+        a head's client server, from anywhere.
+
+    Raises
+    ------
+    MissingExtraError
+        if Ray is not installed.
+    ParameterError
+        if no cluster is there, or it has no CPU.
+    """
+    try:
+        import ray
+    except ImportError:
+        raise MissingExtraError("ray", "working on a Ray cluster") from None
+    if ray.is_initialized():
+        if address != "auto":
+            raise ParameterError(f"ray: {address}, in a process that has joined a cluster; expected auto")
+        yield Cluster(address, _cpus(address))
+        return
+    _require_answer(address)
+    with _handler_of_sigterm_kept():
+        try:
+            _join(address)
+            yield Cluster(address, _cpus(address))
+        finally:
+            ray.shutdown()
+
+
+def _join(address: str) -> None:
+    """Join quietly: what Ray has to say is in its own log files."""
+    import ray
+
+    options: dict[str, Any] = {"log_to_driver": False, "logging_level": logging.ERROR}
+    if address == "local":
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # a cluster of ours tells nobody of its use
+        options |= {"include_dashboard": False, "object_store_memory": _LOCAL_STORE}
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            ray.init(address=address, **options)
+    except ImportError:
+        raise MissingExtraError("ray", "joining a Ray cluster from outside") from None
+    except (OSError, RuntimeError, ValueError, ray.exceptions.RayError) as error:
+        raise _no_cluster(address, str(error)) from error
+
+
+def _require_answer(address: str) -> None:
+    """Ask whether there is a cluster, as Ray itself would wait for minutes, and at last end the process."""
+    if address in ("local", "auto"):
+        return
+    scheme, slashes, place = address.rpartition("://")
+    host, _, port = place.rpartition(":")
+    if (slashes and scheme != "ray") or not host or not port.isdigit() or not 0 < int(port) < 2**16:
+        raise ParameterError(f"ray: {address}; expected {EXPECTED}")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), _REACHED_WITHIN_S).close()
+    except OSError as error:
+        raise _no_cluster(address, error.strerror or str(error)) from None
+    if scheme == "ray":
+        return
+    check = [sys.executable, "-m", "ray.scripts.scripts", "health-check", "--address", place]
+    try:
+        subprocess.run(check, timeout=_ANSWERED_WITHIN_S, capture_output=True, check=True)
+    except subprocess.SubprocessError:
+        raise _no_cluster(address, "what is there is not the head of a Ray cluster of this version") from None
+
+
+def _no_cluster(address: str, why: str) -> ParameterError:
+    return ParameterError(f"ray: {address}: no cluster ({' '.join(why.split())}); expected {EXPECTED}")
+
+
+def _cpus(address: str) -> int:
+    import ray
+
+    resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]
+    cpus = int(resources.get("CPU", 0))
+    if cpus < 1:
+        raise ParameterError(f"ray: {address}: a cluster without a CPU; expected one or more")
+    return cpus
+
+
+@contextmanager
+def _handler_of_sigterm_kept() -> Iterator[None]:
+    """Ray puts its own in its place, and leaves it there."""
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, before)
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """The workers of a Ray cluster, one on each of its CPUs."""
+
+    address: str
+    count: int
+
+    def map(self, jobs: Sequence[Job], stop: Stop) -> Iterator[Offer | None]:
+        import ray
+
+        work = ray.remote(num_cpus=1, max_retries=1)(_done_by_worker)
+        offers = [work.remote(job) for job in jobs]
+        waiting = list(offers)
+        try:
+            while waiting and not stop.due():
+                _, waiting = ray.wait(waiting, num_returns=len(waiting), timeout=_LOOK_EVERY_S)
+        finally:
+            for offer in waiting:
+                ray.cancel(offer)
+        if waiting:
+            ray.wait(waiting, num_returns=len(waiting), timeout=_RETURNED_WITHIN_S)
+        return iter([self._got(offer) for offer in offers])
+
+    def _got(self, offer: Any) -> Offer | None:
+        import ray
+
+        try:
+            got: Offer = ray.get(offer, timeout=_RETURNED_WITHIN_S)
+        except ray.exceptions.TaskCancelledError:  # before it had begun
+            return None
+        except ray.exceptions.RayTaskError as error:
+            *_, last = str(error).strip().splitlines()
+            expected = "Muster of this version on every machine"
+            raise MusterError(f"ray: {self.address}: a worker fails ({last}); expected {expected}") from error
+        except (ray.exceptions.RayError, TimeoutError) as error:
+            _log.warning("ray: a worker was lost (%s); its part keeps the routes it had", type(error).__name__)
+            return None
+        return got
+
+
+def _done_by_worker(job: Job) -> Offer:
+    """What a worker does: the job, until it is told to end."""
+    whole = Stop()
+
+    def end(signum: int, frame: FrameType | None) -> None:
+        whole.interrupt()
+
+    before = signal.signal(signal.SIGINT, end)
+    try:
+        return job.done(whole)
+    finally:
+        signal.signal(signal.SIGINT, before)
