@@ -1,0 +1,241 @@
+"""Parts of a team worked on by a Ray cluster of two nodes, both of them on this machine."""
+
+import os
+import signal
+import socket
+import sys
+import threading
+from dataclasses import replace
+
+import pytest
+import ray
+from ray.cluster_utils import Cluster
+
+import muster
+from muster.allocation import greedy
+from muster.allocation.partition import improve_in_parts
+from muster.allocation.problem import Problem
+from muster.allocation.ray_cluster import joined
+from muster.allocation.search import Parameters, anneal
+from muster.allocation.stop import Stop
+from muster.allocation.workers import Job, Limits, Threads
+from muster.cli.main import run
+from muster.mission.errors import MusterError, ParameterError
+from muster.mission.plan import read_plan
+from muster.mission.yaml_writer import yaml_text
+from muster.studies.bench import large_mission
+
+# One cluster for all, so one worker of xdist for all. What Ray leaves open in this process is Ray's affair.
+pytestmark = [pytest.mark.xdist_group("ray"), pytest.mark.filterwarnings("ignore")]
+
+MISSION = large_mission(600, 24)
+STORE = {"object_store_memory": 80_000_000}
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A cluster of two nodes with one CPU each; nothing of it runs afterwards."""
+    nodes = Cluster(
+        initialize_head=True,
+        head_node_args={"num_cpus": 1, "include_dashboard": False, "ray_client_server_port": free_port(), **STORE},
+    )
+    nodes.add_node(num_cpus=1, **STORE)
+    yield nodes
+    processes = [one.process for node in nodes.list_all_nodes() for of in node.all_processes.values() for one in of]
+    nodes.shutdown()
+    assert all(process.poll() is not None for process in processes)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture(scope="module")
+def address(cluster):
+    return cluster.address
+
+
+def test_the_plan_is_that_of_threads(address):
+    by_threads, by_ray = (
+        muster.solve(MISSION, "search", iterations=2_000, seed=3, parts=4, **where) for where in ({}, {"ray": address})
+    )
+    assert by_ray.routes == by_threads.routes
+    assert by_ray.complete
+    assert muster.verify(MISSION, by_ray).violations == ()
+    assert not ray.is_initialized()
+
+
+def test_from_outside_of_the_cluster(cluster):
+    port = cluster.head_node._ray_params.ray_client_server_port
+    by_threads, by_ray = (
+        muster.solve(MISSION, "search", iterations=500, seed=4, parts=4, **where)
+        for where in ({}, {"ray": f"ray://127.0.0.1:{port}"})
+    )
+    assert by_ray.routes == by_threads.routes
+
+
+def test_within_a_time(address):
+    plan = muster.solve(MISSION, "search", time_limit=4.0, parts=4, ray=address)
+    assert plan.complete
+    assert muster.verify(MISSION, plan).violations == ()
+    values = [value for _, value in plan.history]
+    assert values == sorted(values, reverse=True)
+
+
+def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(address, tmp_path, capsys):
+    start, plan, mission = tmp_path / "start.json", tmp_path / "plan.json", tmp_path / "mission.yaml"
+    mission.write_text(yaml_text(MISSION))
+    muster.solve(MISSION, "greedy").save(start)
+    threading.Timer(5.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    words = f"solve {mission} --ray {address} --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
+    assert run(words.split()) == 130
+    written = read_plan(plan)
+    assert muster.verify(muster.load(mission), written).violations == ()
+    assert written.complete
+    assert written.objective_value < read_plan(start).objective_value
+    assert capsys.readouterr().err == "interrupted: this is the best plan so far\n"
+
+
+def improvement(spoil):
+    """A search that is spoilt at first; made here, as workers do not have this file."""
+
+    def improve(part, until, seed, routes):
+        spoil(seed)
+        return anneal(part, until, seed, Parameters(), routes)
+
+    return improve
+
+
+def jobs(improve):
+    """Four, of a robot and 20 tasks each."""
+    problem = Problem.compile(MISSION)
+    parts = [problem.part([k], range(20 * k, 20 * k + 20)) for k in range(4)]
+    return [Job(part, k, [[]], Limits(None, 100), improve) for k, part in enumerate(parts)]
+
+
+def test_a_worker_that_dies_is_replaced(address, tmp_path):
+    mark = tmp_path / "died"
+
+    def die_once(seed):
+        if seed == 2 and not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    with joined(address) as workers:
+        offers = list(workers.map(jobs(improvement(die_once)), Stop()))
+    assert mark.exists()
+    alone = Threads(1).map(jobs(improvement(lambda seed: None)), Stop())
+    assert [offer.routes for offer in offers] == [offer.routes for offer in alone]
+
+
+def test_a_part_whose_workers_die_keeps_its_routes(address, caplog):
+    def die(seed):
+        if seed == 2:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    problem = Problem.compile(MISSION)
+    start = greedy.allocate(problem, Stop(), 0, greedy.Parameters(), None).routes
+    with joined(address) as workers:
+        offers = list(workers.map(jobs(improvement(die)), Stop()))
+        better = improve_in_parts(problem, Stop(iterations=800), 0, 4, workers, start, improvement(die))
+    assert [offer is None for offer in offers] == [False, False, True, False]
+    assert caplog.messages[0].startswith("ray: a worker was lost (WorkerCrashedError)")
+    assert sorted(j for route in better for j in route) == list(range(600))
+    assert problem.value(better)[1] < problem.value(start)[1]
+
+
+def test_jobs_end_when_it_is_time(address):
+    """Those at work return the best they have; those that have not begun, nothing."""
+    endless = [replace(job, limits=Limits(None, 10**9)) for job in jobs(improvement(lambda seed: None))]
+    with joined(address) as workers:
+        assert workers.count == 2
+        offers = list(workers.map(endless, Stop(time_limit=4.0)))
+    held = [offer for offer in offers if offer is not None]
+    assert len(held) == 2
+    assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
+
+
+def test_a_worker_that_cannot_do_the_work_is_named(address):
+    def lack(seed):
+        raise ModuleNotFoundError("No module named 'muster'")
+
+    with joined(address) as workers, pytest.raises(MusterError) as failed:
+        list(workers.map(jobs(improvement(lack)), Stop()))
+    assert str(failed.value) == (
+        f"ray: {address}: a worker fails (ModuleNotFoundError: No module named 'muster'); "
+        "expected Muster of this version on every machine"
+    )
+
+
+def test_a_process_that_has_joined_one_stays_there(address):
+    with joined(address):
+        with joined("auto") as workers:
+            assert workers.count == 2
+        assert ray.is_initialized()
+        with pytest.raises(ParameterError, match="in a process that has joined a cluster; expected auto"):
+            muster.solve(MISSION, "search", parts=4, ray=address)
+
+
+def test_rays_handler_of_sigterm_does_not_stay(address):
+    before = signal.getsignal(signal.SIGTERM)
+    with joined(address):
+        pass
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+@pytest.mark.parametrize(
+    ("address", "why"),
+    [
+        ("nonsense", ""),
+        ("", ""),
+        ("http://127.0.0.1:1", ""),
+        ("127.0.0.1:0", ""),
+        ("127.0.0.1:{closed}", ": no cluster (Connection refused)"),
+        ("ray://127.0.0.1:{closed}", ": no cluster (Connection refused)"),
+    ],
+)
+def test_addresses_where_no_cluster_is(address, why):
+    address = address.format(closed=free_port())
+    expected = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
+    with pytest.raises(ParameterError) as refused:
+        muster.solve(MISSION, "search", parts=4, ray=address)
+    assert str(refused.value) == f"ray: {address}{why}; expected {expected}"
+
+
+def test_something_else_answers(monkeypatch):
+    monkeypatch.setattr("muster.allocation.ray_cluster._ANSWERED_WITHIN_S", 2.0)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(ParameterError, match="what is there is not the head of a Ray cluster"):
+            muster.solve(MISSION, "search", parts=4, ray=address)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            ["--ray", "local"],
+            "ray: local, for a team of 31 tasks, which is searched as a whole; "
+            "expected a larger one, or parts (2 or more)",
+        ),
+        (
+            ["--ray", "local", "--set", "parts=2", "--threads", "2"],
+            "threads: 2, with a Ray cluster; expected one of the two",
+        ),
+        (["--ray", "local", "-a", "greedy"], "--ray: greedy takes none; expected --allocator search"),
+        (["--set", "ray=4"], "ray: 4; expected the address of a Ray cluster, or none"),
+    ],
+)
+def test_where_a_cluster_is_of_no_use(words, message, capsys):
+    assert run(["solve", "31T-6R", *words]) == 2
+    assert capsys.readouterr().err == f"{message}\n"
+
+
+def test_without_the_extra(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "ray", None)
+    assert run(["solve", "31T-6R", "--ray", "local", "--set", "parts=2"]) == 2
+    assert capsys.readouterr().err == (
+        "working on a Ray cluster needs an optional part: pip install 'muster-robotics[ray]'\n"
+    )
