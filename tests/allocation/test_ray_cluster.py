@@ -138,12 +138,23 @@ def test_a_part_whose_workers_die_keeps_its_routes(address, caplog):
     problem = Problem.compile(MISSION)
     start = greedy.allocate(problem, Stop(), 0, greedy.Parameters(), None).routes
     with joined(address) as workers:
-        offers = list(workers.map(jobs(improvement(die)), Stop()))
         better = improve_in_parts(problem, Stop(iterations=800), 0, 4, workers, start, improvement(die))
-    assert [offer is None for offer in offers] == [False, False, True, False]
-    assert caplog.messages[0].startswith("ray: a worker was lost (WorkerCrashedError)")
+    assert caplog.messages == ["ray: a worker was lost (WorkerCrashedError); its part keeps the routes it had"] * 4
     assert sorted(j for route in better for j in route) == list(range(600))
     assert problem.value(better)[1] < problem.value(start)[1]
+
+
+def test_where_the_head_is_lost_parts_keep_their_routes(address, caplog):
+    start = [[i] for i in range(24)]
+    problem = Problem.compile(MISSION)
+    with joined(address) as workers:
+        headless = replace(workers, head=f"127.0.0.1:{free_port()}")
+        offers = list(headless.map(jobs(improvement(lambda seed: None)), Stop()))
+        better = improve_in_parts(problem, Stop(iterations=80), 0, 4, headless, start, improvement(lambda seed: None))
+    assert offers == [None] * 4
+    assert caplog.messages[0].startswith(f"ray: {address}: the head was lost ([Errno 111] Connection refused)")
+    assert [route[0] for route in better] == list(range(24))
+    assert sorted(j for route in better for j in route) == list(range(600))
 
 
 def test_jobs_end_when_it_is_time(address):

@@ -1,7 +1,8 @@
 """Parts of a team improved on a Ray cluster (extra `ray`); the only file that knows Ray.
 
 A part is a task of Ray's on one CPU. Ctrl-C, or the end of the time, cancels what is still at work: Ray then sends the
-worker the signal that Ctrl-C sends, on which it returns the best it has. A worker that dies is replaced once.
+worker the signal that Ctrl-C sends, on which it returns the best it has. A worker that dies is replaced once; where
+that does not help, or the cluster's head is lost, parts keep the routes they had, and a warning says so.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from types import FrameType
 from typing import Any
@@ -31,6 +32,13 @@ _ANSWERED_WITHIN_S = 20.0  # Ray's own check has to start first
 _RETURNED_WITHIN_S = 5.0  # after a job was told to end
 _LOOK_EVERY_S = 0.1
 _LOCAL_STORE = 100_000_000  # bytes of shared memory, where Ray would take a third of the machine's
+
+_ENVIRONMENT = {
+    "RAY_DEDUP_LOGS_SKIP_REGEX": ".*",  # Ray prints what goes wrong in the cluster, and to standard output
+    "RAY_gcs_rpc_server_reconnect_timeout_s": "86400",  # after which Ray ends the process that has lost the head
+    "RAY_USAGE_STATS_ENABLED": "0",  # a cluster of ours tells nobody of its use
+}
+"""What Ray reads when it is imported."""
 
 _log = logging.getLogger(__name__)
 
@@ -53,6 +61,8 @@ def joined(address: str) -> Iterator[Cluster]:
     ParameterError
         if no cluster is there, or it has no CPU.
     """
+    for name, value in _ENVIRONMENT.items():
+        os.environ.setdefault(name, value)
     try:
         import ray
     except ImportError:
@@ -60,13 +70,13 @@ def joined(address: str) -> Iterator[Cluster]:
     if ray.is_initialized():
         if address != "auto":
             raise ParameterError(f"ray: {address}, in a process that has joined a cluster; expected auto")
-        yield Cluster(address, _cpus(address))
+        yield Cluster(address, _cpus(address), None, _work())
         return
     _require_answer(address)
     with _handler_of_sigterm_kept():
         try:
             _join(address)
-            yield Cluster(address, _cpus(address))
+            yield Cluster(address, _cpus(address), _head(address), _work())
         finally:
             ray.shutdown()
 
@@ -77,7 +87,6 @@ def _join(address: str) -> None:
 
     options: dict[str, Any] = {"log_to_driver": False, "logging_level": logging.ERROR}
     if address == "local":
-        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # a cluster of ours tells nobody of its use
         options |= {"include_dashboard": False, "object_store_memory": _LOCAL_STORE}
     try:
         with warnings.catch_warnings():
@@ -89,6 +98,30 @@ def _join(address: str) -> None:
         raise _no_cluster(address, str(error)) from error
 
 
+def _work() -> Any:
+    """The task of Ray's that does a job."""
+    import ray
+
+    return ray.remote(num_cpus=1, max_retries=1)(_done_by_worker)
+
+
+def _head(address: str) -> str | None:
+    """HOST:PORT of what must be there as long as the cluster is; None where that cannot be told."""
+    import ray
+
+    if address.startswith("ray://"):
+        return address.removeprefix("ray://")
+    if ray.util.client.ray.is_connected():  # type: ignore[no-untyped-call]  # RAY_ADDRESS says what `auto` is
+        return None
+    return str(ray.get_runtime_context().gcs_address)
+
+
+def _touch(place: str) -> None:
+    """Raises OSError where nothing listens at HOST:PORT."""
+    host, _, port = place.rpartition(":")
+    socket.create_connection((host.strip("[]"), int(port)), _REACHED_WITHIN_S).close()
+
+
 def _require_answer(address: str) -> None:
     """Ask whether there is a cluster, as Ray itself would wait for minutes, and at last end the process."""
     if address in ("local", "auto"):
@@ -98,7 +131,7 @@ def _require_answer(address: str) -> None:
     if (slashes and scheme != "ray") or not host or not port.isdigit() or not 0 < int(port) < 2**16:
         raise ParameterError(f"ray: {address}; expected {EXPECTED}")
     try:
-        socket.create_connection((host.strip("[]"), int(port)), _REACHED_WITHIN_S).close()
+        _touch(place)
     except OSError as error:
         raise _no_cluster(address, error.strerror or str(error)) from None
     if scheme == "ray":
@@ -141,22 +174,38 @@ class Cluster:
 
     address: str
     count: int
+    head: str | None
+    work: Any
 
     def map(self, jobs: Sequence[Job], stop: Stop) -> Iterator[Offer | None]:
+        try:
+            return iter(self._offers(jobs, stop))
+        except OSError as error:
+            _log.warning("ray: %s: the head was lost (%s); all parts keep the routes they had", self.address, error)
+            return iter([None] * len(jobs))
+
+    def _offers(self, jobs: Sequence[Job], stop: Stop) -> list[Offer | None]:
+        """Raises OSError if the head is lost."""
         import ray
 
-        work = ray.remote(num_cpus=1, max_retries=1)(_done_by_worker)
-        offers = [work.remote(job) for job in jobs]
+        self._look()
+        offers = [self.work.remote(job) for job in jobs]
         waiting = list(offers)
         try:
             while waiting and not stop.due():
                 _, waiting = ray.wait(waiting, num_returns=len(waiting), timeout=_LOOK_EVERY_S)
+                self._look()
         finally:
-            for offer in waiting:
-                ray.cancel(offer)
+            with suppress(OSError):
+                for offer in waiting:
+                    ray.cancel(offer)
         if waiting:
             ray.wait(waiting, num_returns=len(waiting), timeout=_RETURNED_WITHIN_S)
-        return iter([self._got(offer) for offer in offers])
+        return [self._got(offer) for offer in offers]
+
+    def _look(self) -> None:
+        if self.head is not None:
+            _touch(self.head)
 
     def _got(self, offer: Any) -> Offer | None:
         import ray
