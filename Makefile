@@ -19,7 +19,7 @@ demo: $(VENV)/installed
 	@echo "Next: $(BIN)/muster --help"
 
 test: $(VENV)/developed
-	$(BIN)/python -m pytest -n 2 $(PYTEST_FLAGS)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
 help:
 	@echo "make demo       plan and draw a mission (DEMO_MISSION=$(DEMO_MISSION))"

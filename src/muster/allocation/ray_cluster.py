@@ -29,7 +29,7 @@ EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or
 
 _REACHED_WITHIN_S = 5.0
 _ANSWERED_WITHIN_S = 20.0  # Ray's own check has to start first
-_RETURNED_WITHIN_S = 5.0  # after a job was told to end
+_RETURNED_WITHIN_S = 3.0  # after a job was told to end
 _LOOK_EVERY_S = 0.1
 _LOCAL_STORE = 100_000_000  # bytes of shared memory, where Ray would take a third of the machine's
 
@@ -189,6 +189,8 @@ class Cluster:
         import ray
 
         self._look()
+        if stop.due():
+            return [None] * len(jobs)
         offers = [self.work.remote(job) for job in jobs]
         waiting = list(offers)
         try:
@@ -199,9 +201,10 @@ class Cluster:
             with suppress(OSError):
                 for offer in waiting:
                     ray.cancel(offer)
-        if waiting:
-            ray.wait(waiting, num_returns=len(waiting), timeout=_RETURNED_WITHIN_S)
-        return [self._got(offer) for offer in offers]
+        returned, late = ray.wait(offers, num_returns=len(offers), timeout=_RETURNED_WITHIN_S)
+        if late:
+            _log.warning("ray: of %d parts nothing came back in time; they keep the routes they had", len(late))
+        return [self._got(offer) if offer in returned else None for offer in offers]
 
     def _look(self) -> None:
         if self.head is not None:
@@ -211,14 +214,14 @@ class Cluster:
         import ray
 
         try:
-            got: Offer = ray.get(offer, timeout=_RETURNED_WITHIN_S)
+            got: Offer = ray.get(offer)
         except ray.exceptions.TaskCancelledError:  # before it had begun
             return None
         except ray.exceptions.RayTaskError as error:
             *_, last = str(error).strip().splitlines()
             expected = "Muster of this version on every machine"
             raise MusterError(f"ray: {self.address}: a worker fails ({last}); expected {expected}") from error
-        except (ray.exceptions.RayError, TimeoutError) as error:
+        except ray.exceptions.RayError as error:
             _log.warning("ray: a worker was lost (%s); its part keeps the routes it had", type(error).__name__)
             return None
         return got

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import sys
@@ -129,6 +130,8 @@ def command(
     _require_writable(output, (book, plot, gantt), (mission, robots, suitability), start)
     _require_csv(book)
     _require_drawable(plot, gantt)
+    if quiet:
+        logging.getLogger("muster").setLevel(logging.ERROR)
     chosen = allocator_named(allocator)
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
