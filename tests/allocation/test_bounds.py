@@ -113,7 +113,7 @@ def test_large_missions_are_bounded_row_by_row_as_well(monkeypatch):
     monkeypatch.setattr("muster.allocation.spanning._DENSE", 0)
     assert best_bound(problem).value == pytest.approx(usual, rel=1e-12)
     monkeypatch.setattr("muster.allocation.spanning._MOST_KINDS", 0)
-    monkeypatch.setattr("muster.allocation.bounds._MOST_WAYS", 0)
+    monkeypatch.setattr("muster.allocation.feasibility._MOST_WAYS", 0)
     assert best_bound(problem).value <= usual * (1 + ROUNDING)
 
 

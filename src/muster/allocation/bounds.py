@@ -14,12 +14,10 @@ from graphlib import TopologicalSorter
 
 import numpy as np
 
-from muster.allocation.feasibility import least_usage
+from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.spanning import Ways, route_bounds
 
-_ROUNDING = 1e-9
-_MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
 _MOST_CROWDED = 300  # tasks up to which crowding is looked at
 _TREES = "spanning trees with multipliers"
@@ -42,7 +40,7 @@ def best_bound(problem: Problem) -> Bound:
     """The best of the bounds of the problem's objective, with its argument."""
     if not problem.tasks:
         return Bound(0.0, "no tasks")
-    least = _least_usages(problem)
+    least = least_usages(problem)
     usable = usable_pairs(problem, least)
     if not usable.any(axis=0).all():
         return Bound(math.inf, "a task that nobody can do")
@@ -51,13 +49,6 @@ def best_bound(problem: Problem) -> Bound:
     if problem.objective == "makespan":
         return _makespan(problem, usable)
     return _usage(problem, usable, least)
-
-
-def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
-    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
-    least = _least_usages(problem) if least is None else least
-    within = least <= problem.capacity[:, None] * (1 + _ROUNDING)
-    return np.asarray(problem.allowed & np.isfinite(least) & within)
 
 
 def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
@@ -102,7 +93,7 @@ def _evened(totals: Floats, capacity: Floats) -> Floats:
     evened = []
     for k, total in enumerate(totals.tolist(), 1):
         held = np.concatenate(([0.0], np.cumsum(capacity[:k][::-1])))
-        if math.isinf(total) or total > held[k] * (1 + _ROUNDING):
+        if math.isinf(total) or total > held[k] * (1 + ROUNDING):
             evened.append(math.inf)
         else:
             shares = (total - held[:k]) / (k - np.arange(k))
@@ -122,17 +113,6 @@ def _crowding(problem: Problem, usable: Bools) -> float:
         return 0.0
     weights = [kind / kind.sum() for kind in kinds]
     return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray).min()) for w in weights)
-
-
-def _least_usages(problem: Problem) -> Floats:
-    """(m, n) what no route of a robot that holds a task uses less of.
-
-    That is `least_usage`; where too many ways through short cuts would have to be looked at, the work alone.
-    """
-    robots = range(len(problem.robots))
-    if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:
-        return np.array([least_usage(problem, i) for i in robots])
-    return np.array([problem.work_usage(i) for i in robots])
 
 
 def _open(problem: Problem) -> Problem:
@@ -160,7 +140,7 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
     opened = _open(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
-    arrivals = np.where(usable, _least_usages(opened) - work, math.inf)
+    arrivals = np.where(usable, least_usages(opened) - work, math.inf)
     alone = float(arrivals.min(axis=0).mean())
     steps = np.sort(Ways.of(opened, usable).entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
@@ -178,7 +158,7 @@ def _makespan(problem: Problem, usable: Bools) -> Bound:
     timed = _open(_in_time(problem))
     work = np.array([timed.work_usage(i) for i in range(len(problem.robots))])
     available = np.array([robot.available_from_s for robot in problem.robots])
-    there = np.where(usable, available[:, None] + _least_usages(timed) - work, math.inf)
+    there = np.where(usable, available[:, None] + least_usages(timed) - work, math.inf)
     ends = np.zeros(len(problem.tasks))
     for j in TopologicalSorter(dict(enumerate(problem.prerequisites))).static_order():
         ready = max((ends[k] for k in problem.prerequisites[j]), default=0.0)

@@ -19,7 +19,7 @@ from muster.mission.plan import Plan, json_text, read_plan
 if TYPE_CHECKING:
     from muster.allocation.explanations import Alternative
     from muster.allocation.problem import Problem
-    from muster.allocation.remedies import Capacity, Remedy
+    from muster.allocation.remedy import Capacity, Remedy
     from muster.mission.book import Award, Book
     from muster.verification import Verdict
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.bounds import lower_bound, usable_pairs
+from muster.allocation.bounds import lower_bound
 from muster.allocation.exact.partition import few_partings, least_average
 from muster.allocation.exact.scale import whole_weights
-from muster.allocation.feasibility import impossible
+from muster.allocation.feasibility import impossible, usable_pairs
 from muster.allocation.problem import Problem
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError, ParameterError
