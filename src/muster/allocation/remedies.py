@@ -67,7 +67,7 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
     never = {item.task for item in impossible(problem)} if missing else set()
     before = tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing)
     for i, robot in enumerate(problem.robots):
-        place = None if missing else _cheapest_place(problem, inspection, rest, i, j)
+        place = None if missing else _cheapest_place(inspection, i, j)
         unlimited = math.isinf(problem.capacity[i])
         now = None if unlimited else robot.work_capacity
         room = None if place is None else _work_capacity(problem, place[1])
@@ -76,20 +76,10 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
         yield i, _barriers(problem, robot, problem.tasks[j], Remedy(robot=robot.id, before=before, capacity=capacity))
 
 
-def _cheapest_place(
-    problem: Problem, inspection: core.Inspection, rest: Routes, i: int, j: int
-) -> tuple[int, float] | None:
+def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:
     """Where in the route of robot i task j adds least usage and nothing deadlocks, and the usage; None if nowhere."""
-    if math.isfinite(inspection.usages[i]):
-        place = inspection.cheapest_insertion(i, j)
-        return None if place is None or math.isinf(place.usage) else (place.at, place.usage)
-    places = []  # there may be no way but through the task
-    for at in range(len(rest[i]) + 1):
-        routes = _put(rest, i, j, at)
-        tried = core.Inspection(problem.core, routes)
-        if tried.makespan is not None and math.isfinite(tried.usages[i]):
-            places.append((tried.usages[i], at))
-    return min(places)[::-1] if places else None
+    place = inspection.cheapest_insertion(i, j)
+    return None if place is None or math.isinf(place.usage) else (place.at, place.usage)
 
 
 def _put(rest: Routes, i: int, j: int, at: int) -> Routes:
@@ -152,7 +142,7 @@ def _as_is(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, jud
 
 def _fitted(problem: Problem, rest: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
     """The remedy, enough if the judge admits the plan with the task in the robot's route, of the changed problem."""
-    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     return _not_found(remedy) if place is None else _judged(problem, _put(rest, i, j, place[0]), remedy, judge)
 
 
@@ -226,7 +216,7 @@ def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, re
 def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
     """The routes with task j in that of robot i, if they are admissible with unlimited capacity of the robot."""
     problem = _with_capacity(sole, i, None)
-    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     routes = None if place is None else _put(rest, i, j, place[0])
     return routes if routes is not None and _admissible(problem, routes) else None
 

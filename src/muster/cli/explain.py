@@ -186,7 +186,9 @@ def _print_alternatives(found: tuple[Alternative, ...], now: str | None, objecti
         mark = "  (now)" if other.robot == now else ""
         if other.reason is not None:
             rows.append((other.robot + mark, "no", f"{other.reason.reason}: {other.reason.detail}"))
-        elif other.objective is not None:
+        elif other.objective is None:
+            rows.append((other.robot + mark, "yes", f"best as number {other.number}; another route has no way"))
+        else:
             more = other.objective - objective if objective is not None and now is not None else None
             change = "" if more is None else f" ({round(more, 2) + 0.0:+.2f})"
             rows.append(
