@@ -15,6 +15,14 @@ def test_verify(plan, muster):
     assert table_rows(out)[-1] == ["valid", "yes"]
 
 
+def test_verify_compares_the_bound_that_a_plan_states(muster):
+    assert muster("solve", "16T-3R", "--iterations", 500, "--bound", "-o", "p.json")[0] == 0
+    stated = json.loads(Path("p.json").read_text(encoding="utf-8"))
+    gap = 100 * (1 - stated["lower_bound"] / stated["objective"]["value"])
+    out = muster("verify", "16T-3R", "p.json")[1]
+    assert f"lower bound       {stated['lower_bound']:.2f} m  (gap {gap:.2f} %, says the plan)" in out.splitlines()
+
+
 def test_verify_in_json(plan, muster):
     code, out, err = muster("verify", "yard.yaml", plan, "--format", "json")
     assert (code, err) == (0, "")

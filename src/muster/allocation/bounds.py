@@ -20,15 +20,39 @@ from muster.allocation.spanning import Ways, route_bounds
 
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
 _MOST_CROWDED = 300  # tasks up to which crowding is looked at
-_TREES = "spanning trees with multipliers"
+
+_HELD_KARP = "Held and Karp, Operations Research 18, 1970"
+_TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
+_CROWDED, _SHARE = "crowded tasks", "an even share"
+_LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
+_NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
+WHY = {
+    _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
+    _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
+    _CROWDED: f"the few robots that can do them have to share them; spanning trees, weighted ({_HELD_KARP})",
+    _SHARE: f"at best all robots use the same, together no less than spanning trees with multipliers ({_HELD_KARP})",
+    _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
+    _IN_TURN: "robots do one task after the other, at best the shortest first"
+    " (Conway, Maxwell and Miller, Theory of Scheduling, 1967)",
+    _CRITICAL: "a task waits for its robot and its prerequisites, and they for theirs"
+    " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
+    _NO_TASKS: "there is nothing to do",
+    _NOBODY: "no plan does it",
+}
+"""What each argument says, and whose it is."""
 
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound of the objective, and the argument that gave it; inf where no plan does every task."""
+    """A lower bound of the objective, and the arguments that gave it; inf where no plan does every task."""
 
     value: float
-    argument: str
+    arguments: tuple[str, ...]
+
+    @property
+    def why(self) -> str:
+        """The arguments in words, with their sources."""
+        return "; ".join(f"{name}: {WHY[name]}" for name in self.arguments)
 
 
 def lower_bound(problem: Problem) -> float:
@@ -37,13 +61,13 @@ def lower_bound(problem: Problem) -> float:
 
 
 def best_bound(problem: Problem) -> Bound:
-    """The best of the bounds of the problem's objective, with its argument."""
+    """The best of the bounds of the problem's objective, with its arguments."""
     if not problem.tasks:
-        return Bound(0.0, "no tasks")
+        return Bound(0.0, (_NO_TASKS,))
     least = least_usages(problem)
     usable = usable_pairs(problem, least)
     if not usable.any(axis=0).all():
-        return Bound(math.inf, "a task that nobody can do")
+        return Bound(math.inf, (_NOBODY,))
     if problem.objective == "average":
         return _average(problem, usable)
     if problem.objective == "makespan":
@@ -74,12 +98,12 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
     values = worth(totals)
     k = int(values.argmin())
     greatest = {
-        "the farthest task": alone,
-        "crowded tasks": crowded,
-        "an even share": float(_evened(totals, capacity)[k]),
+        _FARTHEST: alone,
+        _CROWDED: crowded,
+        _SHARE: float(_evened(totals, capacity)[k]),
     }
     best = max(greatest, key=lambda name: greatest[name])
-    return Bound(float(values[k]), {"total": _TREES, "max": best}.get(problem.objective, f"{_TREES}, and {best}"))
+    return Bound(float(values[k]), {"total": (_TREES,), "max": (best,)}.get(problem.objective, (_TREES, best)))
 
 
 def _evened(totals: Floats, capacity: Floats) -> Floats:
@@ -144,7 +168,7 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     alone = float(arrivals.min(axis=0).mean())
     steps = np.sort(Ways.of(opened, usable).entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
-    return max(Bound(alone, "the least way to each task"), Bound(in_turn, "tasks in turn"), key=lambda b: b.value)
+    return max(Bound(alone, (_LEAST_WAYS,)), Bound(in_turn, (_IN_TURN,)), key=lambda b: b.value)
 
 
 def _makespan(problem: Problem, usable: Bools) -> Bound:
@@ -172,5 +196,5 @@ def _makespan(problem: Problem, usable: Bools) -> Bound:
 
     shared = float(worth(route_bounds(Ways.of(timed, usable), worth)).min())
     if shared > critical:
-        return Bound(shared, "an even share")
-    return Bound(critical, "the critical path")
+        return Bound(shared, (_SHARE,))
+    return Bound(critical, (_CRITICAL,))

@@ -24,7 +24,7 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
     print_table(columns, rows, title=title, right=columns[2:])
     print_figures(verdict)
-    _print_bound(plan, verdict)
+    _print_bound(plan.lower_bound, verdict)
     if plan.book is not None:
         messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
         click.echo(f"rounds            {plan.book.rounds}{messages}")
@@ -35,14 +35,14 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
         click.echo(f"ignored           {', '.join(plan.ignored)}")
 
 
-def _print_bound(plan: Plan, verdict: Verdict) -> None:
-    bound, value = plan.lower_bound, verdict.value()
+def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
+    value = verdict.value()
     if bound is None or value is None:
         return
     gap = (value - bound) / value if value > 0 else 0.0
     unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
-    said = "the plan is optimal" if gap < OPTIMAL else f"gap {100 * gap:.2f} %"
-    click.echo(f"lower bound       {number(bound, unit)}  ({said})")
+    said = "the plan is optimal" if abs(gap) < OPTIMAL else f"gap {100 * gap:.2f} %"
+    click.echo(f"lower bound       {number(bound, unit)}  ({said}{note})")
 
 
 def print_figures(verdict: Verdict) -> None:
@@ -57,9 +57,10 @@ def print_figures(verdict: Verdict) -> None:
     click.echo(f"equality index    {number(verdict.equality_index)}")
 
 
-def print_verdict(verdict: Verdict) -> None:
-    """Whether a plan holds, and all that is wrong with it."""
+def print_verdict(plan: Plan, verdict: Verdict) -> None:
+    """Whether a plan holds, and all that is wrong with it. A bound that it states is compared, not proven again."""
     print_figures(verdict)
+    _print_bound(plan.lower_bound, verdict, ", says the plan")
     if verdict.valid:
         click.echo("valid             yes")
         return

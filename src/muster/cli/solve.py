@@ -119,7 +119,7 @@ def command(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
-    from muster.allocation.proofs import with_bound
+    from muster.allocation.proofs import prove
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
@@ -143,8 +143,10 @@ def command(
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
+            proof = None
             if bound is not None and not stop.interrupted:
-                plan = with_bound(problem, plan, bound, stop, time_limit)
+                proof = prove(problem, plan, bound, stop, time_limit)
+                plan = proof.plan
     with _ctrl_c_interrupts(stop):
         _show(loaded, plan, form, output, plot, gantt)
     if book is not None and not _write_book(plan, book, quiet):
@@ -155,6 +157,8 @@ def command(
         return INTERRUPTED
     if verbose:
         click.echo(f"{stop.iterations_done} iterations in {plan.elapsed_s:.3f} s", err=True)
+    if proof is not None and (verbose if plan.lower_bound is not None else not quiet):
+        click.echo(f"{'no ' if plan.lower_bound is None else ''}lower bound: {proof.why}", err=True)
     return INCOMPLETE if require_complete and not plan.complete else DONE
 
 
