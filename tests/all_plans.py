@@ -1,7 +1,9 @@
 """Every plan of a small mission, by building them all."""
 
 import math
+from itertools import permutations
 
+from muster import core
 from muster.allocation.problem import Problem
 from muster.verification.measure import measured
 from muster.verification.travel import Travel
@@ -59,3 +61,26 @@ class AllPlans:
     def sets(self):
         """The sets of tasks that admissible plans do."""
         return {frozenset(name for route in plan for name in route) for plan in self.admissible()}
+
+
+def best_plan(problem):
+    """(weight, objective, routes) of the best of all admissible plans; complete plans are all looked at."""
+    tasks, robots = range(len(problem.tasks)), range(len(problem.robots))
+
+    def plans(left, i):
+        if i == len(robots):
+            yield []
+            return
+        mine = [j for j in left if problem.allowed[i, j]]
+        for size in range(len(mine) + 1):
+            for route in permutations(mine, size):
+                for others in plans([j for j in left if j not in route], i + 1):
+                    yield [list(route), *others]
+
+    def rank(routes):
+        weight, objective = problem.value(routes)
+        return -weight, objective
+
+    admissible = (routes for routes in plans(list(tasks), 0) if core.Inspection(problem.core, routes).admissible)
+    best = min(admissible, key=rank)
+    return *problem.value(best), best

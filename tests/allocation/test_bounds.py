@@ -3,11 +3,11 @@
 import math
 import re
 from dataclasses import replace
-from itertools import permutations
 from random import Random
 
 import numpy as np
 import pytest
+from tests.all_plans import best_plan
 from tests.random_missions import TYPES, random_mission
 
 import muster
@@ -18,29 +18,6 @@ from muster.allocation.spanning import Ways, route_bounds
 from muster.mission.model import OBJECTIVES, TravelTable
 
 ROUNDING = 1e-9
-
-
-def best_plan(problem):
-    """(weight, objective, routes) of the best of all admissible plans; complete plans are all looked at."""
-    tasks, robots = range(len(problem.tasks)), range(len(problem.robots))
-
-    def plans(left, i):
-        if i == len(robots):
-            yield []
-            return
-        mine = [j for j in left if problem.allowed[i, j]]
-        for size in range(len(mine) + 1):
-            for route in permutations(mine, size):
-                for others in plans([j for j in left if j not in route], i + 1):
-                    yield [list(route), *others]
-
-    def rank(routes):
-        weight, objective = problem.value(routes)
-        return -weight, objective
-
-    admissible = (routes for routes in plans(list(tasks), 0) if core.Inspection(problem.core, routes).admissible)
-    best = min(admissible, key=rank)
-    return *problem.value(best), best
 
 
 def forgiving(seed, **rules):
