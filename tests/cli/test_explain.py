@@ -12,7 +12,7 @@ def test_explain_what_is_left_out(plan, muster):
     code, out, err = muster("explain", "yard.yaml", plan)
     assert (code, err) == (0, "")
     rows = table_rows(out)
-    assert rows[0] == ["1", "tasks", "left", "out"]
+    assert rows[0] == ["1", "task", "left", "out"]
     assert ["lift", "r_0", "skill", "lacks", "gripper"] in rows
     assert ["lift", "r_1", "skill", "lacks", "gripper"] in rows
 

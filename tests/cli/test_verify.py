@@ -20,7 +20,7 @@ def test_verify_compares_the_bound_that_a_plan_states(muster):
     stated = json.loads(Path("p.json").read_text(encoding="utf-8"))
     gap = 100 * (1 - stated["lower_bound"] / stated["objective"]["value"])
     out = muster("verify", "16T-3R", "p.json")[1]
-    assert f"lower bound       {stated['lower_bound']:.2f} m  (gap {gap:.2f} %, says the plan)" in out.splitlines()
+    assert f"lower bound       {stated['lower_bound']:.2f} m  (gap {gap:.2f} %; stated in the plan)" in out.splitlines()
 
 
 def test_verify_in_json(plan, muster):

@@ -77,7 +77,7 @@ def _left_out(mission: Mission, plan: Plan, form: str) -> None:
     from muster.allocation.explanations import unassigned
     from muster.allocation.problem import Problem
     from muster.allocation.remedies import smallest_as_is
-    from muster.cli.tables import print_table
+    from muster.cli.tables import counted, print_table
 
     problem = Problem.compile(mission, plan.objective, plan.ignored)
     routes = routes_of(problem, plan)
@@ -95,7 +95,7 @@ def _left_out(mission: Mission, plan: Plan, form: str) -> None:
         click.echo("no task is left out; --task T explains a task that is done")
     else:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons]
-        print_table(("task", "robot", "reason", "detail"), rows, title=f"{len(left_out)} tasks left out")
+        print_table(("task", "robot", "reason", "detail"), rows, title=f"{counted(len(left_out), 'task')} left out")
         _print_smallest(problem, changes)
         if len(left_out) > len(changes):
             click.echo(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")

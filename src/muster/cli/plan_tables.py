@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from muster.cli.tables import number, print_table, sequence
+from muster.cli.tables import counted, number, print_table, sequence
 from muster.mission.plan import Plan
 from muster.verification import Verdict
 
@@ -60,10 +60,10 @@ def print_figures(verdict: Verdict) -> None:
 def print_verdict(plan: Plan, verdict: Verdict) -> None:
     """Whether a plan holds, and all that is wrong with it. A bound that it states is compared, not proven again."""
     print_figures(verdict)
-    _print_bound(plan.lower_bound, verdict, ", says the plan")
+    _print_bound(plan.lower_bound, verdict, "; stated in the plan")
     if verdict.valid:
         click.echo("valid             yes")
         return
-    click.echo(f"valid             no: {len(verdict.violations)} violations")
+    click.echo(f"valid             no: {counted(len(verdict.violations), 'violation')}")
     rows = [(v.kind, v.robot or "-", v.task or "-", v.detail) for v in verdict.violations]
     print_table(("kind", "robot", "task", "detail"), rows)
