@@ -50,3 +50,12 @@ def test_why_a_bound_holds_or_is_missing():
     unknown = prove(crowded, muster.solve(crowded.mission, "greedy"), "exact", Stop(), 1e-9)
     assert unknown.plan.lower_bound is None
     assert unknown.why.startswith("whether more tasks can be done is not known")
+
+
+def test_what_cannot_be_proven_is_refused_before_the_search():
+    def no_step(_):
+        raise AssertionError("the search has begun")
+
+    for bound, name in (("best", "6T-2R"), ("exact", "eil51-5")):
+        with pytest.raises(muster.ParameterError, match="bound: "):
+            muster.solve(muster.load(name), "search", iterations=50, bound=bound, on_progress=no_step)

@@ -65,3 +65,12 @@ def test_verify_a_plan_that_cannot_be_read(muster):
         "",
         "plan.json:2: Expecting value; expected a plan in JSON\n",
     )
+
+
+def test_verify_rejects_a_bound_above_the_objective(plan, muster):
+    text = plan.read_text(encoding="utf-8")
+    assert '"lower_bound": null' in text
+    plan.write_text(text.replace('"lower_bound": null', '"lower_bound": 1e6'), encoding="utf-8")
+    code, out, _ = muster("verify", "yard.yaml", plan)
+    assert code == 1
+    assert "lower bound       1000000.00 m  (above the objective; stated in the plan)" in out.splitlines()

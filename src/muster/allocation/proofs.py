@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from muster.allocation.allocator import Outcome, finished_plan, routes_of
 from muster.allocation.bounds import best_bound
+from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -25,6 +26,24 @@ class Proof:
     why: str
 
 
+def require_provable(problem: Problem, proof: str) -> None:
+    """Find out before a long search that what is asked for cannot be proven.
+
+    Raises
+    ------
+    ParameterError
+        for another proof than those in PROOFS, or too many tasks.
+    MissingExtraError
+        if `exact` is asked for and OR-Tools is not installed.
+    """
+    if proof not in PROOFS:
+        raise ParameterError(f"bound: {proof}; expected {' or '.join(PROOFS)}")
+    if proof == "exact":
+        if len(problem.tasks) > MOST_TASKS_EXACT:
+            raise ParameterError(f"bound: exact, of {len(problem.tasks)} tasks; expected at most {MOST_TASKS_EXACT}")
+        require_ortools()
+
+
 def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: float | None = None) -> Proof:
     """Bound the objective of a plan; an exact solver may find a better plan on the way.
 
@@ -38,13 +57,10 @@ def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: floa
 
     Raises
     ------
-    ParameterError
-        for another proof.
-    MissingExtraError
-        if `exact` is asked for and OR-Tools is not installed.
+    ParameterError, MissingExtraError
+        as `require_provable`.
     """
-    if proof not in PROOFS:
-        raise ParameterError(f"bound: {proof}; expected {' or '.join(PROOFS)}")
+    require_provable(problem, proof)
     return _quick(problem, plan) if proof == "quick" else _exact(problem, plan, stop, time_limit)
 
 
@@ -57,10 +73,6 @@ def _quick(problem: Problem, plan: Plan) -> Proof:
 
 
 def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:
-    if len(problem.tasks) > MOST_TASKS_EXACT:
-        raise ParameterError(f"bound: exact, of {len(problem.tasks)} tasks; expected at most {MOST_TASKS_EXACT}")
-    from muster.allocation.exact import solve_exactly
-
     seconds = time_limit or EXACT_TIME_LIMIT_S
     result = solve_exactly(problem, seconds, routes_of(problem, plan), plan.seed or 0)
     weight, objective = problem.value(result.routes)

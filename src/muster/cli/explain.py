@@ -202,7 +202,7 @@ def _print_smallest(problem: Problem, changes: Mapping[str, Remedy | None]) -> N
 
     rows = [
         (
-            (task, "-", "none; --task T looks further")
+            (task, "-", "none was found; --task T looks further")
             if remedy is None
             else (task, remedy.robot, _short(problem, remedy))
         )
@@ -238,7 +238,7 @@ def _short(problem: Problem, remedy: Remedy) -> str:
     capacity = remedy.capacity
     if capacity.grows and capacity.enough is not None and capacity.now is not None:
         parts.append(f"capacity {_up(capacity.enough)} {problem.usage_unit}, not {capacity.now:g}")
-    return "; ".join(parts) or "none"
+    return "; ".join(parts) or "none is needed"
 
 
 def _lines(problem: Problem, remedy: Remedy) -> list[str]:

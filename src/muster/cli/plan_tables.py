@@ -42,6 +42,8 @@ def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
     gap = (value - bound) / value if value > 0 else 0.0
     unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
     said = "the plan is optimal" if abs(gap) < OPTIMAL else f"gap {100 * gap:.2f} %"
+    if gap <= -OPTIMAL:
+        said = "above the objective"
     click.echo(f"lower bound       {number(bound, unit)}  ({said}{note})")
 
 

@@ -119,7 +119,7 @@ def command(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
-    from muster.allocation.proofs import prove
+    from muster.allocation.proofs import prove, require_provable
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
@@ -138,6 +138,8 @@ def command(
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore).ready()
+    if bound is not None:
+        require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
     with progress_bar(not quiet and chosen.anytime, loaded, limit, iterations) as on_progress:
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)

@@ -73,11 +73,16 @@ def solve_exactly(
     ParameterError
         if the start is not admissible, or the priorities have too many digits.
     """
+    require_ortools()
+    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
+
+
+def require_ortools() -> None:
+    """Raise MissingExtraError if OR-Tools is not installed."""
     try:
         import ortools.sat.python.cp_model  # noqa: F401
     except ImportError:
         raise MissingExtraError("exact", "proving a plan optimal") from None
-    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
 
 
 class _Solving:
