@@ -27,11 +27,12 @@ def one(seed):
 
 
 def many(asked):
-    begin, counts, failures = time.monotonic(), Counter(), []
+    begin, counts, failures, gaps = time.monotonic(), Counter(), [], []
     seeds = range(asked.first, asked.first + asked.missions)
     with get_context("spawn").Pool(asked.processes) as pool:
         for done, report in enumerate(pool.imap_unordered(trial, seeds, chunksize=10), 1):
             counts += report.counts
+            gaps += report.gaps
             if report.failures:
                 failures.append(report.seed)
                 _say("\n".join(f"seed {report.seed}: {failure}" for failure in report.failures))
@@ -41,6 +42,8 @@ def many(asked):
     sys.stderr.write("\n")
     _print(f"{asked.missions} missions from seed {asked.first}: {len(failures)} fail")
     _print(*(f"  {name}: {count}" for name, count in sorted(counts.items())))
+    if gaps:
+        _print(f"  small: mean gap of quick bounds: {100 * sum(gaps) / len(gaps):.1f} %")
     _print(*(f"  python -m tests.campaign --seed {seed}" for seed in sorted(failures)))
     return 1 if failures else 0
 
