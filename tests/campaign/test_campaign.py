@@ -6,6 +6,7 @@ from muster.allocation.problem import Problem
 from tests.campaign.missions import case
 from tests.campaign.trial import trial
 
+pytest.importorskip("ortools", reason="needs the extra exact")
 MISSIONS, CHUNK = 150, 25
 
 

@@ -68,9 +68,10 @@ _FILE = click.Path(path_type=Path)
 @click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]")
 @click.option(
     "--bound",
-    type=click.Choice(["quick", "exact"]),
     is_flag=False,
     flag_value="quick",
+    callback=lambda *a: _bound(*a),
+    metavar="[quick|exact]",
     help="Prove how good the plan is: at once, or by an exact solver (small missions; needs the extra exact).",
 )
 @click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]")
@@ -162,6 +163,14 @@ def command(
     if proof is not None and (verbose if plan.lower_bound is not None else not quiet):
         click.echo(f"{'no ' if plan.lower_bound is None else ''}lower bound: {proof.why}", err=True)
     return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    """`quick` may be left out, and then what stands next is taken for it: `--bound MISSION` deserves a hint."""
+    if value not in (None, "quick", "exact"):
+        hint = "--bound alone stands after the mission, or as --bound=quick"
+        raise click.BadParameter(f"{value!r} is not one of 'quick', 'exact'; {hint}", param_hint="'--bound'")
+    return value
 
 
 def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
