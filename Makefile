@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test help check format stub sanitize study bench clean prerequisites
+.PHONY: demo test campaign help check format stub sanitize study bench clean prerequisites
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -21,9 +21,13 @@ demo: $(VENV)/installed
 test: $(VENV)/developed
 	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
+campaign: $(VENV)/developed
+	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
+
 help:
 	@echo "make demo       plan and draw a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
+	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make check      formatters, linters, types, import contract"
 	@echo "make format     let the formatters change the files"
 	@echo "make stub       make the type stub of the core anew"

@@ -128,7 +128,7 @@ def solve(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
-    from muster.allocation.proofs import with_bound
+    from muster.allocation.proofs import prove, require_provable
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
 
@@ -137,10 +137,12 @@ def solve(
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
     problem = Problem.compile(mission, objective, ignore).ready()
+    if bound is not None:
+        require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
     stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
     plan = chosen.solve(problem, stop, seed=seed, params=params, start=start)
-    return plan if bound is None else with_bound(problem, plan, bound, stop, time_limit)
+    return plan if bound is None else prove(problem, plan, bound, stop, time_limit).plan
 
 
 def verify(mission: Mission, plan: Plan) -> Verdict:

@@ -6,18 +6,15 @@ from random import Random
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.all_plans import AllPlans
 from tests.mission.strategies import examples, tiny_missions
 from tests.random_missions import random_mission
 
-from muster.allocation.conflicts import Conflict, Together, UsageBounds, together
+from muster.allocation.conflicts import Conflict, Together, together
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.verification import verify
-from muster.verification.measure import measured
-from muster.verification.travel import Travel
-
-ROUNDING = 1e-9
 
 
 def judge(mission, plan):
@@ -26,58 +23,6 @@ def judge(mission, plan):
 
 def look(mission, *ignored, time_limit=0.3):
     return together(Problem.compile(mission, ignored=ignored), judge, time_limit=time_limit)
-
-
-class AllPlans:
-    """Every plan of a small mission that keeps prerequisites and waits in no circle, each built in an order of time."""
-
-    def __init__(self, mission, unlimited=None):
-        """`unlimited` names a robot whose capacity is looked away from."""
-        self.mission = mission
-        self.problem = Problem.compile(mission)
-        self._travel = Travel(mission)
-        self._unlimited = unlimited
-        self._usages = {}
-        self.plans = set()
-        self._build(tuple(() for _ in mission.robots))
-
-    def usage(self, k, route):
-        """Usage of the robot at place k of the mission; inf if it may not do that or there is no way."""
-        if (k, route) not in self._usages:
-            robot = self.mission.robots[k]
-            i, tasks = self.problem.robot_index[robot.id], self.problem.task_index
-            by_id = {task.id: task for task in self.mission.tasks}
-            legs = measured(self.mission, self._travel, robot, [by_id[name] for name in route])
-            ways = [step.leg for step in legs.steps] + ([legs.last_leg] if legs.last_leg else [])
-            allowed = all(self.problem.refusal(i, tasks[name]) is None for name in route)
-            usage = legs.usage if allowed and all(way.exists for way in ways) else math.inf
-            self._usages[k, route] = usage
-        return self._usages[k, route]
-
-    def fits(self, k, route):
-        robot = self.mission.robots[k]
-        if robot.id == self._unlimited or robot.work_capacity is None:
-            return self.usage(k, route) < math.inf
-        capacity = (1 - self.mission.rules.capacity_reserve) * robot.work_capacity
-        return self.usage(k, route) <= capacity * (1 + ROUNDING)
-
-    def _build(self, routes):
-        if routes in self.plans:
-            return
-        self.plans.add(routes)
-        done = {name for route in routes for name in route}
-        for task in self.mission.tasks:
-            if task.id in done or not done.issuperset(task.prerequisites):
-                continue
-            for k in range(len(routes)):
-                self._build((*routes[:k], (*routes[k], task.id), *routes[k + 1 :]))
-
-    def admissible(self):
-        return (plan for plan in self.plans if all(self.fits(k, route) for k, route in enumerate(plan)))
-
-    def sets(self):
-        """The sets of tasks that admissible plans do."""
-        return {frozenset(name for route in plan for name in route) for plan in self.admissible()}
 
 
 # --- examples --------------------------------------------------------------------------------------------------------
@@ -258,22 +203,3 @@ def test_little_is_unknown():
     assert len(conflicts) > 10
     assert all(one.minimal for one in conflicts)
     assert not any(one.unknown for one in found)
-
-
-@examples(30)
-@given(seed=seeds)
-def test_bounds_are_below_what_plans_use(seed):
-    asked = random_mission(seed, tasks=4, robots=2)
-    plans = AllPlans(asked)
-    bounds = UsageBounds(plans.problem)
-    names = [one.id for one in plans.problem.tasks]
-    for k, one in enumerate(asked.robots):
-        least = bounds.least_usages(plans.problem.robot_index[one.id], range(len(names)))
-        for plan in plans.plans:
-            bits = sum(1 << names.index(name) for name in plan[k])
-            assert least[bits] <= plans.usage(k, plan[k]) * (1 + ROUNDING)
-    robots = range(len(asked.robots))
-    for plan in plans.plans:
-        total = sum(plans.usage(k, route) for k, route in enumerate(plan))
-        done = sorted(names.index(name) for route in plan for name in route)
-        assert bounds.least_together(robots, done) <= total * (1 + ROUNDING)

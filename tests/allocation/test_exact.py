@@ -5,7 +5,8 @@ import math
 from dataclasses import replace
 
 import pytest
-from tests.allocation.test_bounds import best_plan, by_table, forgiving
+from tests.all_plans import best_plan
+from tests.allocation.test_bounds import by_table, forgiving
 from tests.random_missions import random_mission
 
 import muster

@@ -3,6 +3,10 @@
 import pytest
 
 import muster
+from muster.allocation.bounds import best_bound
+from muster.allocation.problem import Problem
+from muster.allocation.proofs import prove
+from muster.allocation.stop import Stop
 
 
 def test_a_complete_plan_has_a_bound_below_its_objective():
@@ -32,3 +36,26 @@ def test_what_cannot_be_proven_is_refused():
         muster.solve(muster.load("6T-2R"), "greedy", bound="best")
     with pytest.raises(muster.ParameterError, match="expected at most 40"):
         muster.solve(muster.load("eil51-5"), "greedy", bound="exact")
+
+
+def test_why_a_bound_holds_or_is_missing():
+    pytest.importorskip("ortools")
+    problem = Problem.compile(muster.load("11T-2R"))
+    plan = muster.solve(problem.mission, "greedy")
+    assert prove(problem, plan, "quick", Stop()).why == best_bound(problem).why
+    exact = prove(problem, plan, "exact", Stop(), 20.0)
+    assert exact.plan.lower_bound == pytest.approx(exact.plan.objective_value)
+    assert "leave no room for a better plan" in exact.why
+    crowded = Problem.compile(muster.load("31T-3R44-3R26"))
+    unknown = prove(crowded, muster.solve(crowded.mission, "greedy"), "exact", Stop(), 1e-9)
+    assert unknown.plan.lower_bound is None
+    assert unknown.why.startswith("whether more tasks can be done is not known")
+
+
+def test_what_cannot_be_proven_is_refused_before_the_search():
+    def no_step(_):
+        raise AssertionError("the search has begun")
+
+    for bound, name in (("best", "6T-2R"), ("exact", "eil51-5")):
+        with pytest.raises(muster.ParameterError, match="bound: "):
+            muster.solve(muster.load(name), "search", iterations=50, bound=bound, on_progress=no_step)

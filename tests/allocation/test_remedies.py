@@ -6,13 +6,15 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.allocation.test_conflicts import AllPlans, crowded, judge, mission, robot, task
+from tests.all_plans import AllPlans
+from tests.allocation.test_conflicts import crowded, judge, mission, robot, task
 from tests.mission.strategies import examples, tiny_missions
 from tests.random_missions import random_mission
 
 from muster.allocation import greedy
 from muster.allocation.problem import Problem
-from muster.allocation.remedies import Before, Capacity, Score, changed, remedies, smallest, smallest_as_is
+from muster.allocation.remedies import changed, remedies, smallest, smallest_as_is
+from muster.allocation.remedy import Before, Capacity, Score
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Rules, TravelTable
 from muster.mission.plan import Plan, Route

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from tests.cli.yard import FOUND
 
 pytestmark = pytest.mark.usefixtures("folder")
 
@@ -52,7 +53,7 @@ def write(text, capacity=60):
 def test_tasks_that_no_plan_does_together(muster):
     assert muster("check", write(TWO)) == (
         0,
-        "two: 1 robots, 3 tasks; no errors\n"
+        "two: 1 robot, 3 tasks; no errors\n"
         "no plan can do all of these 2 tasks (proven): west, east\n"
         "  only r_0 can do them, and would use at least 120.00 m, of 60.00 m\n"
         "  without any one of them a plan was found that does the others\n",
@@ -88,7 +89,11 @@ def test_a_task_too_far_behind_its_prerequisite(muster):
 
 
 def test_when_all_can_be_done(muster):
-    assert muster("check", write(TWO, 120)) == (0, "two: 1 robots, 3 tasks; no errors\n", "")
+    assert muster("check", write(TWO, 120)) == (
+        0,
+        "two: 1 robot, 3 tasks; no errors\n" + FOUND,
+        "",
+    )
     answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
     assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False}
 

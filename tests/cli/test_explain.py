@@ -12,7 +12,7 @@ def test_explain_what_is_left_out(plan, muster):
     code, out, err = muster("explain", "yard.yaml", plan)
     assert (code, err) == (0, "")
     rows = table_rows(out)
-    assert rows[0] == ["1", "tasks", "left", "out"]
+    assert rows[0] == ["1", "task", "left", "out"]
     assert ["lift", "r_0", "skill", "lacks", "gripper"] in rows
     assert ["lift", "r_1", "skill", "lacks", "gripper"] in rows
 
@@ -188,3 +188,21 @@ def test_remedies_in_json(shed, muster):
     assert second["capacity"]["now"] == 20
     assert second["kinds"] == ["capacity"]
     assert second["enough"] is True
+
+
+def test_a_plan_from_elsewhere_that_lacks_a_way(muster, folder):
+    (folder / "m.yaml").write_text(
+        "schema: muster/1\nrules: {travel: matrix}\ntravel: {x: x.csv}\n"
+        "robots: [{id: r_0, type: x, position: [0, 0]}, {id: r_1, type: x, position: [0, 0]}]\n"
+        "tasks: [{id: a, position: [1, 0]}, {id: b, position: [2, 0]}]\n",
+        encoding="utf-8",
+    )
+    (folder / "x.csv").write_text("to,r_0,r_1,a,b\nr_0,0,0,inf,2\nr_1,0,0,inf,2\na,0,0,0,0\nb,0,0,0,0\n")
+    routes = '{"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["a"]}]}'
+    (folder / "p.json").write_text(routes, encoding="utf-8")
+    code, out, err = muster("explain", "m.yaml", "p.json", "--task", "b")
+    assert (code, err) == (0, "")
+    assert "best as number 1; another route has no way" in out
+    out = muster("explain", "m.yaml", "p.json", "--task", "b", "--format", "json")[1]
+    assert "Infinity" not in out
+    assert json.loads(out)["alternatives"][1] == {"robot": "r_1", "number": 1, "objective": None, "reason": None}

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from tests.cli.yard import FOUND
 
 from muster.library import mission_path
 
@@ -11,7 +12,11 @@ pytestmark = pytest.mark.usefixtures("folder")
 
 def test_init(muster):
     assert muster("init")[:2] == (0, "mission.yaml\n")
-    assert muster("check", "mission.yaml") == (0, "mission: 2 robots, 4 tasks; no errors\n", "")
+    assert muster("check", "mission.yaml") == (
+        0,
+        "mission: 2 robots, 4 tasks; no errors\n" + FOUND,
+        "",
+    )
     assert muster("solve", "mission.yaml", "--iterations", 20, "--require-complete")[0] == 0
 
 
@@ -28,7 +33,11 @@ def test_init_with_a_name(name, muster):
 )
 def test_init_with_a_name_that_yaml_could_take_for_something_else(name, muster):
     assert muster("init", "--", name)[:2] == (0, f"{name}.yaml\n")
-    assert muster("check", "--", f"{name}.yaml") == (0, f"{name}: 2 robots, 4 tasks; no errors\n", "")
+    assert muster("check", "--", f"{name}.yaml") == (
+        0,
+        f"{name}: 2 robots, 4 tasks; no errors\n{FOUND}",
+        "",
+    )
 
 
 @pytest.mark.parametrize("more", [[], ["--from", "31T-6R50"]])

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from tests.cli.yard import MISSION
+from tests.cli.yard import FOUND, MISSION
 
 from muster.library import mission_path
 from muster.mission.plan import read_plan
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("folder")
 
 def test_task_list_csv(muster):
     flags = ["t.csv", "--robots", "r.csv", "--suitability", "s.csv"]
-    assert muster("check", *flags) == (0, "t: 2 robots, 3 tasks; no errors\n", "")
+    assert muster("check", *flags) == (0, "t: 2 robots, 3 tasks; no errors\n" + FOUND, "")
     code, out, err = muster("solve", *flags, "--iterations", 10, "-o", "p.json", "--require-complete")
     assert (code, err) == (0, "")
     assert out.startswith("t: search, seed 0")
@@ -28,7 +28,11 @@ def test_task_list_csv_without_suitability(muster):
 
 def test_tsplib(muster):
     flags = ["eil51", "--salesmen", 3, "--depot", 7]
-    assert muster("check", *flags) == (0, "eil51-3: 3 robots, 50 tasks; no errors\n", "")
+    assert muster("check", *flags) == (
+        0,
+        "eil51-3: 3 robots, 50 tasks; no errors\n" + FOUND,
+        "",
+    )
     code, _, err = muster("solve", *flags, "--iterations", 2, "-o", "p.json")
     assert (code, err) == (0, "")
     tours = read_plan("p.json").routes

@@ -66,3 +66,20 @@ def test_a_renamed_file_and_a_plan_that_names_no_mission(verb, plan, muster):
     assert muster(verb, "renamed.yaml", plan)[2] == ""
     plan.write_text(plan.read_text(encoding="utf-8").replace('"mission": "yard"', '"mission": null'), encoding="utf-8")
     assert muster(verb, "renamed.yaml", plan)[2] == ""
+
+
+def test_verbose_says_why_a_bound_holds(muster):
+    args = ("solve", "eil51-7", "--objective", "max", "--iterations", 20, "--bound")
+    code, out, err = muster(*args, "-v")
+    assert code == 0
+    assert "lower bound       112.07 m  (gap " in out
+    assert err.splitlines()[-1].startswith("lower bound: the farthest task: some robot must get to it")
+    assert muster(*args)[2] == ""
+
+
+def test_a_bound_that_was_asked_for_and_is_not_there_is_no_surprise(muster):
+    args = ("solve", "31T-3R44-3R26", "--allocator", "greedy", "--bound")
+    code, out, err = muster(*args)
+    assert (code, "lower bound" in out) == (0, False)
+    assert err == "no lower bound: quick bounds are of plans that do all tasks, and this one leaves some out\n"
+    assert muster(*args, "-q")[2] == ""

@@ -268,3 +268,10 @@ def test_a_time_limit_does_not_cut_greedy_short(muster):
     code, out, _ = muster("solve", "eil51-5", "--time-limit", "0", "--format", "json")
     assert code == 0
     assert json.loads(out)["tasks_completed"] == 50
+
+
+def test_a_mission_after_bound_alone_gets_a_hint(muster):
+    code, out, err = muster("solve", "--bound", "6T-2R")
+    assert (code, out) == (2, "")
+    assert "'6T-2R' is not one of 'quick', 'exact'; --bound alone stands after the mission, or as --bound=quick" in err
+    assert "lower bound" in muster("solve", "--bound=quick", "6T-2R", "--iterations", 5)[1]

@@ -15,6 +15,14 @@ def test_verify(plan, muster):
     assert table_rows(out)[-1] == ["valid", "yes"]
 
 
+def test_verify_compares_the_bound_that_a_plan_states(muster):
+    assert muster("solve", "16T-3R", "--iterations", 500, "--bound", "-o", "p.json")[0] == 0
+    stated = json.loads(Path("p.json").read_text(encoding="utf-8"))
+    gap = 100 * (1 - stated["lower_bound"] / stated["objective"]["value"])
+    out = muster("verify", "16T-3R", "p.json")[1]
+    assert f"lower bound       {stated['lower_bound']:.2f} m  (gap {gap:.2f} %; stated in the plan)" in out.splitlines()
+
+
 def test_verify_in_json(plan, muster):
     code, out, err = muster("verify", "yard.yaml", plan, "--format", "json")
     assert (code, err) == (0, "")
@@ -57,3 +65,12 @@ def test_verify_a_plan_that_cannot_be_read(muster):
         "",
         "plan.json:2: Expecting value; expected a plan in JSON\n",
     )
+
+
+def test_verify_rejects_a_bound_above_the_objective(plan, muster):
+    text = plan.read_text(encoding="utf-8")
+    assert '"lower_bound": null' in text
+    plan.write_text(text.replace('"lower_bound": null', '"lower_bound": 1e6'), encoding="utf-8")
+    code, out, _ = muster("verify", "yard.yaml", plan)
+    assert code == 1
+    assert "lower bound       1000000.00 m  (above the objective; stated in the plan)" in out.splitlines()

@@ -38,3 +38,6 @@ def comparable(path):
     data["elapsed_s"] = None
     data["history"] = [value for _, value in data["history"]]
     return json.dumps(data)
+
+
+FOUND = "a plan for all tasks was found\n"

@@ -6,7 +6,7 @@ from random import Random
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.random_missions import random_mission
+from tests.random_missions import random_mission, with_travel_tables
 
 import muster
 from muster import core
@@ -110,6 +110,25 @@ def test_cheapest_insertion_is_the_cheapest_of_all_places(seed, tasks):
                     usages.append(verdict.routes[robot].usage)
             found = inspection.cheapest_insertion(i, j)
             assert (found.usage if found else None) == (pytest.approx(min(usages)) if usages else None)
+
+
+@given(seed=seeds, order=st.randoms(use_true_random=False))
+def test_insertions_into_routes_that_lack_ways(seed, order):
+    """By travel tables with missing legs, the route itself may lack a way, which the task may bring back."""
+    mission = with_travel_tables(random_mission(seed, tasks=5, robots=2), seed)
+    problem = Problem.compile(mission, ignored=("prerequisites",))
+    first, *others = order.sample(range(5), 5)
+    routes = [others[:3], []]
+    inspection = core.Inspection(problem.core, routes)
+    for i in range(2):
+        trials = [
+            [[*route[:at], first, *route[at:]] if k == i else route for k, route in enumerate(routes)]
+            for at in range(len(routes[i]) + 1)
+        ]
+        usages = [core.Inspection(problem.core, trial).usages[i] for trial in trials]
+        found = inspection.cheapest_insertion(i, first)
+        assert found.usage == pytest.approx(min(usages))
+        assert usages[found.at] == pytest.approx(min(usages))
 
 
 @given(seed=seeds, order=st.randoms(use_true_random=False))

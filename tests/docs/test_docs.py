@@ -1,11 +1,14 @@
 """What the documents say is so."""
 
 import re
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
 from muster._api import DEFAULT_ALLOCATOR
+from muster.allocation import search
+from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, run
 from muster.mission.kinds import specified
@@ -48,6 +51,39 @@ def test_the_readme_has_every_allocator():
     assert [name for name, default in rows if default] == [DEFAULT_ALLOCATOR]
 
 
+def test_the_parameters_of_search_are_described():
+    text = (ROOT / "docs" / "search.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`[a-z_`, ]+`) \| ([0-9., ]+|none) \|", text, flags=re.MULTILINE)
+    described = {
+        name.strip(" `"): default if default == "none" else float(default)
+        for names, defaults in rows
+        for name, default in zip(names.split(","), defaults.split(","), strict=True)
+    }
+    assert described == {f.name: f.default for f in fields(search.Parameters)}
+
+
+def test_every_argument_of_a_bound_is_described():
+    rows = re.findall(
+        r"^\| ([a-z ]+) \|", (ROOT / "docs" / "bounds.md").read_text(encoding="utf-8"), flags=re.MULTILINE
+    )
+    assert set(WHY) - set(rows) == {"no tasks", "a task that nobody can do"}
+
+
+def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("ortools")
+    text = (ROOT / "docs" / "what-can-be-done.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    (mission,) = blocks(text, "yaml")
+    Path("quay.yaml").write_text(mission, encoding="utf-8")
+    shown = [part for block in blocks(text, "console") for part in block.split("$ muster ")[1:]]
+    assert len(shown) >= 6
+    for part in shown:
+        command, *output = part.splitlines()
+        assert run(command.split()) == 0
+        printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+        assert [line for line in printed if line] == output
+
+
 def test_every_key_of_a_mission_is_described():
     keys = {f.name for model in (Mission, Rules, Robot, Task) for f in specified(model)}
     described = set(re.findall(r"`([a-z_0-9]+)`", MISSION_FILE))
@@ -58,6 +94,16 @@ def test_the_example_mission_is_one():
     (example,) = blocks(MISSION_FILE, "yaml")
     mission = parse_yaml(example, Path("example.yaml"))
     assert [task.id for task in mission.tasks] == ["1", "2"]
+
+
+DOCUMENTS = sorted(str(file.relative_to(ROOT)) for folder in (ROOT, ROOT / "docs") for file in folder.glob("*.md"))
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_links_lead_somewhere(name):
+    text = (ROOT / name).read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+        assert ((ROOT / name).parent / target).exists(), target
 
 
 def test_pictures_of_the_readme_are_there():

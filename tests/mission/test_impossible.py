@@ -324,7 +324,7 @@ def test_check_names_them(chain, capsys):
     out, err = capsys.readouterr()
     assert err == ""
     words = [line.split() for line in out.splitlines() if line.strip()]
-    assert " ".join(words[0]) == "chain: 1 robots, 3 tasks; no errors"
+    assert " ".join(words[0]) == "chain: 1 robot, 3 tasks; no errors"
     assert " ".join(words[1]) == "2 tasks that can never be done"
     assert ["2", "r_0", "skill", "lacks", "camera"] in words
     assert ["3", "r_0", "prerequisite", "2", "comes", "before", "it", "and", "can", "never", "be", "done"] in words
@@ -371,7 +371,7 @@ def test_require_complete(verb, form, chain, capsys):
 
 def test_nothing_impossible(capsys):
     assert run(["check", "31T-6R50", "--require-complete"]) == 0
-    assert capsys.readouterr().out == "31T-6R50: 6 robots, 31 tasks; no errors\n"
+    assert capsys.readouterr().out == "31T-6R50: 6 robots, 31 tasks; no errors\na plan for all tasks was found\n"
 
 
 # --- against all plans there are -------------------------------------------------------------------------------------

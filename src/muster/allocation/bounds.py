@@ -14,23 +14,45 @@ from graphlib import TopologicalSorter
 
 import numpy as np
 
-from muster.allocation.feasibility import least_usage
+from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.spanning import Ways, route_bounds
 
-_ROUNDING = 1e-9
-_MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
 _MOST_CROWDED = 300  # tasks up to which crowding is looked at
-_TREES = "spanning trees with multipliers"
+
+_HELD_KARP = "Held and Karp, Operations Research 18, 1970"
+_TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
+_CROWDED, _SHARE = "crowded tasks", "an even share"
+_LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
+_NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
+WHY = {
+    _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
+    _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
+    _CROWDED: f"the few robots that can do them have to share them; spanning trees, weighted ({_HELD_KARP})",
+    _SHARE: f"at best all robots use the same, together no less than spanning trees with multipliers ({_HELD_KARP})",
+    _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
+    _IN_TURN: "robots do one task after the other, at best the shortest first"
+    " (Conway, Maxwell and Miller, Theory of Scheduling, 1967)",
+    _CRITICAL: "a task waits for its robot and its prerequisites, and they for theirs"
+    " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
+    _NO_TASKS: "there is nothing to do",
+    _NOBODY: "no plan does it",
+}
+"""What each argument says, and whose it is."""
 
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound of the objective, and the argument that gave it; inf where no plan does every task."""
+    """A lower bound of the objective, and the arguments that gave it; inf where no plan does every task."""
 
     value: float
-    argument: str
+    arguments: tuple[str, ...]
+
+    @property
+    def why(self) -> str:
+        """The arguments in words, with their sources."""
+        return "; ".join(f"{name}: {WHY[name]}" for name in self.arguments)
 
 
 def lower_bound(problem: Problem) -> float:
@@ -39,25 +61,18 @@ def lower_bound(problem: Problem) -> float:
 
 
 def best_bound(problem: Problem) -> Bound:
-    """The best of the bounds of the problem's objective, with its argument."""
+    """The best of the bounds of the problem's objective, with its arguments."""
     if not problem.tasks:
-        return Bound(0.0, "no tasks")
-    least = _least_usages(problem)
+        return Bound(0.0, (_NO_TASKS,))
+    least = least_usages(problem)
     usable = usable_pairs(problem, least)
     if not usable.any(axis=0).all():
-        return Bound(math.inf, "a task that nobody can do")
+        return Bound(math.inf, (_NOBODY,))
     if problem.objective == "average":
         return _average(problem, usable)
     if problem.objective == "makespan":
         return _makespan(problem, usable)
     return _usage(problem, usable, least)
-
-
-def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
-    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
-    least = _least_usages(problem) if least is None else least
-    within = least <= problem.capacity[:, None] * (1 + _ROUNDING)
-    return np.asarray(problem.allowed & np.isfinite(least) & within)
 
 
 def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
@@ -83,12 +98,12 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
     values = worth(totals)
     k = int(values.argmin())
     greatest = {
-        "the farthest task": alone,
-        "crowded tasks": crowded,
-        "an even share": float(_evened(totals, capacity)[k]),
+        _FARTHEST: alone,
+        _CROWDED: crowded,
+        _SHARE: float(_evened(totals, capacity)[k]),
     }
     best = max(greatest, key=lambda name: greatest[name])
-    return Bound(float(values[k]), {"total": _TREES, "max": best}.get(problem.objective, f"{_TREES}, and {best}"))
+    return Bound(float(values[k]), {"total": (_TREES,), "max": (best,)}.get(problem.objective, (_TREES, best)))
 
 
 def _evened(totals: Floats, capacity: Floats) -> Floats:
@@ -102,7 +117,7 @@ def _evened(totals: Floats, capacity: Floats) -> Floats:
     evened = []
     for k, total in enumerate(totals.tolist(), 1):
         held = np.concatenate(([0.0], np.cumsum(capacity[:k][::-1])))
-        if math.isinf(total) or total > held[k] * (1 + _ROUNDING):
+        if math.isinf(total) or total > held[k] * (1 + ROUNDING):
             evened.append(math.inf)
         else:
             shares = (total - held[:k]) / (k - np.arange(k))
@@ -122,17 +137,6 @@ def _crowding(problem: Problem, usable: Bools) -> float:
         return 0.0
     weights = [kind / kind.sum() for kind in kinds]
     return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray).min()) for w in weights)
-
-
-def _least_usages(problem: Problem) -> Floats:
-    """(m, n) what no route of a robot that holds a task uses less of.
-
-    That is `least_usage`; where too many ways through short cuts would have to be looked at, the work alone.
-    """
-    robots = range(len(problem.robots))
-    if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:
-        return np.array([least_usage(problem, i) for i in robots])
-    return np.array([problem.work_usage(i) for i in robots])
 
 
 def _open(problem: Problem) -> Problem:
@@ -160,11 +164,11 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
     opened = _open(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
-    arrivals = np.where(usable, _least_usages(opened) - work, math.inf)
+    arrivals = np.where(usable, least_usages(opened) - work, math.inf)
     alone = float(arrivals.min(axis=0).mean())
     steps = np.sort(Ways.of(opened, usable).entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
-    return max(Bound(alone, "the least way to each task"), Bound(in_turn, "tasks in turn"), key=lambda b: b.value)
+    return max(Bound(alone, (_LEAST_WAYS,)), Bound(in_turn, (_IN_TURN,)), key=lambda b: b.value)
 
 
 def _makespan(problem: Problem, usable: Bools) -> Bound:
@@ -178,7 +182,7 @@ def _makespan(problem: Problem, usable: Bools) -> Bound:
     timed = _open(_in_time(problem))
     work = np.array([timed.work_usage(i) for i in range(len(problem.robots))])
     available = np.array([robot.available_from_s for robot in problem.robots])
-    there = np.where(usable, available[:, None] + _least_usages(timed) - work, math.inf)
+    there = np.where(usable, available[:, None] + least_usages(timed) - work, math.inf)
     ends = np.zeros(len(problem.tasks))
     for j in TopologicalSorter(dict(enumerate(problem.prerequisites))).static_order():
         ready = max((ends[k] for k in problem.prerequisites[j]), default=0.0)
@@ -192,5 +196,5 @@ def _makespan(problem: Problem, usable: Bools) -> Bound:
 
     shared = float(worth(route_bounds(Ways.of(timed, usable), worth)).min())
     if shared > critical:
-        return Bound(shared, "an even share")
-    return Bound(critical, "the critical path")
+        return Bound(shared, (_SHARE,))
+    return Bound(critical, (_CRITICAL,))

@@ -46,7 +46,8 @@ def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: in
     if insertion is None:
         return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
     if math.isinf(insertion.usage):
-        return Reason(robot, "unreachable", "there is no way to it")
+        lost = math.isinf(inspection.usages[i])
+        return Reason(robot, "unreachable", "there is no way along its route" if lost else "there is no way to it")
     capacity = problem.capacity[i]
     if insertion.usage > capacity:
         return Reason(robot, "capacity", f"at least {insertion.usage:.2f} {unit} with it, of {capacity:.2f} {unit}")
@@ -76,7 +77,10 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
 
 @dataclass(frozen=True)
 class Alternative:
-    """What giving a task to a robot would do: number in the route and objective then; or why it cannot be."""
+    """What giving a task to a robot would do: number in the route and objective then; or why it cannot be.
+
+    Where another route of the plan lacks a way there is no objective.
+    """
 
     robot: str
     number: int | None
@@ -104,4 +108,6 @@ def _alternative(
         return Alternative(why.robot, None, None, why)
     routes = [list(route) for route in rest]
     routes[i].insert(insertion.at, j)
-    return Alternative(why.robot, insertion.at + 1, core.Inspection(problem.core, routes).objective, None)
+    objective = core.Inspection(problem.core, routes).objective
+    finite = objective if objective is not None and math.isfinite(objective) else None
+    return Alternative(why.robot, insertion.at + 1, finite, None)

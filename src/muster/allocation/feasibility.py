@@ -7,11 +7,12 @@ import math
 
 import numpy as np
 
-from muster.allocation.problem import Floats, Problem
+from muster.allocation.problem import Bools, Floats, Problem
 from muster.mission.plan import Reason, Unassigned
 
-_ROUNDING = 1e-9
-"""What a sum may be off, relative: a task that fills a capacity exactly is not impossible."""
+ROUNDING = 2e-9
+"""By how much a usage may be above a capacity, relative; a little more than the judge allows."""
+_MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
 
 
 def impossible(problem: Problem) -> tuple[Unassigned, ...]:
@@ -21,8 +22,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     prerequisites are impossible. There can be others, such as a chain of prerequisites too long for the team.
     """
     least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
-    possible = problem.allowed & np.isfinite(least) & (least <= problem.capacity[:, None] * (1 + _ROUNDING))
-    lost = dict.fromkeys(np.flatnonzero(~possible.any(axis=0)).tolist(), "")
+    lost = dict.fromkeys(np.flatnonzero(~usable_pairs(problem, least).any(axis=0)).tolist(), "")
     waiting = list(lost)
     while waiting:
         before = waiting.pop()
@@ -50,6 +50,24 @@ def _reason(problem: Problem, i: int, j: int, least: float, lost_before: str) ->
         return Reason(robot, "unreachable", "there is no way to it")
     detail = f"takes at least {least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
     return Reason(robot, "capacity", detail)
+
+
+def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
+    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
+    least = least_usages(problem) if least is None else least
+    within = least <= problem.capacity[:, None] * (1 + ROUNDING)
+    return np.asarray(problem.allowed & np.isfinite(least) & within)
+
+
+def least_usages(problem: Problem) -> Floats:
+    """(m, n) what no route of a robot that holds a task uses less of.
+
+    That is `least_usage`; where too many ways through short cuts would have to be looked at, the work alone.
+    """
+    robots = range(len(problem.robots))
+    if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:
+        return np.array([least_usage(problem, i) for i in robots])
+    return np.array([problem.work_usage(i) for i in robots])
 
 
 def least_usage(problem: Problem, i: int) -> Floats:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from muster.allocation.allocator import Outcome, finished_plan, routes_of
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds import best_bound
+from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -14,10 +15,37 @@ from muster.mission.plan import Plan
 PROOFS = ("quick", "exact")
 EXACT_TIME_LIMIT_S = 30.0
 MOST_TASKS_EXACT = 40
+_SOLVER = "OR-Tools CP-SAT (Perron, Didier and Gay, CP 2023)"
 
 
-def with_bound(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: float | None = None) -> Plan:
-    """The plan with the bound that is proven of it; an exact solver may find a better plan on the way.
+@dataclass(frozen=True)
+class Proof:
+    """A plan with the bound that is proven of it, and why the bound holds, or why there is none."""
+
+    plan: Plan
+    why: str
+
+
+def require_provable(problem: Problem, proof: str) -> None:
+    """Find out before a long search that what is asked for cannot be proven.
+
+    Raises
+    ------
+    ParameterError
+        for another proof than those in PROOFS, or too many tasks.
+    MissingExtraError
+        if `exact` is asked for and OR-Tools is not installed.
+    """
+    if proof not in PROOFS:
+        raise ParameterError(f"bound: {proof}; expected {' or '.join(PROOFS)}")
+    if proof == "exact":
+        if len(problem.tasks) > MOST_TASKS_EXACT:
+            raise ParameterError(f"bound: exact, of {len(problem.tasks)} tasks; expected at most {MOST_TASKS_EXACT}")
+        require_ortools()
+
+
+def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: float | None = None) -> Proof:
+    """Bound the objective of a plan; an exact solver may find a better plan on the way.
 
     Parameters
     ----------
@@ -29,25 +57,33 @@ def with_bound(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit:
 
     Raises
     ------
-    ParameterError
-        for another proof.
-    MissingExtraError
-        if `exact` is asked for and OR-Tools is not installed.
+    ParameterError, MissingExtraError
+        as `require_provable`.
     """
-    if proof not in PROOFS:
-        raise ParameterError(f"bound: {proof}; expected {' or '.join(PROOFS)}")
-    if proof == "quick":
-        value = plan.objective_value
-        bounded = plan.complete and value is not None
-        return replace(plan, lower_bound=min(lower_bound(problem), value or 0.0)) if bounded else plan
-    if len(problem.tasks) > MOST_TASKS_EXACT:
-        raise ParameterError(f"bound: exact, of {len(problem.tasks)} tasks; expected at most {MOST_TASKS_EXACT}")
-    from muster.allocation.exact import solve_exactly
+    require_provable(problem, proof)
+    return _quick(problem, plan) if proof == "quick" else _exact(problem, plan, stop, time_limit)
 
-    result = solve_exactly(problem, time_limit or EXACT_TIME_LIMIT_S, routes_of(problem, plan), plan.seed or 0)
+
+def _quick(problem: Problem, plan: Plan) -> Proof:
+    value = plan.objective_value
+    if not plan.complete or value is None:
+        return Proof(plan, "quick bounds are of plans that do all tasks, and this one leaves some out")
+    bound = best_bound(problem)
+    return Proof(replace(plan, lower_bound=min(bound.value, value)), bound.why)
+
+
+def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:
+    seconds = time_limit or EXACT_TIME_LIMIT_S
+    result = solve_exactly(problem, seconds, routes_of(problem, plan), plan.seed or 0)
     weight, objective = problem.value(result.routes)
     if (-weight, objective) < (-(plan.weight_completed or 0.0), plan.objective_value or 0.0):
         stop.improved(weight, objective)
         outcome = Outcome(result.routes)
         plan = finished_plan(problem, stop, outcome, allocator=f"{plan.allocator}, exact", seed=plan.seed or 0)
-    return replace(plan, lower_bound=result.lower_bound)
+    if result.optimal:
+        why = f"{_SOLVER} and quick bounds leave no room for a better plan"
+    elif result.lower_bound is not None:
+        why = f"what {_SOLVER} and quick bounds had ruled out after {seconds:g} s"
+    else:
+        why = f"whether more tasks can be done is not known after {seconds:g} s of {_SOLVER}"
+    return Proof(replace(plan, lower_bound=result.lower_bound), why)

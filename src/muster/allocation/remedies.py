@@ -4,101 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.conflicts import FEW, Judge, UsageBounds, attempt, bare_plan, closed
-from muster.allocation.feasibility import impossible
+from muster.allocation.attempts import Judge, attempt, bare_plan, closed
+from muster.allocation.feasibility import ROUNDING, impossible
 from muster.allocation.problem import Problem
+from muster.allocation.remedy import Before, Capacity, Remedy, Score
+from muster.allocation.usage_bounds import FEW, UsageBounds
 from muster.mission.model import Robot, Task
-from muster.mission.plan import Route
 
 _NARROWINGS = 6  # of what is known of the least capacity: each halves what is not known
 _MOST_SEARCHED = 6  # robots, those that need least with the rest of the plan as it is, for which plans are searched
 _NEAR_ENOUGH = 1e-3  # relative
-_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True)
-class Score:
-    """A suitability score that is too low."""
-
-    robot_type: str
-    task_type: str
-    score: float
-    needed: float
-
-
-@dataclass(frozen=True)
-class Before:
-    """A prerequisite that the plan leaves out, and whether it is possible by itself."""
-
-    task: str
-    possible: bool
-
-
-@dataclass(frozen=True, kw_only=True)
-class Capacity:
-    """Work capacities of the robot, the reserve included, the other changes made.
-
-    `now` is the mission's, None where it is unlimited. With `as_is` the task fits into the robot's route and nothing
-    else of the plan changes: exactly that much is needed for it. With less than `at_least` no admissible plan does what
-    the plan does and the task by this robot: that is proven. With `enough` such a plan was found, and judged.
-    `grows` tells whether more is needed than there is now, as far as is known. Values are None where nothing is.
-    """
-
-    now: float | None
-    as_is: float | None = None
-    at_least: float | None = None
-    enough: float | None = None
-
-    @property
-    def grows(self) -> bool:
-        needed = max(self.enough or 0.0, self.at_least or 0.0)
-        return self.now is not None and needed > self.now * (1 + _ROUNDING)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Remedy:
-    """What a robot would need to do a task beside all that a plan does.
-
-    Skills, score and lock are exactly what stands between the two: each is needed. `before` are the prerequisites that
-    the plan leaves out. `enough` tells whether a plan with all this was found and judged; its routes are in `routes`.
-    `unreachable` tells that there is no way to the task, `impossible` that no capacity is enough beside the other
-    changes: both are proven. Of many robots only those that seem to need least are `searched` for plans in which other
-    tasks are moved.
-    """
-
-    robot: str
-    skills: tuple[str, ...] = ()
-    suitability: Score | None = None
-    lock: tuple[str, ...] | None = None
-    before: tuple[Before, ...] = ()
-    unreachable: bool = False
-    impossible: bool = False
-    searched: bool = True
-    capacity: Capacity
-    enough: bool = False
-    routes: tuple[Route, ...] = field(default=(), repr=False)
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """The kinds of change, by the names of reasons."""
-        given = {
-            "skill": self.skills,
-            "suitability": self.suitability,
-            "lock": self.lock,
-            "prerequisite": self.before,
-            "capacity": self.capacity.grows,
-        }
-        return tuple(name for name, value in given.items() if value)
-
-    @property
-    def size(self) -> tuple[int, float]:
-        """What changes are compared by: the number of kinds, then by how much the capacity grows."""
-        grown = (self.capacity.enough or 0.0) - (self.capacity.now or 0.0) if self.capacity.grows else 0.0
-        return len(self.kinds), grown
 
 
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
@@ -148,7 +67,7 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
     never = {item.task for item in impossible(problem)} if missing else set()
     before = tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing)
     for i, robot in enumerate(problem.robots):
-        place = None if missing else _cheapest_place(problem, inspection, rest, i, j)
+        place = None if missing else _cheapest_place(inspection, i, j)
         unlimited = math.isinf(problem.capacity[i])
         now = None if unlimited else robot.work_capacity
         room = None if place is None else _work_capacity(problem, place[1])
@@ -157,20 +76,10 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
         yield i, _barriers(problem, robot, problem.tasks[j], Remedy(robot=robot.id, before=before, capacity=capacity))
 
 
-def _cheapest_place(
-    problem: Problem, inspection: core.Inspection, rest: Routes, i: int, j: int
-) -> tuple[int, float] | None:
+def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:
     """Where in the route of robot i task j adds least usage and nothing deadlocks, and the usage; None if nowhere."""
-    if math.isfinite(inspection.usages[i]):
-        place = inspection.cheapest_insertion(i, j)
-        return None if place is None or math.isinf(place.usage) else (place.at, place.usage)
-    places = []  # there may be no way but through the task
-    for at in range(len(rest[i]) + 1):
-        routes = _put(rest, i, j, at)
-        tried = core.Inspection(problem.core, routes)
-        if tried.makespan is not None and math.isfinite(tried.usages[i]):
-            places.append((tried.usages[i], at))
-    return min(places)[::-1] if places else None
+    place = inspection.cheapest_insertion(i, j)
+    return None if place is None or math.isinf(place.usage) else (place.at, place.usage)
 
 
 def _put(rest: Routes, i: int, j: int, at: int) -> Routes:
@@ -233,7 +142,7 @@ def _as_is(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, jud
 
 def _fitted(problem: Problem, rest: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
     """The remedy, enough if the judge admits the plan with the task in the robot's route, of the changed problem."""
-    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     return _not_found(remedy) if place is None else _judged(problem, _put(rest, i, j, place[0]), remedy, judge)
 
 
@@ -262,7 +171,7 @@ def _looked_into(problem: Problem, routes: Routes, i: int, j: int, remedy: Remed
     bounds = UsageBounds(_with_capacity(sole, i, None))
     if not bounds.possible[i, j]:
         return _not_found(replace(remedy, unreachable=True, impossible=True))
-    if as_is is not None and (now is None or as_is <= now * (1 + _ROUNDING)):
+    if as_is is not None and (now is None or as_is <= now * (1 + ROUNDING)):
         fitted = _fitted(base, rest, i, j, remedy, judge)
         if fitted.enough:
             return fitted
@@ -283,7 +192,7 @@ def _looked_into(problem: Problem, routes: Routes, i: int, j: int, remedy: Remed
 def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, remedy: Remedy) -> Routes | None:
     """Routes that do all that is needed, j by robot i, whose usage is as low as could be found where it must grow."""
     now, low = remedy.capacity.now, remedy.capacity.at_least or 0.0
-    if now is None or low <= now * (1 + _ROUNDING):
+    if now is None or low <= now * (1 + ROUNDING):
         first = _rearranged(sole, rest, needed, i, now) or _rearranged(sole, None, needed, i, now)
         if first is not None or now is None:
             return first
@@ -307,7 +216,7 @@ def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, re
 def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
     """The routes with task j in that of robot i, if they are admissible with unlimited capacity of the robot."""
     problem = _with_capacity(sole, i, None)
-    place = _cheapest_place(problem, core.Inspection(problem.core, rest), rest, i, j)
+    place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     routes = None if place is None else _put(rest, i, j, place[0])
     return routes if routes is not None and _admissible(problem, routes) else None
 
@@ -344,9 +253,9 @@ def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> f
     else:
         own = [k for k in tasks if k != j and not bounds.possible[others, k].any()]
         few = [j, *sorted(own, key=lambda k: -bounds.least[i, k])[: FEW - 1]]
-    usages, bit = bounds.least_usages(i, few), 1 << few.index(j)
+    usages, bit = bounds.subset_usages(i, few), 1 << few.index(j)
     least = min(float(usages[(len(usages) - 1) & ~share | bit]) for share in reached)
-    spare = float(problem.capacity[others].sum()) * (1 + _ROUNDING)
+    spare = float(problem.capacity[others].sum()) * (1 + ROUNDING)
     if math.isfinite(spare):
-        least = max(least, bounds.least_together(range(len(problem.robots)), tasks) * (1 - _ROUNDING) - spare)
+        least = max(least, bounds.least_together(range(len(problem.robots)), tasks) * (1 - ROUNDING) - spare)
     return max(least, float(bounds.least[i, j]))

@@ -35,15 +35,12 @@ class Legs:
         self._paces = _paces(problem, kinds, weights)
         self._dense = self._between(self._tasks) if len(self._tasks) <= _DENSE else None
 
-    def rows(self) -> Floats | None:
-        """(n, n) all of them, if they can be held at once."""
-        return self._dense
-
-    def of(self, task: int) -> Floats:
-        """(n,) the lesser of the legs from the task and to it."""
+    def rows_plus(self, p: Floats) -> Callable[[int], Floats]:
+        """For a task (n,) the lesser of the legs from it to the others and back, the others' p (n,) added."""
         if self._dense is not None:
-            return np.asarray(self._dense[task])
-        return np.asarray(self._between(self._tasks[task : task + 1])[0])
+            costs: Floats = self._dense + p
+            return costs.__getitem__
+        return lambda task: np.asarray(self._between(self._tasks[task : task + 1])[0] + p)
 
     def _between(self, some: Indices) -> Floats:
         legs = self.directed(some)
@@ -176,9 +173,11 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats]) -> Floats:
     for _ in range(rounds):
         first, group = _least_rows(ways.starts + ways.surplus + (a - b)[:, None])
         last, end_group = _least_rows(ways.ends + b[:, None])
-        tree, degree, roots = _spanning_tree(ways.legs, first + p, p)
+        tree, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p)
         if math.isinf(tree):
             return np.full(count, math.inf)
+        roots = np.flatnonzero(parent < 0)
+        degree = np.bincount(parent[parent >= 0], minlength=n) + 1
         order = np.argsort(last + p, kind="stable")[:count]
         fixed = (ways.work - 2 * p).sum() - (ways.robots * a).sum()
         best = np.maximum(best, tree + fixed + np.cumsum((last + p)[order]))
@@ -210,21 +209,28 @@ def _least_rows(costs: Floats) -> tuple[Floats, Indices]:
     return costs[row, np.arange(costs.shape[1])], row
 
 
-def _spanning_tree(legs: Legs, root: Floats, p: Floats) -> tuple[float, Indices, Indices]:
-    """The least spanning tree of a root and all tasks (Prim): its cost, the tasks' degrees, the tasks at the root."""
+def spanning_tree(row: Callable[[int], Floats], root: Floats, p: Floats | None = None) -> tuple[float, Indices]:
+    """The least spanning tree of a root and all tasks (Prim): its cost, and each task's parent, -1 for the root.
+
+    Parameters
+    ----------
+    row
+        of a task: (n,) the legs from it to all, the multipliers p of the others added.
+    root
+        (n,) the legs from the root, with p.
+    p
+        (n,) multipliers of the tasks; 0 by default.
+    """
     n = len(root)
-    rows = legs.rows()
-    costs = None if rows is None else rows + p
     reach, outside, parent = root.copy(), np.ones(n, np.bool_), np.full(n, -1)
     total = 0.0
     for _ in range(n):
         task = int(reach.argmin())
+        own = 0.0 if p is None else float(p[task])
         total += float(reach[task])
         reach[task], outside[task] = math.inf, False
-        row = costs[task] if costs is not None else legs.of(task) + p
-        nearer = (row < reach - p[task]) & outside
-        np.copyto(reach, row + p[task], where=nearer)
+        legs = row(task)
+        nearer = (legs < reach - own) & outside
+        np.copyto(reach, legs + own, where=nearer)
         parent[nearer] = task
-    roots = parent < 0
-    degree = np.bincount(parent[~roots], minlength=n) + 1
-    return total, degree, np.flatnonzero(roots)
+    return total, parent

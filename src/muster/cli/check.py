@@ -17,7 +17,7 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.tables import sequence
+from muster.cli.tables import counted, sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Unassigned, json_text
@@ -81,7 +81,8 @@ def command(
         click.echo(json_text(answer), nl=False)
     else:
         _print(loaded, lost)
-        _print_together(found, "all other tasks" if lost else "all tasks")
+        if len(lost) < len(loaded.tasks):
+            _print_together(found, "all other tasks" if lost else "all tasks")
     return INCOMPLETE if (lost or found.conflict) and require_complete else DONE
 
 
@@ -98,17 +99,20 @@ def _admits(mission: Mission, plan: Plan) -> bool:
 def _print(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
     from muster.cli.tables import print_table
 
-    robots, tasks = len(mission.robots), len(mission.tasks)
-    click.echo(f"{mission.name}: {robots} robots, {tasks} tasks; no errors")
+    robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")
+    click.echo(f"{mission.name}: {robots}, {tasks}; no errors")
     if lost:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
-        print_table(("task", "robot", "reason", "detail"), rows, title=f"{len(lost)} tasks that can never be done")
+        title = f"{counted(len(lost), 'task')} that can never be done"
+        print_table(("task", "robot", "reason", "detail"), rows, title=title)
 
 
 def _print_together(found: Together, tasks: str) -> None:
     if found.unknown:
         click.echo(f"no plan for {tasks} was found; none was proven impossible")
+        return
     if found.conflict is None:
+        click.echo(f"a plan for {tasks} was found")
         return
     conflict = found.conflict
     names = sequence(conflict.tasks)

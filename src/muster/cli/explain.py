@@ -19,7 +19,7 @@ from muster.mission.plan import Plan, json_text, read_plan
 if TYPE_CHECKING:
     from muster.allocation.explanations import Alternative
     from muster.allocation.problem import Problem
-    from muster.allocation.remedies import Capacity, Remedy
+    from muster.allocation.remedy import Capacity, Remedy
     from muster.mission.book import Award, Book
     from muster.verification import Verdict
 
@@ -77,7 +77,7 @@ def _left_out(mission: Mission, plan: Plan, form: str) -> None:
     from muster.allocation.explanations import unassigned
     from muster.allocation.problem import Problem
     from muster.allocation.remedies import smallest_as_is
-    from muster.cli.tables import print_table
+    from muster.cli.tables import counted, print_table
 
     problem = Problem.compile(mission, plan.objective, plan.ignored)
     routes = routes_of(problem, plan)
@@ -95,7 +95,7 @@ def _left_out(mission: Mission, plan: Plan, form: str) -> None:
         click.echo("no task is left out; --task T explains a task that is done")
     else:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons]
-        print_table(("task", "robot", "reason", "detail"), rows, title=f"{len(left_out)} tasks left out")
+        print_table(("task", "robot", "reason", "detail"), rows, title=f"{counted(len(left_out), 'task')} left out")
         _print_smallest(problem, changes)
         if len(left_out) > len(changes):
             click.echo(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
@@ -186,7 +186,9 @@ def _print_alternatives(found: tuple[Alternative, ...], now: str | None, objecti
         mark = "  (now)" if other.robot == now else ""
         if other.reason is not None:
             rows.append((other.robot + mark, "no", f"{other.reason.reason}: {other.reason.detail}"))
-        elif other.objective is not None:
+        elif other.objective is None:
+            rows.append((other.robot + mark, "yes", f"best as number {other.number}; another route has no way"))
+        else:
             more = other.objective - objective if objective is not None and now is not None else None
             change = "" if more is None else f" ({round(more, 2) + 0.0:+.2f})"
             rows.append(
@@ -200,7 +202,7 @@ def _print_smallest(problem: Problem, changes: Mapping[str, Remedy | None]) -> N
 
     rows = [
         (
-            (task, "-", "none; --task T looks further")
+            (task, "-", "none was found; --task T looks further")
             if remedy is None
             else (task, remedy.robot, _short(problem, remedy))
         )
@@ -236,7 +238,7 @@ def _short(problem: Problem, remedy: Remedy) -> str:
     capacity = remedy.capacity
     if capacity.grows and capacity.enough is not None and capacity.now is not None:
         parts.append(f"capacity {_up(capacity.enough)} {problem.usage_unit}, not {capacity.now:g}")
-    return "; ".join(parts) or "none"
+    return "; ".join(parts) or "none is needed"
 
 
 def _lines(problem: Problem, remedy: Remedy) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from muster.cli.tables import number, print_table, sequence
+from muster.cli.tables import counted, number, print_table, sequence
 from muster.mission.plan import Plan
 from muster.verification import Verdict
 
@@ -24,7 +24,7 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
     print_table(columns, rows, title=title, right=columns[2:])
     print_figures(verdict)
-    _print_bound(plan, verdict)
+    _print_bound(plan.lower_bound, verdict)
     if plan.book is not None:
         messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
         click.echo(f"rounds            {plan.book.rounds}{messages}")
@@ -35,14 +35,16 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
         click.echo(f"ignored           {', '.join(plan.ignored)}")
 
 
-def _print_bound(plan: Plan, verdict: Verdict) -> None:
-    bound, value = plan.lower_bound, verdict.value()
+def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
+    value = verdict.value()
     if bound is None or value is None:
         return
     gap = (value - bound) / value if value > 0 else 0.0
     unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
-    said = "the plan is optimal" if gap < OPTIMAL else f"gap {100 * gap:.2f} %"
-    click.echo(f"lower bound       {number(bound, unit)}  ({said})")
+    said = "the plan is optimal" if abs(gap) < OPTIMAL else f"gap {100 * gap:.2f} %"
+    if gap <= -OPTIMAL:
+        said = "above the objective"
+    click.echo(f"lower bound       {number(bound, unit)}  ({said}{note})")
 
 
 def print_figures(verdict: Verdict) -> None:
@@ -57,12 +59,13 @@ def print_figures(verdict: Verdict) -> None:
     click.echo(f"equality index    {number(verdict.equality_index)}")
 
 
-def print_verdict(verdict: Verdict) -> None:
-    """Whether a plan holds, and all that is wrong with it."""
+def print_verdict(plan: Plan, verdict: Verdict) -> None:
+    """Whether a plan holds, and all that is wrong with it. A bound that it states is compared, not proven again."""
     print_figures(verdict)
+    _print_bound(plan.lower_bound, verdict, "; stated in the plan")
     if verdict.valid:
         click.echo("valid             yes")
         return
-    click.echo(f"valid             no: {len(verdict.violations)} violations")
+    click.echo(f"valid             no: {counted(len(verdict.violations), 'violation')}")
     rows = [(v.kind, v.robot or "-", v.task or "-", v.detail) for v in verdict.violations]
     print_table(("kind", "robot", "task", "detail"), rows)

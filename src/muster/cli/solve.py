@@ -70,9 +70,10 @@ _FILE = click.Path(path_type=Path)
 @click.option("--ray", metavar="ADDRESS", help="Work on the parts of a large team on a Ray cluster (docs/search.md).")
 @click.option(
     "--bound",
-    type=click.Choice(["quick", "exact"]),
     is_flag=False,
     flag_value="quick",
+    callback=lambda *a: _bound(*a),
+    metavar="[quick|exact]",
     help="Prove how good the plan is: at once, or by an exact solver (small missions; needs the extra exact).",
 )
 @click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]")
@@ -122,7 +123,7 @@ def command(
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.problem import Problem
-    from muster.allocation.proofs import with_bound
+    from muster.allocation.proofs import prove, require_provable
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
@@ -143,13 +144,17 @@ def command(
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore).ready()
+    if bound is not None:
+        require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
     with progress_bar(not quiet and chosen.anytime, loaded, limit, iterations) as on_progress:
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
+            proof = None
             if bound is not None and not stop.interrupted:
-                plan = with_bound(problem, plan, bound, stop, time_limit)
+                proof = prove(problem, plan, bound, stop, time_limit)
+                plan = proof.plan
     with _ctrl_c_interrupts(stop):
         _show(loaded, plan, form, output, plot, gantt)
     if book is not None and not _write_book(plan, book, quiet):
@@ -160,7 +165,17 @@ def command(
         return INTERRUPTED
     if verbose:
         click.echo(f"{stop.iterations_done} iterations in {plan.elapsed_s:.3f} s", err=True)
+    if proof is not None and (verbose if plan.lower_bound is not None else not quiet):
+        click.echo(f"{'no ' if plan.lower_bound is None else ''}lower bound: {proof.why}", err=True)
     return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    """`quick` may be left out, and then what stands next is taken for it: `--bound MISSION` deserves a hint."""
+    if value not in (None, "quick", "exact"):
+        hint = "--bound alone stands after the mission, or as --bound=quick"
+        raise click.BadParameter(f"{value!r} is not one of 'quick', 'exact'; {hint}", param_hint="'--bound'")
+    return value
 
 
 def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:

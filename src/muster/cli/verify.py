@@ -41,5 +41,5 @@ def command(
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:
-        print_verdict(verdict)
+        print_verdict(given, verdict)
     return DONE if verdict.valid else REJECTED

@@ -22,16 +22,37 @@ std::vector<double> Inspection::usages() const {
   return usages;
 }
 
+// The usage of a route with one more task is summed up from both ends, not from the usage as it is: of a route that has
+// no way without the task that is infinite, and tells nothing.
+std::vector<Insertion> Inspection::insertions(int robot, int task) const {
+  const auto route = draft_.route(robot);
+  const int length = static_cast<int>(route.size());
+  std::vector<double> rest(length, 0.0);  // usage once task k of the route is done
+  if (length) rest[length - 1] = problem_.end_usage(robot, route[length - 1]);
+  for (int k = length - 1; k > 0; --k) {
+    rest[k - 1] = problem_.on_to(robot, rest[k], route[k - 1], route[k]);
+  }
+  const Window allowed = window(problem_, route, task);
+  std::vector<Insertion> places;
+  double usage = 0.0;
+  for (int at = 0; at <= allowed.latest; ++at) {
+    const int before = at ? route[at - 1] : problem_.start(robot);
+    if (at >= allowed.earliest) {
+      const double then =
+          at < length ? problem_.on_to(robot, rest[at], task, route[at]) : problem_.end_usage(robot, task);
+      places.push_back({at, problem_.on_to(robot, usage, before, task) + then});
+    }
+    if (at < length) usage = problem_.on_to(robot, usage, before, route[at]);
+  }
+  return places;
+}
+
 std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
   if (robot < 0 || robot >= problem_.robots() || task < 0 || task >= problem_.tasks()) {
     throw std::invalid_argument("no such robot or task");
   }
   if (draft_.robot_of(task) != Draft::kNobody) throw std::invalid_argument("the task is in the plan already");
-  std::vector<Insertion> places;
-  const Window allowed = window(problem_, draft_.route(robot), task);
-  for (int at = allowed.earliest; at <= allowed.latest; ++at) {
-    places.push_back({at, draft_.figures(robot).usage + problem_.growth(robot, draft_.route(robot), task, at)});
-  }
+  std::vector<Insertion> places = insertions(robot, task);
   std::ranges::stable_sort(places, {}, &Insertion::usage);
   for (const Insertion& place : places) {
     if (!problem_.has_prerequisites()) return place;

@@ -23,9 +23,13 @@ class Inspection {
   std::optional<double> objective() const { return objective_; }
   std::vector<double> usages() const;
   std::optional<double> makespan() const { return makespan_; }
+  // Where the task adds least usage and nothing deadlocks; the usage is infinite where there is no way.
   std::optional<Insertion> cheapest_insertion(int robot, int task);
 
  private:
+  // All places that the prerequisites in the route leave, in order.
+  std::vector<Insertion> insertions(int robot, int task) const;
+
   const Problem& problem_;
   Evaluator evaluator_;
   Draft draft_;

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.bounds import lower_bound, usable_pairs
+from muster.allocation.bounds import lower_bound
 from muster.allocation.exact.partition import few_partings, least_average
 from muster.allocation.exact.scale import whole_weights
-from muster.allocation.feasibility import impossible
+from muster.allocation.feasibility import impossible, usable_pairs
 from muster.allocation.problem import Problem
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError, ParameterError
@@ -73,11 +73,16 @@ def solve_exactly(
     ParameterError
         if the start is not admissible, or the priorities have too many digits.
     """
+    require_ortools()
+    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
+
+
+def require_ortools() -> None:
+    """Raise MissingExtraError if OR-Tools is not installed."""
     try:
         import ortools.sat.python.cp_model  # noqa: F401
     except ImportError:
         raise MissingExtraError("exact", "proving a plan optimal") from None
-    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
 
 
 class _Solving:

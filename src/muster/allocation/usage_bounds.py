@@ -1,0 +1,175 @@
+"""Lower bounds on the usage of robots that do certain tasks, whatever else they do: what proves that they cannot.
+
+For few tasks they are each robot's least usage for every subset (Held and Karp, A Dynamic Programming Approach to
+Sequencing Problems, J. SIAM 10(1), 1962) and all ways to share the tasks out; for many a spanning forest from the
+starts of the robots that can do them. Neither sees that robots may wait for each other in a circle: where that alone
+forbids a plan, nothing is proven.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from muster.allocation.attempts import closed
+from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
+from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.spanning import spanning_tree
+
+FEW = 10  # tasks, up to which all subsets are looked at
+_MOST_IN_FOREST, _MOST_SHORTCUTS = 1500, 300  # tasks; beyond, the bound is not worth its time
+_MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
+
+
+class UsageBounds:
+    """Lower bounds on usage, over all admissible plans of a problem, whatever else is in them."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+
+    @cached_property
+    def least(self) -> Floats:
+        """(m, n) what no route of a robot that holds a task uses less of."""
+        return least_usages(self.problem)
+
+    @cached_property
+    def possible(self) -> Bools:
+        """(m, n) whether a robot can do a task, were it alone."""
+        return usable_pairs(self.problem, self.least)
+
+    @cached_property
+    def hardness(self) -> Floats:
+        """(n,) least usage of any robot that can do a task; inf where none can."""
+        return np.asarray(np.where(self.possible, self.least, math.inf).min(axis=0))
+
+    def groups(self, tasks: Sequence[int]) -> Iterator[tuple[list[int], list[int]]]:
+        """Groups of robots, the smallest first, each with those of the tasks that no other robot can do."""
+        kinds = {frozenset(np.flatnonzero(self.possible[:, j]).tolist()) for j in tasks}
+        everyone = frozenset[int]().union(*kinds)
+        unions = {a | b for a, b in itertools.combinations(kinds, 2)} if len(kinds) <= _MOST_KINDS else set()
+        chosen = {everyone} if len(tasks) <= FEW else {*kinds, *unions, everyone}
+        for group in sorted(chosen, key=lambda group: (len(group), sorted(group))):
+            others = [i for i in range(len(self.problem.robots)) if i not in group]
+            open_to_others = self.possible[others][:, tasks].any(axis=0)
+            yield sorted(group), np.asarray(tasks, np.int64)[~open_to_others].tolist()
+
+    def forbid(self, tasks: Iterable[int]) -> bool:
+        """Whether it is proven that no admissible plan does all these tasks."""
+        return any(self.exceed(robots, own) for robots, own in self.groups(closed(self.problem, tasks)))
+
+    def exceed(self, robots: list[int], tasks: list[int]) -> bool:
+        """Whether it is proven that robots cannot do all the tasks, which no other robot does."""
+        if len(tasks) <= FEW:
+            return (1 << len(tasks)) - 1 not in self.shares(robots, tasks)
+        capacity = float(self.problem.capacity[robots].sum())
+        return math.isfinite(capacity) and self.least_together(robots, tasks) > capacity * (1 + ROUNDING)
+
+    def shares(self, robots: Iterable[int], tasks: Sequence[int]) -> list[int]:
+        """The largest sets of few tasks, as bits, that robots may be able to do between them."""
+        everything, reached, known = (1 << len(tasks)) - 1, [0], dict[bytes, list[int]]()
+        for i in robots:
+            if everything in reached:
+                break
+            ways, capacity = self._ways_of(i, tasks), self.problem.capacity[i] * (1 + ROUNDING)
+            key = b"".join((ways.tobytes(), self.problem.work_usage(i)[list(tasks)].tobytes(), capacity.tobytes()))
+            if key not in known:
+                known[key] = _largest(np.flatnonzero(self.subset_usages(i, tasks) <= capacity).tolist())
+            reached = _largest(before | share for before in reached for share in known[key])
+        return reached
+
+    def subset_usages(self, i: int, tasks: Sequence[int]) -> Floats:
+        """(2**k,) least usage of robot i for each set of k tasks, bit by bit; inf where it may not do one of them.
+
+        Tasks of one route keep the order of prerequisites; nothing is waited for.
+        """
+        count, ways = len(tasks), self._ways_of(i, tasks)
+        work = self.problem.work_usage(i)[list(tasks)]
+        after = _followers(self.problem, tasks)
+        usage = np.full((1 << count, count), math.inf)  # by tasks done and the last of them
+        for k in range(count):
+            usage[1 << k, k] = ways[0, k + 1] + work[k]
+        for done in range(1, 1 << count):
+            onward = (usage[done][:, None] + ways[1:-1, 1:-1]).min(axis=0) + work
+            for k in range(count):
+                if not done >> k & 1 and not done & after[k]:
+                    usage[done | 1 << k, k] = onward[k]
+        least = np.asarray((usage + ways[1:-1, -1]).min(axis=1, initial=math.inf))
+        least[0] = 0.0
+        return least
+
+    def _ways_of(self, i: int, tasks: Sequence[int]) -> Floats:
+        """(k + 2, k + 2) least travel of robot i between its start, k tasks and its end."""
+        problem = self.problem
+        places = [problem.start(i), *tasks, problem.end(i)]
+        ways = _least_ways(problem, i, places)
+        ways[:, [k for k, j in enumerate(tasks, 1) if not problem.allowed[i, j]]] = math.inf
+        if problem.robots[i].place_at_end(problem.mission.rules) is None:
+            ways[:, -1] = 0.0
+        return ways
+
+    def least_together(self, robots: Sequence[int], tasks: Sequence[int]) -> float:
+        """What robots use at least, together, to do tasks that no other robot does.
+
+        The least work of each task, and the least forest that joins all of them to the robots' starts: routes are one.
+        """
+        if self._near is None or not len(tasks):
+            return 0.0
+        root, near = self._from_start[robots][:, tasks].min(axis=0), self._near[np.ix_(tasks, tasks)]
+        allowed = self.problem.allowed[np.ix_(robots, tasks)]
+        work = np.array([self.problem.work_usage(i)[list(tasks)] for i in robots])
+        forest, _ = spanning_tree(near.__getitem__, root)
+        return forest + float(np.where(allowed, work, math.inf).min(axis=0).sum())
+
+    @cached_property
+    def _near(self) -> Floats | None:
+        """(n, n) the shorter of the two ways between tasks, for the best robot; None where there are many tasks."""
+        problem, count = self.problem, len(self.problem.tasks)
+        if count > _MOST_IN_FOREST or len(problem.shortcuts()) > _MOST_SHORTCUTS:
+            return None
+        near, known = np.full((count, count), math.inf), set[object]()
+        for i, robot in enumerate(problem.robots):
+            speed = robot.speed_mps if problem.in_time else 1.0
+            kind = speed, len(problem.travel[0]) and robot.type, problem.allowed[i, problem.shortcuts()].tobytes()
+            if kind not in known:
+                known.add(kind)
+                near = np.minimum(near, _least_ways(problem, i, range(count)))
+        return np.asarray(np.minimum(near, near.T))
+
+    @cached_property
+    def _from_start(self) -> Floats:
+        """(m, n) least travel from each robot's start to each task."""
+        problem, count = self.problem, len(self.problem.tasks)
+        if not len(problem.shortcuts()):
+            return np.array([problem.legs(i, [problem.start(i)], range(count))[0] for i in range(len(problem.robots))])
+        places = [[problem.start(i), *range(count)] for i in range(len(problem.robots))]
+        return np.array([_least_ways(problem, i, listed)[0, 1:] for i, listed in enumerate(places)])
+
+
+def _least_ways(problem: Problem, i: int, places: Sequence[int]) -> Floats:
+    """(p, p) least travel of robot i between places, ways through other tasks included with the work there."""
+    through = [int(j) for j in problem.shortcuts() if problem.allowed[i, j]]
+    nodes = [*places, *through]
+    ways = problem.legs(i, nodes, nodes)
+    work = problem.work_usage(i)
+    for at, j in enumerate(through, len(places)):
+        ways = np.minimum(ways, ways[:, at, None] + work[j] + ways[None, at])
+    return ways[: len(places), : len(places)].copy()
+
+
+def _followers(problem: Problem, tasks: Sequence[int]) -> list[int]:
+    """For each of few tasks those that must come after it, as bits."""
+    before = [set(closed(problem, [j])) for j in tasks]
+    return [sum(1 << k for k in range(len(tasks)) if tasks[k] != j and j in before[k]) for j in tasks]
+
+
+def _largest(sets: Iterable[int]) -> list[int]:
+    """The sets, as bits, that are in no other."""
+    kept: list[int] = []
+    for one in sorted(set(sets), key=int.bit_count, reverse=True):
+        if all(one & ~other for other in kept):
+            kept.append(one)
+    return kept
