@@ -75,7 +75,6 @@ class Result:
     took_s: float = 0.0
     build_s: float = 0.0
     cpu_s: float = 0.0
-    proven: bool = False
 
     @property
     def rank(self) -> tuple[float, float]:
@@ -157,9 +156,7 @@ def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float
     if not verdict.valid:
         found = verdict.violations[0]
         fault = f"invalid: {found.kind} {found.robot or found.task or ''} {found.detail}"
-    elif (
-        answer.claimed is not None and value is not None and abs(answer.claimed - value) > _ROUNDING * max(1e-9, value)
-    ):
+    elif answer.claimed is not None and abs(answer.claimed - value) > _ROUNDING * max(1e-9, value):
         fault = f"claims {answer.claimed:.6g}, the judge says {value:.6g}"
     return Result(
         run=run,
@@ -171,7 +168,6 @@ def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float
         took_s=took_s,
         build_s=answer.build_s,
         cpu_s=cpu_s,
-        proven=answer.proven,
     )
 
 

@@ -23,14 +23,11 @@ class Answer:
         the objective that the peer itself counts, in metres or seconds.
     build_s
         how long it took to hand over the model; not part of the time limit.
-    proven
-        whether the peer says that there is no better plan.
     """
 
     routes: Routes | None
     claimed: float | None = None
     build_s: float = 0.0
-    proven: bool = False
 
 
 class Peer(Protocol):

@@ -23,7 +23,7 @@ class PyVRP:
 
     name = "PyVRP"
     distribution = "pyvrp"
-    settings = "iterated local search, its defaults"
+    settings = "iterated local search, its defaults; with max the runs of a sweep go on from the best plan"
     random = True
 
     def cannot(self, instance: Instance) -> str | None:
@@ -58,6 +58,7 @@ class _Model:
             key = profile, instance.starts[i], instance.ends[i], instance.capacity[i]
             self._types.setdefault(key, []).append(i)
         self._data = self._make_data()
+        self._best: tuple[int, list[Any]] | None = None  # the value, and the routes as PyVRP has them
 
     def _profile(self, robot: int) -> tuple[int, bytes]:
         """What a robot's table depends on."""
@@ -111,8 +112,34 @@ class _Model:
         data = self._data if cap is None else self._data.replace(vehicle_types=self._vehicle_types(cap))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a cap is hard to keep, which is what a sweep wants to know
-            result = self._pyvrp.solve(data, MaxRuntime(seconds), seed=self._seed, collect_stats=False, display=False)
-        return self._routed(result.best) if result.best.is_feasible() else None
+            result = self._pyvrp.solve(
+                data,
+                MaxRuntime(seconds),
+                seed=self._seed,
+                collect_stats=False,
+                display=False,
+                initial_solution=self._known(data),
+            )
+        if not result.best.is_feasible():
+            return None
+        routed = self._routed(result.best)
+        value = routed.value(self.instance.objective)
+        if self._best is None or value < self._best[0]:
+            self._best = value, result.best.routes()
+        return routed
+
+    def _known(self, data: Any) -> Any:
+        """The best plan so far, which may be above the cap of the data; None where the start had better be random.
+
+        For `max` it is a good start, as caps become tighter and tighter; for total+max it is too close to one cap.
+        """
+        if self._best is None or self.instance.objective != "max":
+            return None
+        routes = [
+            self._pyvrp.Route(data, [step.idx for step in route if step.is_client()], route.vehicle_type())
+            for route in self._best[1]
+        ]
+        return self._pyvrp.Solution(data, routes)
 
     def _routed(self, solution: Any) -> Routed:
         """The routes, those of one type of vehicle given to its robots one after the other."""

@@ -52,8 +52,8 @@ class Peers:
     """`search` against OR-Tools, PyVRP and VROOM at equal time; needs the extra `bench`."""
 
     name = "peers"
-    summary = "search against OR-Tools, PyVRP and VROOM at equal time"
-    tables = (*OBJECTIVES, LARGE)
+    summary = "search against OR-Tools, PyVRP and VROOM at equal time (needs the extra bench)"
+    tables: tuple[str, ...] = (*OBJECTIVES, LARGE)
 
     def __init__(self, seconds: float | None = None, large_seconds: float | None = None) -> None:
         """Take other time limits than usual: of each run, and of a peer's run on a large mission.
@@ -137,7 +137,9 @@ def _legend(found: Mapping[str, str], limits: Limits, seeds: int) -> list[str]:
         "prerequisites, average, or waiting: those cells are empty, and tables are left out. OR-Tools' routing "
         "library has all rules and objectives: total+max as arcs and a global span, max as a global span, average as "
         "soft bounds of 0 on the usage at each task, makespan as the global span of a time with waiting, prerequisites "
-        "as precedences in that time. CP-SAT has all of it too.",
+        "as precedences in that time. CP-SAT has all of it too. Who may do a task (suitability, skills, locks) is told "
+        "to OR-Tools as allowed vehicles, to PyVRP as ways too long to go, to VROOM as skills, to CP-SAT as legs that are "
+        "not there; capacities all have as limits of a route's length.",
     ]
 
 
@@ -193,10 +195,7 @@ def _mean(standing: Standing, notes: Notes) -> Cell:
     if not standing.same_tasks:
         return _worst(standing)
     result = standing.results[0]
-    more = " " + notes.number("The solver says that there is no better plan.") if result.proven else ""
-    if result.tasks < result.tasks_total:
-        more += f" ({result.tasks} tasks)"
-    return f"{standing.mean:.3f}{more}" if more else standing.mean
+    return standing.mean if result.tasks == result.tasks_total else f"{standing.mean:.3f} ({result.tasks} tasks)"
 
 
 def _fault(fault: str, notes: Notes) -> Cell:
