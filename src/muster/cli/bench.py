@@ -57,7 +57,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
 )
 @quiet_option
 @click.pass_context
-def peers(ctx: click.Context, **options: Any) -> int:
+def peers(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with OR-Tools, PyVRP and VROOM.
 
     All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `bench`.

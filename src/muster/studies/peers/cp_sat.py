@@ -11,14 +11,14 @@ import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from muster import core
 from muster.allocation import greedy
 from muster.allocation.bounds import usable_pairs
 from muster.allocation.exact.scale import whole_weights
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.studies.peers.instance import Instance
+from muster.studies.peers.instance import Instance, Routes
 from muster.studies.peers.peer import Answer, missing
+from muster.verification import verify
 
 if TYPE_CHECKING:
     from muster.allocation.exact.program import Program
@@ -40,9 +40,9 @@ class CpSat:
     name = "CP-SAT"
     distribution = "ortools"
     settings = (
-        "OR-Tools' CP-SAT, one circuit a robot, 1 worker, from the plan of greedy, which stands where nothing better is "
-        "found; half the time tree search, half LNS, after a tree search for more tasks where greedy leaves some out; "
-        f"missions of up to {_MOST_TASKS} tasks"
+        "OR-Tools' CP-SAT, one circuit a robot, 1 worker, from the plan of greedy, which stands where nothing better "
+        "is found; half the time tree search, half LNS, after a tree search for more tasks where greedy leaves some "
+        f"out; missions of up to {_MOST_TASKS} tasks"
     )
     random = False
 
@@ -52,13 +52,12 @@ class CpSat:
         return None if _weights(instance.problem) else "no priorities of so many digits"
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
-        run = _Run(instance.problem, seed)
+        run = _Run(instance, seed)
         left = seconds
         if run.count < len(instance.tasks):
             left -= run.complete_more(seconds / 2)
         run.lower_value(left)
-        index = {j: k for k, j in enumerate(instance.tasks)}
-        return Answer([[index[j] for j in route] for route in run.routes], run.claimed, run.build_s)
+        return Answer(run.answer(run.routes), run.claimed, run.build_s)
 
 
 def _weights(problem: Problem) -> list[int]:
@@ -66,15 +65,16 @@ def _weights(problem: Problem) -> list[int]:
 
 
 class _Run:
-    """The best plan so far, and what the program says that it is worth."""
+    """The best plan so far, its tasks counted as the problem's; and what the program says that it is worth."""
 
-    def __init__(self, problem: Problem, seed: int) -> None:
+    def __init__(self, instance: Instance, seed: int) -> None:
         try:
             import ortools.sat.python.cp_model  # noqa: F401
         except ImportError:
             raise missing("CP-SAT") from None
-        self._problem, self._seed, self._weights = problem, seed, _weights(problem)
-        self.routes = greedy.allocate(problem, Stop(), seed, greedy.Parameters(), None).routes
+        self._instance, self._problem, self._seed = instance, instance.problem, seed
+        self._weights = _weights(self._problem)
+        self.routes = greedy.allocate(self._problem, Stop(), seed, greedy.Parameters(), None).routes
         self.claimed: float | None = None
         self.build_s = 0.0
 
@@ -114,12 +114,24 @@ class _Run:
         return Program(self._problem, usable_pairs(self._problem), self._weights)
 
     def _search(self, program: Program, seconds: float, parameters: Mapping[str, Any]) -> float:
-        """Take over the program's plan if it is better; returns the seconds that it took."""
+        """Take over the program's plan if it is better; returns the seconds that it took.
+
+        The program rounds costs down: what is above a capacity in real numbers does not count.
+        """
         begin = time.perf_counter()
         routes = program.solve(seconds, self._seed, 1, parameters).routes
-        if routes is not None and core.Inspection(self._problem.core, routes).admissible:
+        took = time.perf_counter() - begin
+        if routes is not None and self._admissible(routes):
             self.routes = min(self.routes, routes, key=self._rank)
-        return time.perf_counter() - begin
+        return took
+
+    def answer(self, routes: Routes) -> Routes:
+        """Routes with their tasks counted as the instance's."""
+        index = {j: k for k, j in enumerate(self._instance.tasks)}
+        return [[index[j] for j in route] for route in routes]
+
+    def _admissible(self, routes: Routes) -> bool:
+        return verify(self._problem.mission, self._instance.plan(self.answer(routes), CpSat.name)).valid
 
     def _rank(self, routes: list[list[int]]) -> tuple[float, float]:
         weight, value = self._problem.value(routes)

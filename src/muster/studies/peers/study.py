@@ -138,8 +138,8 @@ def _legend(found: Mapping[str, str], limits: Limits, seeds: int) -> list[str]:
         "library has all rules and objectives: total+max as arcs and a global span, max as a global span, average as "
         "soft bounds of 0 on the usage at each task, makespan as the global span of a time with waiting, prerequisites "
         "as precedences in that time. CP-SAT has all of it too. Who may do a task (suitability, skills, locks) is told "
-        "to OR-Tools as allowed vehicles, to PyVRP as ways too long to go, to VROOM as skills, to CP-SAT as legs that are "
-        "not there; capacities all have as limits of a route's length.",
+        "to OR-Tools as allowed vehicles, to PyVRP as ways too long to go, to VROOM as skills, to CP-SAT as legs "
+        "that are not there; capacities all have as limits of a route's length.",
     ]
 
 
