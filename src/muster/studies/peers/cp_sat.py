@@ -56,7 +56,7 @@ class CpSat:
         left = seconds
         if run.count < len(instance.tasks):
             left -= run.complete_more(seconds / 2)
-        run.lower_value(left)
+        run.lower_value(max(0.0, left))
         return Answer(run.answer(run.routes), run.claimed, run.build_s)
 
 
