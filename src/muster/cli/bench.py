@@ -1,28 +1,34 @@
-"""`muster bench`: speed on this machine."""
+"""`muster bench`: speed on this machine; `muster bench peers`: quality against other solvers at equal time."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
+from typing import Any
 
 import click
 
+from muster.cli import study
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 
 
-@click.command()
+@click.group(invoke_without_command=True)
 @click.option("--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, auction-large, start-up.")
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
 @quiet_option
-def command(only: str | None, runs: int, form: str, quiet: bool, verbose: bool) -> None:
+@click.pass_context
+def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: bool, verbose: bool) -> None:
     """Measure speed on this machine: medians over runs, with the range, beside what is aimed at."""
     import json
 
     from muster.cli.tables import print_table
     from muster.studies.bench import BENCHES
 
+    if ctx.invoked_subcommand is not None:
+        return
     names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
     for name in names:
         if name not in BENCHES:
@@ -39,6 +45,24 @@ def command(only: str | None, runs: int, form: str, quiet: bool, verbose: bool) 
         (m.name, _figure(m.median), f"{_figure(m.lowest)} - {_figure(m.highest)}", m.unit, m.aim, m.note) for m in found
     ]
     print_table(("what", "median", "range", "unit", "aim", "note"), rows, right=("median", "range"))
+
+
+@command.command("peers")
+@click.option("--tables", metavar="N,N", help="Only these tables: total+max, total, max, average, makespan, large.")
+@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]")
+@click.option("--quick", is_flag=True, help="Small missions and short time limits, to see that everything works.")
+@format_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
+)
+@quiet_option
+@click.pass_context
+def peers(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with OR-Tools, PyVRP and VROOM.
+
+    All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `bench`.
+    """
+    return int(ctx.invoke(study.command, name="peers", **options))
 
 
 def _figure(value: float) -> str:

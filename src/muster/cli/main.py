@@ -64,7 +64,7 @@ _SUMMARIES = {
     "verify": "Judge a plan from scratch.",
     "explain": "Say why a task is done by this robot, not by that one, or left out.",
     "study": "Repeat a published experiment beside its published numbers.",
-    "bench": "Measure speed on this machine.",
+    "bench": "Measure speed on this machine, or quality against other solvers.",
 }
 
 

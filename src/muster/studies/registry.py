@@ -12,6 +12,7 @@ from muster.studies.allocators import Allocators
 from muster.studies.auction_5 import Auction5
 from muster.studies.effort import Effort
 from muster.studies.market_rescue import MarketRescue
+from muster.studies.peers import Peers
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import Thesis33
 
@@ -29,7 +30,7 @@ class Study(Protocol):
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
 
 
-_IMPLEMENTATIONS: tuple[Study, ...] = (Thesis33(), Auction5(), MarketRescue(), Allocators())
+_IMPLEMENTATIONS: tuple[Study, ...] = (Thesis33(), Auction5(), MarketRescue(), Allocators(), Peers())
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})
 

@@ -9,7 +9,7 @@ value not above its own, so that what the program proves is true of the plans.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -19,6 +19,10 @@ from ortools.sat.python import cp_model
 
 from muster.allocation.exact.costs import Costs, Routes, ancestors, in_time, like_robots
 from muster.allocation.problem import Bools, Problem
+
+# Presolve that drops dominated plans drops the best ones too in OR-Tools 9.15.6755, and makes wrong proofs. A plan to
+# begin with is near the best; what takes time is the proof.
+PROVING: Mapping[str, Any] = {"keep_all_feasible_solutions_in_presolve": True, "use_lns": False}
 
 
 @dataclass(frozen=True)
@@ -172,15 +176,14 @@ class Program:
         """The bound of an objective of which nothing is known."""
         return float(sum(self._weights)) if self._maximises else 0.0
 
-    def solve(self, time_limit: float, seed: int, workers: int) -> Solved:
-        """Run CP-SAT for so many seconds."""
+    def solve(self, time_limit: float, seed: int, workers: int, parameters: Mapping[str, Any] = PROVING) -> Solved:
+        """Run CP-SAT for so many seconds, with more of its parameters by name."""
         solver = cp_model.CpSolver()
         solver.parameters.max_time_in_seconds = time_limit
         solver.parameters.random_seed = seed % 2**31
         solver.parameters.num_workers = workers
-        # Presolve that drops dominated plans drops the best ones too in OR-Tools 9.15.6755, and makes wrong proofs.
-        solver.parameters.keep_all_feasible_solutions_in_presolve = True
-        solver.parameters.use_lns = False  # a plan to begin with is near the best; what takes time is the proof
+        for name, setting in parameters.items():
+            setattr(solver.parameters, name, setting)
         status = solver.solve(self.model)
         if status == cp_model.INFEASIBLE:
             return Solved(None, math.inf)
@@ -211,6 +214,22 @@ class Program:
             self.model.add_hint(does, j in placed[i])
         for i, used in enumerate(self._used):
             self.model.add_hint(used, bool(placed[i]))
+
+    def complete_hint(self) -> float | None:
+        """Add to the hint what follows from its routes, such as times, which CP-SAT does not do in a large program.
+
+        Returns what the objective of the hint is, in units; None if the program has no such plan.
+        """
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = 1
+        solver.parameters.fix_variables_to_their_hinted_value = True
+        if solver.solve(self.model) != cp_model.OPTIMAL:
+            return None
+        values = solver.response_proto.solution
+        self.model.clear_hints()  # type: ignore[no-untyped-call]
+        self.model.proto.solution_hint.vars.extend(range(len(values)))
+        self.model.proto.solution_hint.values.extend(values)
+        return solver.objective_value
 
     def routes(self, solver: cp_model.CpSolver) -> list[list[int]]:
         """The routes of the solver's plan."""
