@@ -107,3 +107,34 @@ def test_undo_brings_everything_back(seed):
     assert (team.routes, team.usages, team.arrivals, sorted(team.absent)) == (routes, usages, arrivals, absent)
     fresh = core.Team(problem.core, routes)
     assert (fresh.usages, fresh.arrivals) == (usages, arrivals)
+
+
+@given(seed=st.integers(0, 10**6))
+def test_the_end_is_put_off_to_that_through_a_task_or_not_at_all(seed):
+    problem, random = compiled(seed, objective="makespan"), Random(seed)
+    team = random_team(problem, random)
+    for j in [j for j in team.absent if all(k not in team.absent for k in problem.prerequisites[j])]:
+        before = team.makespan()
+        for i, (first, last) in enumerate(team.bounds(j)):
+            for at in range(first, last + 1):
+                through = team.end_through(i, j, at)
+                team.commit()
+                team.insert(j, i, at)
+                after = team.makespan()
+                team.rollback()
+                if math.isfinite(after):
+                    assert through - 1e-9 <= after <= max(before, through) + 1e-9
+
+
+@given(seed=st.integers(0, 10**6))
+def test_critical_tasks_wait_for_each_other(seed):
+    problem, random = compiled(seed, objective="makespan"), Random(seed)
+    team = random_team(problem, random)
+    critical = team.critical()
+    assert len(set(critical)) == len(critical)
+    assert bool(critical) is any(team.routes)
+    robot_of = {j: i for i, route in enumerate(team.routes) for j in route}
+    for later, earlier in itertools.pairwise(critical):
+        route = team.routes[robot_of[later]]
+        follows = earlier in route and route.index(later) == route.index(earlier) + 1
+        assert follows or earlier in problem.prerequisites[later]

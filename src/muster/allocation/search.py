@@ -2,8 +2,9 @@
 
 Slack induction by string removals (SISR): Christiaens and Vanden Berghe, Slack Induction by String Removals for Vehicle
 Routing Problems, Transportation Science 54(2), 2020. Beyond it: a task is put back where the team's objective grows
-least, the robot that does most included; many ruins begin at that robot; places are those that no prerequisite
-forbids, through all routes; tasks left out are tried again in every step.
+least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its end
+waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in every
+step.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Parameters:
     threads: int = 1
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
-    hot: float = 5.0
+    hot: float = 0.0  # 0: 1 for the objective `max`, to which most of a change does not matter, else 5
     cold: float = 0.02
     removed: float = 10.0  # tasks that a ruin takes out, on average
     longest_string: int = 10  # of tasks taken out of one route
@@ -58,8 +59,8 @@ class Parameters:
         for name in ("threads", "longest_string", "near"):
             if getattr(self, name) < 1:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
-        if not 0 < self.cold <= self.hot < float("inf"):
-            raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot")
+        if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
+            raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot, or hot 0")
         if not 1 <= self.removed < float("inf"):
             raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1")
         if not 0 <= self.blink < 1:
@@ -93,10 +94,11 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start).routes
     searches = [_search(problem, first, seed + thread, params) for thread in range(params.threads)]
     way = searches[0].mean_way or 1.0
+    hot = max(params.cold, params.hot or (1.0 if problem.objective == "max" else 5.0))
     exchanged, known = 0, None
     with ThreadPoolExecutor(params.threads) as pool:
         for steps in stop.batches(max(20, min(1000, _BATCH // (len(problem.tasks) + len(problem.robots))))):
-            temperature = way * params.hot * (params.cold / params.hot) ** stop.share
+            temperature = way * hot * (params.cold / hot) ** stop.share
             annealing = [pool.submit(search.anneal, steps, temperature, temperature) for search in searches]
             for one in annealing:
                 one.result()

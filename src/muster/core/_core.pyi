@@ -259,6 +259,16 @@ class Team:
     def longer(self, robot: int, task: int, at: int) -> float:
         """Seconds by which the route's last task ends later if nothing waits."""
 
+    def end_through(self, robot: int, task: int, at: int) -> float:
+        """
+        Seconds after which the mission ends, as far as it waits for the task, put at a place.
+        """
+
+    def critical(self) -> list[int]:
+        """
+        The tasks that the end of the mission waits for one after the other, the last first.
+        """
+
     def bounds(self, task: int) -> list[tuple[int, int]]:
         """
         For each robot the first and last place where the task deadlocks nothing, all its prerequisites present.

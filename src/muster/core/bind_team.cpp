@@ -40,6 +40,16 @@ class CheckedTeam : public Team {
     check(robot, absent_task(task), at);
     return longer(robot, task, at);
   }
+  double end_through_at(int robot, int task, int at) {
+    check(robot, absent_task(task), at);
+    makespan();
+    measure_tails();
+    return end_through(robot, task, at);
+  }
+  std::vector<int> critical_tasks() {
+    makespan();
+    return critical();
+  }
   std::vector<std::pair<int, int>> bounds(int task) {
     bound(absent_task(task));
     std::vector<std::pair<int, int>> places;
@@ -82,6 +92,10 @@ void bind_team(nb::module_& m) {
            "What a task adds to the sum of usages on arrival.")
       .def("longer", &CheckedTeam::longer_at, "robot"_a, "task"_a, "at"_a,
            "Seconds by which the route's last task ends later if nothing waits.")
+      .def("end_through", &CheckedTeam::end_through_at, "robot"_a, "task"_a, "at"_a,
+           "Seconds after which the mission ends, as far as it waits for the task, put at a place.")
+      .def("critical", &CheckedTeam::critical_tasks,
+           "The tasks that the end of the mission waits for one after the other, the last first.")
       .def("bounds", &CheckedTeam::bounds, "task"_a,
            "For each robot the first and last place where the task deadlocks nothing, all its prerequisites present.")
       .def("commit", &CheckedTeam::commit, "Keep all changes.")

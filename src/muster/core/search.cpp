@@ -13,7 +13,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kSplit = 0.5;        // strings that leave a part in between where it is
 constexpr double kLongerGap = 0.01;   // how often that part is longer by one
-constexpr double kTie = 1e-3;         // weight of the route's own growth where the objective does not see it
+constexpr double kTie = 1e-2;         // weight of the route's own growth where the objective does not see it
 constexpr int kAdjacent = 100;        // tasks that a ruin may spread to
 constexpr int kNearRobots = 4;        // robots whose starts are tried for a task, in large teams
 constexpr int kMostEverywhere = 400;  // tasks and robots, up to which a task is tried at every place
@@ -45,6 +45,7 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
       random_(seed),
       neighbours_(problem, kAdjacent, kNearRobots),
       everywhere_(problem.tasks() + problem.robots() <= kMostEverywhere),
+      sees_waiting_(everywhere_ && problem.objective() == Objective::makespan && problem.has_prerequisites()),
       penalty_(0.0),
       team_(problem, start),
       ruined_(problem.robots(), 0) {
@@ -118,10 +119,19 @@ int Search::seed_task() {
   if (!absent.empty() && random_.uniform() < 0.5) return absent[random_.below(static_cast<int>(absent.size()))];
   const bool sees_greatest = problem_.objective() != Objective::total && problem_.objective() != Objective::average;
   if (sees_greatest && random_.uniform() < settings_.greatest_share) {
-    const auto& route = team_.route(greatest());
-    if (!route.empty()) return route[random_.below(static_cast<int>(route.size()))];
+    const int task = sees_waiting_ ? any_critical() : any_of(team_.route(greatest()));
+    if (task != Team::kAbsent) return task;
   }
   return random_.below(problem_.tasks());
+}
+
+int Search::any_of(const std::vector<int>& tasks) {
+  return tasks.empty() ? Team::kAbsent : tasks[random_.below(static_cast<int>(tasks.size()))];
+}
+
+int Search::any_critical() {
+  team_.makespan();
+  return any_of(team_.critical());
 }
 
 // Takes `length` tasks around a task out of its route, in one string, or in one with a gap.
@@ -154,7 +164,7 @@ void Search::recreate() {
     for (int k = 0; k < kRetried; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
   }
   order_pending();
-  peak_ = load(greatest());
+  peak_ = peak();
   const auto ready = [&](int task) {
     return std::ranges::all_of(problem_.prerequisites(task), [&](int before) { return team_.present(before); });
   };
@@ -204,18 +214,19 @@ bool Search::insert(int task) {
       if (++tried == settings_.near) break;
     }
     for (const int robot : neighbours_.robots(task)) try_place(robot, task, 0);
+    if (raises_greatest()) try_idlest(task);
   }
   if (place_.robot == Team::kAbsent) return false;
   team_.insert(task, place_.robot, place_.at);
-  peak_ = std::max(peak_, load(place_.robot));
+  peak_ = sees_waiting_ ? peak() : std::max(peak_, load(place_.robot));
   return true;
 }
 
-// The place where the route grows least; scores never fall with growth but for `average`, which sees every place.
+// The place where the route grows least; scores never fall with growth but for `average`, and where tasks wait.
 void Search::try_route(int robot, int task) {
   const auto& route = team_.route(robot);
   const int first = team_.earliest(robot), last = team_.latest(robot), size = static_cast<int>(route.size());
-  const bool every_place = problem_.objective() == Objective::average;
+  const bool every_place = problem_.objective() == Objective::average || sees_waiting_;
   const double work = problem_.work_usage(robot, task);
   double least = kNever;
   int best = -1;
@@ -250,6 +261,27 @@ void Search::propose(int robot, int task, int at, double growth) {
   }
 }
 
+// Whether the best place found makes the robot that does most do more, where nothing else counts.
+bool Search::raises_greatest() const {
+  if (problem_.objective() != Objective::max) return false;
+  return place_.robot == Team::kAbsent || team_.cost(place_.robot).usage + place_.growth > peak_;
+}
+
+// The routes of the robots that do least, at every place: where all near ones are full, they may be far away.
+void Search::try_idlest(int task) {
+  int least = Team::kAbsent, second = Team::kAbsent;
+  const auto idler = [&](int robot, int other) { return other == Team::kAbsent || load(robot) < load(other); };
+  for (const int robot : problem_.robots_allowed(task)) {
+    if (idler(robot, least)) {
+      second = std::exchange(least, robot);
+    } else if (idler(robot, second)) {
+      second = robot;
+    }
+  }
+  if (least != Team::kAbsent) try_route(least, task);
+  if (second != Team::kAbsent) try_route(second, task);
+}
+
 // What the objective grows by.
 double Search::score(int robot, int task, int at, double growth) const {
   switch (problem_.objective()) {
@@ -263,6 +295,7 @@ double Search::score(int robot, int task, int at, double growth) const {
       return team_.later_arrivals(robot, task, at, growth);
     case Objective::makespan: {
       const double longer = team_.longer(robot, task, at);
+      if (sees_waiting_) return kTie * longer + std::max(0.0, team_.end_through(robot, task, at) - peak_);
       return kTie * longer + std::max(0.0, team_.cost(robot).done + longer - peak_);
     }
   }
@@ -280,6 +313,14 @@ void Search::drop_orphans() {
       gone.push_back(dependant);
     }
   }
+}
+
+// What the robots that do most come to; where tasks wait, when the mission ends.
+double Search::peak() {
+  if (!sees_waiting_) return load(greatest());
+  const double end = team_.makespan();
+  team_.measure_tails();
+  return end;
 }
 
 double Search::load(int robot) const {

@@ -18,7 +18,8 @@ Team::Team(const Problem& problem, const Routes& routes)
       latest_(problem.robots(), 0),
       task_stamp_(problem.tasks(), 0),
       waiting_(problem.tasks(), 0),
-      ends_(problem.tasks(), 0.0) {
+      ends_(problem.tasks(), 0.0),
+      tails_(problem.tasks(), 0.0) {
   begin(routes);
 }
 
@@ -245,6 +246,57 @@ double Team::makespan() {
     }
   }
   return latest;
+}
+
+void Team::measure_tails() {
+  for (auto each = queue_.rbegin(); each != queue_.rend(); ++each) {
+    const int task = *each, robot = robot_of_[task], at = at_[task];
+    const auto& route = routes_[robot];
+    double after = 0.0;
+    if (at + 1 < static_cast<int>(route.size())) {
+      after = problem_.travel_time(robot, task, route[at + 1]) + tails_[route[at + 1]];
+    }
+    for (const int waiting : problem_.dependants(task)) {
+      if (present(waiting)) after = std::max(after, tails_[waiting]);
+    }
+    tails_[task] = problem_.work_time(robot, task) + after;
+  }
+}
+
+double Team::end_through(int robot, int task, int at) const {
+  const auto& route = routes_[robot];
+  const int from = at ? route[at - 1] : problem_.start(robot);
+  double begin = (at ? ends_[from] : problem_.available_from(robot)) + problem_.travel_time(robot, from, task);
+  for (const int before : problem_.prerequisites(task)) {
+    if (present(before)) begin = std::max(begin, ends_[before]);
+  }
+  double after = 0.0;
+  if (at < static_cast<int>(route.size())) after = problem_.travel_time(robot, task, route[at]) + tails_[route[at]];
+  for (const int waiting : problem_.dependants(task)) {
+    if (present(waiting)) after = std::max(after, tails_[waiting]);
+  }
+  return begin + problem_.work_time(robot, task) + after;
+}
+
+std::vector<int> Team::critical() const {
+  std::vector<int> path;
+  if (queue_.empty()) return path;
+  int task = *std::ranges::max_element(queue_, {}, [&](int each) { return ends_[each]; });
+  while (task != kAbsent) {
+    path.push_back(task);
+    const int robot = robot_of_[task], at = at_[task];
+    int latest = at ? routes_[robot][at - 1] : kAbsent;
+    double begin = latest == kAbsent
+                       ? problem_.available_from(robot) + problem_.travel_time(robot, problem_.start(robot), task)
+                       : ends_[latest] + problem_.travel_time(robot, latest, task);
+    for (const int before : problem_.prerequisites(task)) {
+      if (!present(before) || ends_[before] <= begin) continue;
+      begin = ends_[before];
+      latest = before;
+    }
+    task = latest;
+  }
+  return path;
 }
 
 }  // namespace muster

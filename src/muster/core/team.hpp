@@ -67,8 +67,14 @@ class Team {
   int latest(int robot) const {
     return stamp_of_[robot] == stamp_ ? latest_[robot] : static_cast<int>(routes_[robot].size());
   }
-  // The time at which the last task ends, waiting included.
+  // The time at which the last task ends, waiting included; works out when each task ends.
   double makespan();
+  // Since `makespan`: works out how long each task holds up the end of the mission.
+  void measure_tails();
+  // Since both: when the mission ends, as far as it waits for `task`, put at a place.
+  double end_through(int robot, int task, int at) const;
+  // Since `makespan`: the tasks that its end waited for one after the other, the last first.
+  std::vector<int> critical() const;
 
   void commit() { saved_count_ = 0; }
   void rollback();
@@ -109,9 +115,9 @@ class Team {
   // Of `bound`.
   int stamp_ = 0;
   std::vector<int> stamp_of_, earliest_, latest_, task_stamp_, stack_;
-  // Of `makespan`.
+  // Of `makespan` and `measure_tails`.
   std::vector<int> waiting_, queue_;
-  std::vector<double> ends_;
+  std::vector<double> ends_, tails_;  // tails: from the begin of a task to the end of all that waits for it
 };
 
 }  // namespace muster
