@@ -15,7 +15,9 @@ from muster.mission.hints import did_you_mean
 
 
 @click.group(invoke_without_command=True)
-@click.option("--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, auction-large, start-up.")
+@click.option(
+    "--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up."
+)
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
 @quiet_option
@@ -66,4 +68,4 @@ def peers(ctx: click.Context, /, **options: Any) -> int:
 
 
 def _figure(value: float) -> str:
-    return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}"
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}" if abs(value) >= 1e-3 else "0"

@@ -18,6 +18,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
+from muster.studies.search_quality import CASES, Quality, quality
 
 
 @dataclass(frozen=True)
@@ -148,6 +149,18 @@ def large_once(allocator: str, tasks: int, robots: int) -> tuple[float, float, f
     return seconds, megabytes, value
 
 
+def search_quality(runs: int) -> list[Measurement]:
+    """The search on missions whose best plans are known; a seed a run."""
+    return [_above_best(quality(case, runs)) for case in CASES]
+
+
+def _above_best(found: Quality) -> Measurement:
+    note = (
+        f"median {found.median:.4f}, best known {found.case.best:.4f}, reached by {found.reached} of {len(found.gaps)}"
+    )
+    return _over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)
+
+
 def start_up(runs: int) -> list[Measurement]:
     """Whole processes: `import muster` and `muster --help`, with what Python itself takes."""
     commands = (
@@ -169,5 +182,6 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "genetic": genetic_iterations,
     "greedy-large": greedy_large,
     "auction-large": auction_large,
+    "search": search_quality,
     "start-up": start_up,
 }
