@@ -69,7 +69,7 @@ def test_a_renamed_file_and_a_plan_that_names_no_mission(verb, plan, muster):
 
 
 def test_verbose_says_why_a_bound_holds(muster):
-    args = ("solve", "eil51-7", "--objective", "max", "--iterations", 20, "--bound")
+    args = ("solve", "eil51-5", "--objective", "max", "--iterations", 20, "--bound")
     code, out, err = muster(*args, "-v")
     assert code == 0
     assert "lower bound       112.07 m  (gap " in out
