@@ -17,7 +17,7 @@ OBJECTIVES = ("total", "max", "total+max")
 RUNS = 8
 """The time limit is split over so many runs; a solver that ends by itself has as many more as fit."""
 _GRID = 4
-"""Caps tried first, in equal ratios, as a run without a cap may have routes ten times too long; then beside the best."""
+"""Caps tried first, in equal ratios: a run without a cap may have routes ten times too long; then beside the best."""
 _CLOSE = 1e-4
 
 
