@@ -98,7 +98,7 @@ class _Caps:
         self._halving = objective == "max"
         self._known = [low, first.greatest]
         ratio = (max(1, low) / max(1, first.greatest)) ** (1 / (_GRID + 1))
-        self._grid = [] if self._halving else [round(first.greatest * ratio**k) for k in range(1, _GRID + 1)]
+        self._grid: list[int] = [] if self._halving else [round(first.greatest * ratio**k) for k in range(1, _GRID + 1)]
 
     def next(self) -> int | None:
         """A cap; None where all that are left are close to known ones."""
