@@ -223,6 +223,7 @@ class Program:
         solver = cp_model.CpSolver()
         solver.parameters.num_workers = 1
         solver.parameters.fix_variables_to_their_hinted_value = True
+        solver.parameters.catch_sigint_signal = False  # CP-SAT would leave Ctrl-C without its handler in Python
         if solver.solve(self.model) != cp_model.OPTIMAL:
             return None
         values = solver.response_proto.solution

@@ -28,9 +28,7 @@ class _Attempt:
 _ATTEMPTS = (_Attempt("PATH_CHEAPEST_ARC", 100), _Attempt("PARALLEL_CHEAPEST_INSERTION", 10))
 """Neither is better throughout: each has half the time, and the better result counts."""
 _LARGE = 200
-"""With more tasks the insertion is far better, and has all the time; it looks at the neighbours of a task alone."""
-_NEIGHBOURS = 0.02
-"""Of all tasks. Without that the insertion has no plan of 5,000 tasks after twice the minute it is given."""
+"""With more tasks the insertion is far better, and has all the time."""
 _USAGE, _TIME = "usage", "time"
 
 
@@ -41,7 +39,7 @@ class Routing:
     distribution = "ortools"
     settings = (
         "routing library; path cheapest arc and parallel cheapest insertion, half the time each (the latter alone "
-        f"above {_LARGE} tasks, among near neighbours), then guided local search"
+        f"above {_LARGE} tasks), then guided local search"
     )
     random = False
 
@@ -165,11 +163,6 @@ class _Model:
 
         parameters = pywrapcp.DefaultRoutingSearchParameters()
         parameters.first_solution_strategy = FirstSolutionStrategy.Value.Value(self._attempt.first)
-        if len(self.instance.tasks) > _LARGE:
-            insertion = parameters.global_cheapest_insertion_first_solution_parameters
-            insertion.neighbors_ratio = _NEIGHBOURS
-            insertion.min_neighbors = 10
-            insertion.use_neighbors_ratio_for_initialization = True
         parameters.local_search_metaheuristic = LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
         parameters.time_limit.FromMilliseconds(max(1, round(1000 * seconds)))
         solution = self._model.SolveWithParameters(parameters)

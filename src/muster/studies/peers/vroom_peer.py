@@ -12,7 +12,9 @@ from muster.studies.peers.instance import Instance
 from muster.studies.peers.peer import Answer, missing
 from muster.studies.peers.sweep import OBJECTIVES, Routed, swept
 
-_EXPLORATION = 5
+_EXPLORATION, _FAST_EXPLORATION = 5, 0
+_LARGE = 200
+"""With more tasks the least exploration level has the better plans within a minute."""
 _MOST_PRIORITY = 100
 _MOST_TASKS = 2000
 _MOST_COST = 2**31
@@ -20,11 +22,11 @@ _MOST_COST = 2**31
 
 
 class Vroom:
-    """VROOM at its highest exploration level; it ends by itself, often long before the time limit."""
+    """VROOM at its highest exploration level where there is time for it; it often ends long before the limit."""
 
     name = "VROOM"
     distribution = "pyvroom"
-    settings = f"exploration level {_EXPLORATION}, 1 thread"
+    settings = f"exploration level {_EXPLORATION}, {_FAST_EXPLORATION} above {_LARGE} tasks; 1 thread"
     random = False
 
     def cannot(self, instance: Instance) -> str | None:
@@ -92,7 +94,8 @@ class _Model:
         """One run under a cap."""
         question = self._input(cap)
         limit = timedelta(seconds=max(0.001, seconds))
-        solution = question.solve(exploration_level=_EXPLORATION, nb_threads=1, timeout=limit)
+        level = _EXPLORATION if len(self.instance.tasks) <= _LARGE else _FAST_EXPLORATION
+        solution = question.solve(exploration_level=level, nb_threads=1, timeout=limit)
         routes: list[list[int]] = [[] for _ in range(self.instance.robot_count)]
         lengths = [0] * self.instance.robot_count
         for route in solution.to_dict()["routes"]:
