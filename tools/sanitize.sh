@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
-# and runs the tests that exercise it. The first report of a sanitizer ends the run with an error.
+# and runs the tests that exercise it; those of the Ray cluster, which is not installed there, are skipped. The first
+# report of a sanitizer ends the run with an error.
 set -eu
 python=${PYTHON:-python3}
 environment=build/sanitized
@@ -17,4 +18,4 @@ fi
 LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.so) $(g++ -print-file-name=libstdc++.so)" \
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
-    "$environment/bin/python" -m pytest -p no:cacheprovider tests/core/test_core.py tests/allocation tests/conformance
+    "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance

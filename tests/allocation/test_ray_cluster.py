@@ -8,8 +8,6 @@ import threading
 from dataclasses import replace
 
 import pytest
-import ray
-from ray.cluster_utils import Cluster
 
 import muster
 from muster.allocation import greedy
@@ -24,6 +22,9 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.plan import read_plan
 from muster.mission.yaml_writer import yaml_text
 from muster.studies.bench import large_mission
+
+ray = pytest.importorskip("ray", reason="needs the extra ray")
+from ray.cluster_utils import Cluster  # noqa: E402
 
 # One cluster for all, so one worker of xdist for all. What Ray leaves open in this process is Ray's affair.
 pytestmark = [pytest.mark.xdist_group("ray"), pytest.mark.filterwarnings("ignore")]
