@@ -1,0 +1,1 @@
+"""How a robot moves: maps, paths, smoothing, velocity profiles, collision avoidance, kinematics, frames."""
