@@ -64,7 +64,7 @@ class AllPlans:
 
 
 def best_plan(problem):
-    """(weight, objective, routes) of the best of all admissible plans; complete plans are all looked at."""
+    """(weight, objective, routes) of the best of all admissible plans that begin as the problem wants it."""
     tasks, robots = range(len(problem.tasks)), range(len(problem.robots))
 
     def plans(left, i):
@@ -74,6 +74,8 @@ def best_plan(problem):
         mine = [j for j in left if problem.allowed[i, j]]
         for size in range(len(mine) + 1):
             for route in permutations(mine, size):
+                if tuple(route[: len(problem.beginning(i))]) != problem.beginning(i):
+                    continue
                 for others in plans([j for j in left if j not in route], i + 1):
                     yield [list(route), *others]
 

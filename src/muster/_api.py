@@ -99,6 +99,7 @@ def solve(
     objective: str | None = None,
     ignore: Collection[str] = (),
     start: Plan | None = None,
+    fixed: Plan | None = None,
     bound: str | None = None,
     **parameters: Any,
 ) -> Plan:
@@ -117,6 +118,8 @@ def solve(
         rules that do not hold: prerequisites, suitability, skills, capacity.
     start
         a plan to go on from.
+    fixed
+        a plan whose routes the routes begin with, for planning anew under way; `search` and `greedy` alone.
     bound
         `quick` or `exact`: prove how good the plan is, as its `lower_bound`.
     parameters
@@ -127,6 +130,7 @@ def solve(
     ParameterError, NotSupportedError
     """
     from muster.allocation.allocator import make_parameters
+    from muster.allocation.fixed import keeping
     from muster.allocation.problem import Problem
     from muster.allocation.proofs import prove, require_provable
     from muster.allocation.registry import allocator_named
@@ -136,7 +140,8 @@ def solve(
     ignore = (ignore,) if isinstance(ignore, str) else ignore
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
-    problem = Problem.compile(mission, objective, ignore).ready()
+    problem = Problem.compile(mission, objective, ignore)
+    problem = (problem if fixed is None else keeping(problem, fixed)).ready()
     if bound is not None:
         require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)

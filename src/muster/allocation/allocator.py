@@ -39,7 +39,8 @@ class Allocator:
     """An algorithm that turns a problem into a plan.
 
     `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
-    itself when made and has the published defaults. `auctions` tells whether its plans have a book.
+    itself when made and has the published defaults. `auctions` tells whether its plans have a book; `keeps_fixed`,
+    whether it leaves tasks where they are that are to stay.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Allocator:
     parameters: type[Any]
     algorithm: Algorithm
     auctions: bool = False
+    keeps_fixed: bool = False
 
     def solve(
         self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
@@ -57,17 +59,32 @@ class Allocator:
         Raises
         ------
         ParameterError
-            if `start` is not an admissible plan of this problem, or the seed is out of range.
+            if `start` is not an admissible plan of this problem or moves tasks that are to stay, the seed is out of
+            range, or the problem has tasks that are to stay and the allocator would move them.
         """
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
-        routes = None if start is None else admissible_routes(problem, start)
+        if problem.fixed and not self.keeps_fixed:
+            raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search or greedy")
+        routes = _first_routes(problem, start)
         outcome = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
         return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
 
 
-def routes_of(problem: Problem, plan: Plan) -> Routes:
-    """A plan's routes as indices of the problem's robots and tasks.
+def _first_routes(problem: Problem, start: Plan | None) -> Routes | None:
+    beginnings = [list(route) for route in problem.fixed]
+    if start is None:
+        return beginnings or None
+    routes = admissible_routes(problem, start)
+    for i, (beginning, route) in enumerate(zip(beginnings, routes, strict=False)):
+        if route[: len(beginning)] != beginning:
+            fixed = ", ".join(problem.tasks[j].id for j in beginning)
+            raise ParameterError(f"start: robot {problem.robots[i].id} does not begin with the fixed tasks {fixed}")
+    return routes
+
+
+def routes_of(problem: Problem, plan: Plan, what: str = "start") -> Routes:
+    """A plan's routes as indices of the problem's robots and tasks; `what` it is, for the error.
 
     Raises
     ------
@@ -77,29 +94,29 @@ def routes_of(problem: Problem, plan: Plan) -> Routes:
     routes: Routes = [[] for _ in problem.robots]
     for route in plan.routes:
         if route.robot not in problem.robot_index:
-            raise ParameterError(f"start: robot {route.robot} is not in the mission")
+            raise ParameterError(f"{what}: robot {route.robot} is not in the mission")
         if routes[problem.robot_index[route.robot]]:
-            raise ParameterError(f"start: robot {route.robot} has two routes")
+            raise ParameterError(f"{what}: robot {route.robot} has two routes")
         for task in route.tasks:
             if task not in problem.task_index:
-                raise ParameterError(f"start: task {task} is not in the mission")
+                raise ParameterError(f"{what}: task {task} is not in the mission")
             routes[problem.robot_index[route.robot]].append(problem.task_index[task])
     return routes
 
 
-def admissible_routes(problem: Problem, plan: Plan) -> Routes:
-    """The routes of a start plan.
+def admissible_routes(problem: Problem, plan: Plan, what: str = "start") -> Routes:
+    """The routes of a plan to begin with; `what` it is, for the error.
 
     Raises
     ------
     ParameterError
         if they are not admissible.
     """
-    routes = routes_of(problem, plan)
+    routes = routes_of(problem, plan, what)
     try:
         inspection = core.Inspection(problem.core, routes)
     except ValueError as error:
-        raise ParameterError(f"start: {error}") from None
+        raise ParameterError(f"{what}: {error}") from None
     forbidden = [
         f"{problem.robots[i].id} may not do {problem.tasks[j].id}"
         for i, route in enumerate(routes)
@@ -107,7 +124,7 @@ def admissible_routes(problem: Problem, plan: Plan) -> Routes:
         if not problem.may(i, j)
     ]
     if forbidden or not inspection.admissible:
-        raise ParameterError(f"start: {forbidden[0] if forbidden else 'the plan is not admissible'}")
+        raise ParameterError(f"{what}: {forbidden[0] if forbidden else 'the plan is not admissible'}")
     return routes
 
 

@@ -39,4 +39,5 @@ GREEDY = Allocator(
     anytime=False,
     parameters=Parameters,
     algorithm=allocate,
+    keeps_fixed=True,
 )

@@ -40,6 +40,8 @@ class Problem:
     ignored
         rules that do not hold, of IGNORABLE.
 
+    Robots may have tasks that stay where they are, at the beginning of their routes: see `fixed.keeping`.
+
     Raises
     ------
     ParameterError
@@ -53,6 +55,7 @@ class Problem:
     ignored: tuple[str, ...]
     robots: tuple[Robot, ...]
     tasks: tuple[Task, ...]
+    fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
@@ -82,7 +85,9 @@ class Problem:
         Of the mission it has what these need and no more (see `cut_down`).
         """
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
-        return replace(self, mission=cut_down(self.mission, own, work), robots=own, tasks=work)
+        number_in = {j: k for k, j in enumerate(tasks)}
+        fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
+        return replace(self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed)
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: what is made of them is made anew where the problem arrives."""
@@ -130,6 +135,10 @@ class Problem:
             for k in before:
                 waiting[k].append(j)
         return waiting
+
+    def beginning(self, i: int) -> tuple[int, ...]:
+        """The tasks that robot i's route begins with, whatever follows."""
+        return self.fixed[i] if self.fixed else ()
 
     def may(self, i: int, j: int) -> bool:
         """Whether robot i may do task j: skills, suitability, locks."""
@@ -204,6 +213,7 @@ class Problem:
             efficiency=_floats(r.efficiency for r in self.robots),
             available_from=_floats(r.available_from_s for r in self.robots),
             must_end=np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_),
+            fixed=np.array([len(self.beginning(i)) for i in range(len(self.robots))], dtype=np.int32),
             actuation_cost=self._actuation_cost,
             duration=self._duration,
             priority=_floats(t.priority for t in self.tasks),

@@ -150,4 +150,5 @@ SEARCH = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=allocate,
+    keeps_fixed=True,
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -27,6 +26,7 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
+from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, read_plan
@@ -81,6 +81,9 @@ _FILE = click.Path(path_type=Path)
 @click.option("--winner", type=click.Choice(WINNERS), help="Which bid wins.  [default: lowest]")
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A parameter of the allocator.")
 @click.option("--start", type=_FILE, metavar="PLAN", help="A plan to go on from.")
+@click.option(
+    "--fixed", type=_FILE, metavar="PLAN", help="A plan whose routes stay, as the beginnings of the new ones."
+)
 @require_complete_option
 @format_option
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
@@ -108,6 +111,7 @@ def command(
     winner: str | None,
     settings: tuple[str, ...],
     start: Path | None,
+    fixed: Path | None,
     require_complete: bool,
     form: str,
     output: Path | None,
@@ -122,15 +126,16 @@ def command(
     Every plan is judged by `verify` before it is shown. Ctrl-C ends the search; the best plan so far is kept.
     """
     from muster.allocation.allocator import make_parameters
+    from muster.allocation.fixed import keeping
     from muster.allocation.problem import Problem
     from muster.allocation.proofs import prove, require_provable
     from muster.allocation.registry import allocator_named
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
-    _require_writable(output, (book, plot, gantt), (mission, robots, suitability), start)
-    _require_csv(book)
-    _require_drawable(plot, gantt)
+    require_writable(output, (book, plot, gantt), (mission, robots, suitability), (start, fixed))
+    require_csv(book)
+    require_drawable(plot, gantt)
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
     chosen = allocator_named(allocator)
@@ -143,7 +148,8 @@ def command(
     params = make_parameters(chosen, terms | others)
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
-    problem = Problem.compile(loaded, objective, ignore).ready()
+    problem = Problem.compile(loaded, objective, ignore)
+    problem = (problem if fixed is None else keeping(problem, read_plan(fixed))).ready()
     if bound is not None:
         require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
@@ -240,41 +246,6 @@ def _write_book(plan: Plan, file: Path, quiet: bool) -> bool:
         click.echo(f"interrupted: {file} does not hold all bids", err=True)
         return False
     return True
-
-
-def _require_csv(book: Path | None) -> None:
-    if book is not None and book.suffix.lower() != ".csv":
-        raise ParameterError(f"--book: {book}; expected a file that ends in .csv")
-
-
-def _require_writable(
-    plan: Path | None, others: tuple[Path | None, ...], inputs: tuple[str | Path | None, ...], start: Path | None
-) -> None:
-    """Find out before a long search, not after it, that its result cannot be written or would replace something.
-
-    The plan may replace the start plan.
-    """
-    taken = {Path(name).resolve() for name in inputs if name is not None and Path(name).is_file()}
-    for file, not_onto in ((plan, None), *((other, start) for other in others)):
-        if file is None:
-            continue
-        if file.resolve() in taken or (not_onto is not None and file.resolve() == not_onto.resolve()):
-            raise ParameterError(f"{file}: given twice; expected a file that is neither read nor written otherwise")
-        taken.add(file.resolve())
-        if file.is_dir() or not file.parent.is_dir():
-            raise ParameterError(f"{file}: cannot be written; expected a file in a folder that exists")
-        if not os.access(file if file.exists() else file.parent, os.W_OK):
-            raise ParameterError(f"{file}: cannot be written; expected a place with permission to write")
-
-
-def _require_drawable(*files: Path | None) -> None:
-    from muster.report.canvas import require_matplotlib
-    from muster.report.files import check_suffix
-
-    for file in files:
-        if file is not None:
-            check_suffix(file)
-            require_matplotlib()
 
 
 @contextmanager

@@ -37,7 +37,7 @@ std::vector<Insertion> Inspection::insertions(int robot, int task) const {
   double usage = 0.0;
   for (int at = 0; at <= allowed.latest; ++at) {
     const int before = at ? route[at - 1] : problem_.start(robot);
-    if (at >= allowed.earliest) {
+    if (at >= std::max(allowed.earliest, problem_.fixed(robot))) {
       const double then =
           at < length ? problem_.on_to(robot, rest[at], task, route[at]) : problem_.end_usage(robot, task);
       places.push_back({at, problem_.on_to(robot, usage, before, task) + then});

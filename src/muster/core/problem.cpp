@@ -43,8 +43,10 @@ Problem::Problem(ProblemData data)
   const auto places = static_cast<std::size_t>(places_);
   require(robots > 0, "a problem needs a robot");
   require(data_.speed.size() == robots && data_.efficiency.size() == robots && data_.available_from.size() == robots &&
-              data_.must_end.size() == robots,
+              data_.must_end.size() == robots && data_.fixed.size() == robots,
           "arrays of robots differ in length");
+  require(std::ranges::all_of(data_.fixed, [](int count) { return count >= 0; }),
+          "a number of fixed tasks is negative");
   require(data_.duration.size() == tasks && data_.priority.size() == tasks && data_.kind.size() == robots,
           "arrays of tasks differ in length");
   require(std::ranges::all_of(data_.kind, [](int k) { return k >= 0; }), "a kind is negative");

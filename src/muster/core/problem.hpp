@@ -31,6 +31,7 @@ struct ProblemData {
   std::vector<double> efficiency;
   std::vector<double> available_from;
   std::vector<char> must_end;  // the route goes on to the robot's end
+  std::vector<int> fixed;      // tasks at the beginning of the route that stay where they are
   // Tasks.
   std::vector<double> actuation_cost;
   std::vector<double> duration;  // NaN: not given
@@ -70,6 +71,8 @@ class Problem {
   double available_from(int robot) const { return data_.available_from[robot]; }
   double priority(int task) const { return data_.priority[task]; }
   bool must_end(int robot) const { return data_.must_end[robot] != 0; }
+  // How many tasks at the beginning of the robot's route stay: the first place where another may go.
+  int fixed(int robot) const { return data_.fixed[robot]; }
 
   int start(int robot) const { return tasks_ + robot; }
   int end(int robot) const { return tasks_ + robots_ + robot; }

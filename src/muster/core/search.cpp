@@ -99,7 +99,7 @@ void Search::ruin() {
   std::vector<int> ruined;
   const auto visit = [&](int task) {
     const int robot = team_.robot_of(task);
-    if (robot == Team::kAbsent || ruined_[robot]) return;
+    if (robot == Team::kAbsent || ruined_[robot] || team_.fixed(task)) return;
     const double most = std::min<double>(longest, static_cast<double>(team_.route(robot).size()));
     take_string(task, static_cast<int>(1.0 + random_.uniform() * most));
     ruined_[robot] = 1;
@@ -134,17 +134,18 @@ int Search::any_critical() {
   return any_of(team_.critical());
 }
 
-// Takes `length` tasks around a task out of its route, in one string, or in one with a gap.
+// Takes `length` tasks around a task out of its route, or all that may go, in one string, or in one with a gap.
 void Search::take_string(int task, int length) {
-  const int robot = team_.robot_of(task), at = team_.at(task);
-  const int size = static_cast<int>(team_.route(robot).size());
+  const int robot = team_.robot_of(task), at = team_.at(task), from = problem_.fixed(robot);
+  const int size = static_cast<int>(team_.route(robot).size()), loose = size - from;
+  length = std::min(length, loose);
   int gap = 0;
-  if (length < size && length > 1 && random_.uniform() < kSplit) {
+  if (length < loose && length > 1 && random_.uniform() < kSplit) {
     gap = 1;
-    while (length + gap < size && random_.uniform() < kLongerGap) ++gap;
+    while (length + gap < loose && random_.uniform() < kLongerGap) ++gap;
   }
   const int span = length + gap;
-  const int first_least = std::max(0, at - span + 1), first_most = std::min(at, size - span);
+  const int first_least = std::max(from, at - span + 1), first_most = std::min(at, size - span);
   const int first = first_least + random_.below(first_most - first_least + 1);
   const int gap_at = gap ? first + 1 + random_.below(length - 1) : first + span;
   const std::size_t before = removed_.size();
@@ -213,7 +214,7 @@ bool Search::insert(int task) {
       }
       if (++tried == settings_.near) break;
     }
-    for (const int robot : neighbours_.robots(task)) try_place(robot, task, 0);
+    for (const int robot : neighbours_.robots(task)) try_place(robot, task, problem_.fixed(robot));
     if (raises_greatest()) try_idlest(task);
   }
   if (place_.robot == Team::kAbsent) return false;

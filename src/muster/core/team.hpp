@@ -1,6 +1,7 @@
 // Routes while a search changes them.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -60,10 +61,15 @@ class Team {
   double later_arrivals(int robot, int task, int at, double growth) const;
   double longer(int robot, int task, int at) const;
 
-  // Works out the places of each route where an absent task deadlocks nothing: from `earliest` to `latest`. All of its
-  // prerequisites must be present.
+  // Whether the task stays at its place.
+  bool fixed(int task) const { return at_[task] < problem_.fixed(robot_of_[task]); }
+
+  // Works out the places of each route where an absent task deadlocks nothing: from `earliest` to `latest`, none among
+  // the tasks that stay. All of its prerequisites must be present.
   void bound(int task);
-  int earliest(int robot) const { return stamp_of_[robot] == stamp_ ? earliest_[robot] : 0; }
+  int earliest(int robot) const {
+    return std::max(problem_.fixed(robot), stamp_of_[robot] == stamp_ ? earliest_[robot] : 0);
+  }
   int latest(int robot) const {
     return stamp_of_[robot] == stamp_ ? latest_[robot] : static_cast<int>(routes_[robot].size());
   }

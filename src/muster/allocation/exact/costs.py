@@ -89,7 +89,8 @@ def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:
     first, between, work, last = real_costs(problem)
     for i, robot in enumerate(problem.robots):
         pace = robot.speed_mps, robot.efficiency, robot.available_from_s, problem.capacity[i]
-        parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace)]
+        own = i if problem.beginning(i) else -1
+        parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace), np.array(own)]
         groups.setdefault(b"".join(part.tobytes() for part in parts), []).append(i)
     return list(groups.values())
 

@@ -50,6 +50,9 @@ class Program:
         self._used = [self.model.new_bool_var("") for _ in self._robots]
         self._done = [self.model.new_bool_var("") for _ in self._tasks]
         self._usage = [self._circuit(i) for i in self._robots]
+        for i in self._robots:
+            for a, b in pairwise([len(self._tasks), *problem.beginning(i)]):
+                self.model.add(self._legs[i, a, b] == 1)
         self._order = self._ranks() if any(problem.prerequisites) else []
         for j in self._tasks:
             self.model.add(sum(self._does[i, j] for i in self._robots if usable[i, j]) == self._done[j])

@@ -74,7 +74,8 @@ def solve_exactly(
         if the start is not admissible, or the priorities have too many digits.
     """
     require_ortools()
-    return _Solving(problem, time_limit, start or [[] for _ in problem.robots], seed, clock or SystemClock()).result()
+    first = start or [list(problem.beginning(i)) for i in range(len(problem.robots))]
+    return _Solving(problem, time_limit, first, seed, clock or SystemClock()).result()
 
 
 def require_ortools() -> None:
@@ -127,7 +128,7 @@ class _Solving:
         if not any(self._routes):
             return 0.0, 0.0
         least = lower_bound(self._problem) if self._weight() == sum(self._weights) else 0.0
-        if self._problem.objective == "average" and few_partings(self._problem):
+        if self._problem.objective == "average" and few_partings(self._problem) and not self._problem.fixed:
             parting = least_average(self._problem, self._usable, self._weights, self._weight())
             if core.Inspection(self._problem.core, parting.routes).admissible:
                 self._take_over(parting.routes)
