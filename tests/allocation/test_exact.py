@@ -175,3 +175,17 @@ def test_without_ortools_one_line_says_what_to_install(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(MissingExtraError, match=r"pip install 'muster-robotics\[exact\]'"):
         solve_exactly(Problem.compile(muster.load("6T-2R")), 1.0)
+
+
+def test_an_interrupted_proof_ends_with_what_is_proven():
+    """Interrupted at once nothing but the quick bounds is known; interrupted under way, soon after it."""
+    problem = Problem.compile(muster.load("24T-5R"))
+    start = routes_of(problem, muster.solve(problem.mission, iterations=300))
+    at_once = solve_exactly(problem, 1000.0, start, interrupted=lambda: True)
+    assert at_once.routes == start
+    assert not at_once.optimal
+    assert at_once.lower_bound == SHARP(lower_bound(problem))
+    looks = iter(range(10))
+    under_way = solve_exactly(problem, 1000.0, start, interrupted=lambda: next(looks, None) is None)
+    assert under_way.weight == at_once.weight
+    assert under_way.lower_bound >= at_once.lower_bound

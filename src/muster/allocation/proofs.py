@@ -74,7 +74,8 @@ def _quick(problem: Problem, plan: Plan) -> Proof:
 
 def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:
     seconds = time_limit or EXACT_TIME_LIMIT_S
-    result = solve_exactly(problem, seconds, routes_of(problem, plan), plan.seed or 0)
+    start = routes_of(problem, plan)
+    result = solve_exactly(problem, seconds, start, plan.seed or 0, interrupted=lambda: stop.interrupted)
     weight, objective = problem.value(result.routes)
     if (-weight, objective) < (-(plan.weight_completed or 0.0), plan.objective_value or 0.0):
         stop.improved(weight, objective)

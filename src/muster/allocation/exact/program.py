@@ -9,7 +9,8 @@ value not above its own, so that what the program proves is true of the plans.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -24,6 +25,8 @@ from muster.allocation.problem import Bools, Problem
 # begin with is near the best; what takes time is the proof.
 PROVING: Mapping[str, Any] = {"keep_all_feasible_solutions_in_presolve": True, "use_lns": False}
 
+_LOOK_S = 0.02  # between two looks whether the run is to end
+
 
 @dataclass(frozen=True)
 class Solved:
@@ -31,6 +34,21 @@ class Solved:
 
     routes: list[list[int]] | None
     bound: float
+
+
+def _run(solver: cp_model.CpSolver, model: cp_model.CpModel, interrupted: Callable[[], bool]) -> Any:
+    """Solve in a thread of its own, while this one hears Ctrl-C: CP-SAT's handler would keep it, and leave none."""
+    solver.parameters.catch_sigint_signal = False
+    with ThreadPoolExecutor(1) as beside:
+        run = beside.submit(solver.solve, model)
+        try:
+            while not run.done() and not interrupted():
+                wait([run], _LOOK_S)
+        finally:
+            while not run.done():
+                solver.stop_search()
+                wait([run], _LOOK_S)
+        return run.result()
 
 
 class Program:
@@ -179,15 +197,22 @@ class Program:
         """The bound of an objective of which nothing is known."""
         return float(sum(self._weights)) if self._maximises else 0.0
 
-    def solve(self, time_limit: float, seed: int, workers: int, parameters: Mapping[str, Any] = PROVING) -> Solved:
-        """Run CP-SAT for so many seconds, with more of its parameters by name."""
+    def solve(
+        self,
+        time_limit: float,
+        seed: int,
+        workers: int,
+        parameters: Mapping[str, Any] = PROVING,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> Solved:
+        """Run CP-SAT for so many seconds or until it is interrupted, with more of its parameters by name."""
         solver = cp_model.CpSolver()
         solver.parameters.max_time_in_seconds = time_limit
         solver.parameters.random_seed = seed % 2**31
         solver.parameters.num_workers = workers
         for name, setting in parameters.items():
             setattr(solver.parameters, name, setting)
-        status = solver.solve(self.model)
+        status = _run(solver, self.model, interrupted)
         if status == cp_model.INFEASIBLE:
             return Solved(None, math.inf)
         if status == cp_model.UNKNOWN:
@@ -226,8 +251,7 @@ class Program:
         solver = cp_model.CpSolver()
         solver.parameters.num_workers = 1
         solver.parameters.fix_variables_to_their_hinted_value = True
-        solver.parameters.catch_sigint_signal = False  # CP-SAT would leave Ctrl-C without its handler in Python
-        if solver.solve(self.model) != cp_model.OPTIMAL:
+        if _run(solver, self.model, lambda: False) != cp_model.OPTIMAL:
             return None
         values = solver.response_proto.solution
         self.model.clear_hints()  # type: ignore[no-untyped-call]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -54,6 +54,7 @@ def solve_exactly(
     start: Routes | None = None,
     seed: int = 0,
     clock: Clock | None = None,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> ExactResult:
     """Find the best plan of a small mission and prove it, or prove what can be proven in the time.
 
@@ -65,6 +66,8 @@ def solve_exactly(
         seconds.
     start
         routes of an admissible plan to begin with.
+    interrupted
+        whether to end at once with what is proven until then.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def solve_exactly(
     """
     require_ortools()
     first = start or [list(problem.beginning(i)) for i in range(len(problem.robots))]
-    return _Solving(problem, time_limit, first, seed, clock or SystemClock()).result()
+    return _Solving(problem, time_limit, first, seed, clock or SystemClock(), interrupted).result()
 
 
 def require_ortools() -> None:
@@ -89,8 +92,16 @@ def require_ortools() -> None:
 class _Solving:
     """The state of one call: the best plan, and what is proven."""
 
-    def __init__(self, problem: Problem, time_limit: float, start: Routes, seed: int, clock: Clock) -> None:
-        self._problem, self._seed, self._clock = problem, seed, clock
+    def __init__(
+        self,
+        problem: Problem,
+        time_limit: float,
+        start: Routes,
+        seed: int,
+        clock: Clock,
+        interrupted: Callable[[], bool],
+    ) -> None:
+        self._problem, self._seed, self._clock, self._interrupted = problem, seed, clock, interrupted
         self._until = clock.now() + time_limit
         self._usable = usable_pairs(problem)
         self._routes = start
@@ -170,8 +181,8 @@ class _Solving:
 
         A plan that is within capacities only because costs were rounded is forbidden, and the program runs again.
         """
-        while (left := self._until - self._clock.now()) > 0:
-            solved = program.solve(left, self._seed, _WORKERS)
+        while (left := self._until - self._clock.now()) > 0 and not self._interrupted():
+            solved = program.solve(left, self._seed, _WORKERS, interrupted=self._interrupted)
             if solved.routes is None:
                 return solved.bound
             inspection = core.Inspection(self._problem.core, solved.routes)

@@ -30,7 +30,6 @@ _TREE: Mapping[str, Any] = {
     "cp_model_probing_level": 0,
     "symmetry_level": 0,
     "max_presolve_iterations": 1,
-    "catch_sigint_signal": False,  # else Ctrl-C would end this solve alone, and the comparison go on
 }
 _LNS: Mapping[str, Any] = {**_TREE, "interleave_search": True, "use_lns_only": True}
 
