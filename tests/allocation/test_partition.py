@@ -10,6 +10,8 @@ from tests.random_missions import random_mission
 import muster
 from muster.allocation.partition import divide, number_of_parts
 from muster.allocation.problem import Problem
+from muster.allocation.search import SEARCH
+from muster.allocation.stop import Stop
 from muster.studies.bench import large_mission
 
 
@@ -64,3 +66,14 @@ def test_a_start_plan_is_kept_or_improved():
 @pytest.mark.parametrize(("tasks", "parts"), [(0, 1), (15_000, 1), (15_001, 11), (100_000, 67)])
 def test_number_of_parts(tasks, parts):
     assert number_of_parts(tasks) == parts
+
+
+@pytest.mark.parametrize("tasks", [600, 16_000])
+def test_interrupted_before_anything_has_begun_there_is_a_whole_plan(tasks):
+    mission = large_mission(tasks, tasks // 50)
+    problem = Problem.compile(mission)
+    stop = Stop(time_limit=600.0)
+    stop.interrupt()
+    plan = SEARCH.solve(problem, stop)
+    assert plan.complete
+    assert muster.verify(mission, plan).valid

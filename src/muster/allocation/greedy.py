@@ -33,6 +33,11 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     return Outcome(greedy.routes)
 
 
+def completed(problem: Problem, start: Routes | None = None) -> Routes:
+    """Greedy routes, from others if they are given, whatever is due: what other algorithms begin with."""
+    return allocate(problem, Stop(), 0, Parameters(), start).routes
+
+
 GREEDY = Allocator(
     name="greedy",
     summary="one pass, milliseconds; GrdTA of the TCF thesis",

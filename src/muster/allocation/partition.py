@@ -49,8 +49,9 @@ def improve_in_parts(
         limits = _limits(stop, _DIVISIONS - division, len(pieces), workers.count)
         team = _Team(problem, routes)
         jobs = [_job(problem, piece, routes, seed + k, limits, improve) for k, piece in enumerate(pieces)]
-        for piece, offer in zip(pieces, workers.map(jobs, stop), strict=True):
-            if offer is not None and team.takes(piece, offer):
+        for piece, job, made in zip(pieces, jobs, workers.map(jobs, stop), strict=True):
+            offer = made or job.offer(greedy.completed(job.part, job.routes))
+            if team.takes(piece, offer):
                 for i, route in zip(piece.robots, offer.routes, strict=True):
                     routes[i] = [piece.tasks[k] for k in route]
         stop.iterations_done += (limits.iterations or 0) * len(pieces)

@@ -91,7 +91,8 @@ def _workers(params: Parameters) -> AbstractContextManager[Workers]:
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
     """From the greedy plan; several threads begin with other random numbers and take over the best now and then."""
-    first = greedy.allocate(problem, stop, seed, greedy.Parameters(), start).routes
+    first = greedy.completed(problem, start)
+    stop.improved(*problem.value(first))
     searches = [_search(problem, first, seed + thread, params) for thread in range(params.threads)]
     way = searches[0].mean_way or 1.0
     hot = max(params.cold, params.hot or (1.0 if problem.objective == "max" else 5.0))

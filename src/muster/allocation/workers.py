@@ -48,7 +48,10 @@ class Job:
     def done(self, whole: Stop) -> Offer:
         """The best routes found within the job's limits, or when the whole ends."""
         until = whole.part(time_limit=self.limits.time_s, iterations=self.limits.iterations)
-        better = self.improve(self.part, until, self.seed, self.routes)
+        return self.offer(self.improve(self.part, until, self.seed, self.routes))
+
+    def offer(self, better: Routes) -> Offer:
+        """What these routes of the part come to."""
         more = self.part.value(better)[0] > self.part.value(self.routes)[0]
         return Offer(better, np.array(core.Inspection(self.part.core, better).usages), more)
 

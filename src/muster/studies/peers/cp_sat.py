@@ -15,7 +15,6 @@ from muster.allocation import greedy
 from muster.allocation.exact.scale import whole_weights
 from muster.allocation.feasibility import usable_pairs
 from muster.allocation.problem import Problem
-from muster.allocation.stop import Stop
 from muster.studies.peers.instance import Instance, Routes
 from muster.studies.peers.peer import Answer, missing
 from muster.verification import verify
@@ -74,7 +73,7 @@ class _Run:
             raise missing("CP-SAT") from None
         self._instance, self._problem, self._seed = instance, instance.problem, seed
         self._weights = _weights(self._problem)
-        self.routes = greedy.allocate(self._problem, Stop(), seed, greedy.Parameters(), None).routes
+        self.routes = greedy.completed(self._problem)
         self.claimed: float | None = None
         self.build_s = 0.0
 
