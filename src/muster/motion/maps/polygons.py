@@ -93,28 +93,25 @@ def _band(polygon: shapely.Polygon, radius_m: float) -> list[shapely.Polygon]:
     following = np.roll(corners, -1, axis=0)
     aside = radius_m * np.column_stack([-steps[:, 1], steps[:, 0]])  # to the left of each edge
     sides = np.stack([corners + aside, following + aside, following - aside, corners - aside], axis=1)
-    fans = [
-        fan
-        for k, corner in enumerate(corners)
-        if (fan := _fan(corner, steps[k - 1], steps[k], aside[k - 1], aside[k], radius_m)) is not None
-    ]
+    lap = 0.5 * min(radius_m, float(lengths[lengths > 0].min()))
+    fans = [_fan(corners[k], steps[[k - 1, k]], aside[[k - 1, k]], radius_m, lap) for k in range(len(corners))]
     return [*map(shapely.Polygon, sides), *fans]
 
 
-def _fan(
-    corner: Floats, coming: Floats, going: Floats, aside: Floats, following: Floats, radius_m: float
-) -> shapely.Polygon | None:
-    """What the rectangles of two edges leave open at their corner, on the outer side of the turn."""
+def _fan(corner: Floats, steps: Floats, aside: Floats, radius_m: float, lap: float) -> shapely.Polygon:
+    """What the rectangles of two edges leave open at their corner, on the outer side of the turn.
+
+    It overlaps both by the length `lap`: rounding would leave slits where they only met.
+    """
     import shapely
 
+    coming, going = steps
     turn = math.atan2(coming[0] * going[1] - coming[1] * going[0], float(coming @ going))
-    if turn == 0:
-        return None
     outer = -1 if turn > 0 else 1  # a turn to the left opens a gap on the right
-    first, last = corner + outer * aside, corner + outer * following
-    count = math.ceil(abs(turn) / _SIDE)
-    start = math.atan2(*(outer * aside)[::-1])
+    first, last = corner + outer * aside
+    count = max(1, math.ceil(abs(turn) / _SIDE))
+    start = math.atan2(*(outer * aside[0])[::-1])
     angles = start + turn * (np.arange(count) + 0.5) / count
-    reach = radius_m / math.cos(turn / (2 * count))
-    tips = corner + reach * np.column_stack([np.cos(angles), np.sin(angles)])
-    return shapely.Polygon([corner, first, *tips, last])
+    tips = corner + radius_m / math.cos(turn / (2 * count)) * np.column_stack([np.cos(angles), np.sin(angles)])
+    back, on = lap * coming, lap * going
+    return shapely.Polygon([corner - back, first - back, first, *tips, last, last + on, corner + on])

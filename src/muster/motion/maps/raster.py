@@ -74,7 +74,7 @@ def touched(shape: BaseGeometry, size: tuple[int, int]) -> Bools:
     row = np.arange(max(0, math.floor(south)), min(rows, math.ceil(north)))
     ends = np.ones(len(row))
     strips = shapely.box((west - 1) * ends, row, (east + 1) * ends, row + 1)
-    parts, at = shapely.get_parts(shapely.intersection(shape, strips), True)
+    parts, at = shapely.get_parts(shapely.intersection(shape, strips), return_index=True)
     left, low, right, high = shapely.bounds(parts).T
     solid = (shapely.get_type_id(parts) == _POLYGON) & (high - low > _SLACK) & (right - left > 2 * _SLACK)
     first = np.clip(np.floor(left[solid] + _SLACK), 0, columns).astype(np.int64)
