@@ -25,4 +25,6 @@ def test_to_map_inverts_to_grid(origin, resolution, points):
 
 def test_the_origin_is_the_outer_corner_of_the_first_cell_and_yaw_turns_anticlockwise():
     grid = Grid(np.zeros((4, 4), dtype=bool), 0.5, (10.0, 20.0, math.pi / 2))
-    np.testing.assert_allclose(grid.to_map(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]])), [[10, 20], [10, 21], [9, 20]])
+    np.testing.assert_allclose(
+        grid.to_map(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]])), [[10, 20], [10, 21], [9, 20]]
+    )

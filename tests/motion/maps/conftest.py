@@ -24,7 +24,7 @@ def mission_with(tmp_path):
 
 @pytest.fixture
 def gap_to_squares():
-    """Metres from points (n, 2) in cells to the nearest blocked square of a grid, by looking at all; outside is blocked."""
+    """Metres from points (n, 2) in cells to the nearest blocked square, by looking at all; outside is blocked."""
 
     def gaps(grid, cells):
         rows, columns = grid.shape

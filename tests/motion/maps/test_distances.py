@@ -36,7 +36,7 @@ def test_free_cells_of_an_inflated_grid_keep_their_clearance_everywhere(grid, ra
 @shared
 @given(grid=grids(), radius=st.floats(0.01, 4))
 def test_no_cell_is_blocked_without_need(grid, radius, gap_to_squares):
-    """A cell that inflation blocks was blocked, or one of its points is too near: one of its corners, or of its sides."""
+    """A cell that inflation blocks was blocked, or one of its points is too near."""
     fine = np.linspace(0, 1, 5)
     for row, column in np.argwhere(inflated(grid, radius).blocked & ~grid.blocked):
         places = np.array([(column + x, row + y) for x in fine for y in fine])

@@ -34,7 +34,15 @@ def test_heights_do_not_count_in_a_region():
 def test_in_the_air_the_faces_of_prisms_are_free():
     prism = Prism(shapely.box(1, 1, 2, 2), -np.inf, 3.0)
     space = PrismSpace(shapely.box(0, 0, 4, 4), (prism,), lowest_m=0.0)
-    points = [(1.5, 1.5, 2.9), (1.5, 1.5, 3.0), (1.5, 1.5, 9.0), (1.0, 1.5, 1.0), (0.5, 0.5, 0.0), (0.5, 0.5, -0.1), (5, 1, 1)]
+    points = [
+        (1.5, 1.5, 2.9),
+        (1.5, 1.5, 3.0),
+        (1.5, 1.5, 9.0),
+        (1.0, 1.5, 1.0),
+        (0.5, 0.5, 0.0),
+        (0.5, 0.5, -0.1),
+        (5, 1, 1),
+    ]
     assert free(space, np.array(points)).tolist() == [False, True, True, True, True, False, False]
 
 

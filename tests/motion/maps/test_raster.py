@@ -22,7 +22,9 @@ def shapes(draw):
 
 
 def overlap(shape, rows, columns):
-    return np.array([[shape.intersection(shapely.box(c, r, c + 1, r + 1)).area for c in range(columns)] for r in range(rows)])
+    return np.array(
+        [[shape.intersection(shapely.box(c, r, c + 1, r + 1)).area for c in range(columns)] for r in range(rows)]
+    )
 
 
 @settings(max_examples=40)
