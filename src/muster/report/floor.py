@@ -39,6 +39,8 @@ def draw_map(ax: Any, chart: Map, image: Grid | None = None, *, spatial: bool) -
         look["hatch"] = "".join(_HATCH[kind] for kind in zone.forbidden_to)
         for level in _levels(zone) if spatial else (0.0,):
             _polygon(ax, zone.polygon, level, spatial, gid=f"zone-{k}-at-{level:g}", **look)
+        if spatial and zone.ceiling_m is not None:
+            _draw_sides(ax, zone, k)
         _name_heights(ax, zone, k, spatial)
         entries[f"no entry: {', '.join(sorted(zone.forbidden_to))}"] = Patch(**look)
     return [(patch, label) for label, patch in entries.items()]
@@ -104,17 +106,30 @@ def _levels(zone: Zone) -> list[float]:
     return levels if zone.ceiling_m is None else [*levels, zone.ceiling_m]
 
 
+def _draw_sides(ax: Any, zone: Zone, k: int) -> None:
+    """Draw the upright sides of a zone, so thinly that one sees what is behind."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    low, high = _levels(zone)
+    sides = [
+        [(*start, low), (*end, low), (*end, high), (*start, high)]
+        for start, end in zip(zone.polygon, (*zone.polygon[1:], zone.polygon[0]), strict=True)
+    ]
+    look = {"facecolor": (0.8, 0.8, 0.8, 0.25), "edgecolor": FRAME, "linewidth": 0.5, "zorder": 0.7}
+    ax.add_collection3d(Poly3DCollection(sides, gid=f"sides-{k}", **look))
+
+
 def _name_heights(ax: Any, zone: Zone, k: int, spatial: bool) -> None:
-    """Write a zone's heights, if it has any, beside its first corner."""
+    """Write a zone's heights, if it has any, above its northernmost corner."""
     if zone.floor_m is None and zone.ceiling_m is None:
         return
     if zone.ceiling_m is None:
         text = f"from {zone.floor_m:g} m"
     else:
         text = f"{zone.floor_m:g}-{zone.ceiling_m:g} m" if zone.floor_m else f"to {zone.ceiling_m:g} m"
-    x, y = np.mean(zone.polygon, axis=0)
+    x, y = max(zone.polygon, key=lambda corner: corner[1])
     place = (x, y, _levels(zone)[-1]) if spatial else (x, y)
-    write(ax, place, text, gid=f"heights-{k}", fontsize=6, color=QUIET_TEXT, zorder=1.5, halo=True)
+    write(ax, place, text, (0, 5), gid=f"heights-{k}", fontsize=6, color=QUIET_TEXT, zorder=1.5, halo=True)
 
 
 def _polygon(ax: Any, corners: tuple[Point, ...], level: float, spatial: bool, **look: Any) -> None:
