@@ -1,4 +1,7 @@
-"""The hot loops, in C++20. Called from `allocation` alone; a verb here has the name of the step it carries out."""
+"""The hot loops, in C++20. A verb here has the name of the step that it carries out.
+
+Called from `allocation` and `motion` alone.
+"""
 
 from muster.core._core import (
     Annealing,
@@ -11,6 +14,7 @@ from muster.core._core import (
     Problem,
     Search,
     Team,
+    squared_distances,
 )
 
 __all__ = [
@@ -24,4 +28,5 @@ __all__ = [
     "Problem",
     "Search",
     "Team",
+    "squared_distances",
 ]

@@ -295,3 +295,8 @@ class Team:
 
     @property
     def routes(self) -> list[list[int]]: ...
+
+def squared_distances(blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], trim: float, squared: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Write for each cell (rows, columns) the squared distance, in cells, to the nearest blocked cell: between centres with trim 0, from centre to square with 1/2, between squares with 1; inf where no cell is blocked.
+    """

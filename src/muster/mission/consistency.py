@@ -130,7 +130,8 @@ def _suitability(mission: Mission) -> Iterator[Fault]:
                 yield Fault((*path, "type"), shown(name), expected + did_you_mean(name, known))
 
 
-def _positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
+def positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
+    """Every position that a mission names, also in its events."""
     for k, robot in enumerate(mission.robots):
         yield ("robots", k, "position"), robot.position
         if robot.end_position is not None:
@@ -157,9 +158,9 @@ def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
 
 def _dimensions(mission: Mission) -> Iterator[Fault]:
     """Positions with z among positions without; the fewer of the two are the wrong ones."""
-    positions = list(_positions(mission))
-    flat = [item for item in positions if len(item[1]) == 2]
-    spatial = [item for item in positions if len(item[1]) == 3]
+    places = list(positions(mission))
+    flat = [item for item in places if len(item[1]) == 2]
+    spatial = [item for item in places if len(item[1]) == 3]
     if flat and spatial:
         wrong, expected = (flat, "[x, y, z]") if len(flat) <= len(spatial) else (spatial, "[x, y]")
         for path, point in wrong:

@@ -50,11 +50,25 @@ def read_yaml(path: FilePath) -> Mission:
 
 def parse_yaml(text: str, path: FilePath) -> Mission:
     """The mission in a text of YAML; `path` names it in messages, and other files are found from there."""
-    reading = _Reading(str(path))
+    data, source, faults = parse_data(text, path, "a mission: schema, robots, tasks")
+    if "schema" not in data:
+        faults.append(Fault(("schema",), "missing", SCHEMA))
+    return mission_from(data, source, faults)
+
+
+def parse_data(text: str, path: FilePath, expected: str) -> tuple[dict[str, object], Source, list[Fault]]:
+    """The mapping in a text of YAML, where its values stand, and what is wrong with them already.
+
+    `expected` says what the whole should be.
+
+    Raises
+    ------
+    MissionError
+        if it is no mapping, or no YAML.
+    """
+    reading = _Reading(str(path), expected)
     data = reading.document(text)
-    if isinstance(data, dict) and "schema" not in data:
-        reading.faults.append(Fault(("schema",), "missing", SCHEMA))
-    return mission_from(data, Source(str(path), reading.places), reading.faults)
+    return data, Source(str(path), reading.places), reading.faults
 
 
 class _Reading:
@@ -63,19 +77,20 @@ class _Reading:
     From events and not from PyYAML's nodes, because those are made by recursion without a bound.
     """
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, expected: str) -> None:
         self._file = file
+        self._expected = expected
         self._events: Iterator[Any] = iter(())
         self._anchors: dict[str, object] = {}
         self.places: dict[Path, Place] = {}
         self.faults: list[Fault] = []
 
-    def document(self, text: str) -> object:
+    def document(self, text: str) -> dict[str, object]:
         try:
             self._events = yaml.parse(text, Loader=_Loader)
             next(self._events)  # the start of the stream
             if isinstance(next(self._events), yaml.StreamEndEvent):
-                raise self._refusal(1, "empty", "a mission: schema, robots, tasks")
+                raise self._refusal(1, "empty", self._expected)
             data = self._value(next(self._events), ())
             next(self._events)  # the end of the document
             beyond = next(self._events)
@@ -88,7 +103,7 @@ class _Reading:
         if not isinstance(beyond, yaml.StreamEndEvent):
             raise self._refusal(_line(beyond), "a second document", "one mission a file")
         if not isinstance(data, dict):
-            raise self._refusal(self.places[()][1], shown(data), "a mission: schema, robots, tasks")
+            raise self._refusal(self.places[()][1], shown(data), self._expected)
         return data
 
     def _value(self, event: Any, at: Path) -> object:

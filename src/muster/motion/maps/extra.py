@@ -1,0 +1,13 @@
+"""The optional part of the installation that reads maps: GEOS, beneath Shapely, is no part of the core."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from muster.mission.errors import MissingExtraError
+
+
+def require_map_extra() -> None:
+    """Raise MissingExtraError where Pillow, SciPy or Shapely is not installed."""
+    if not all(find_spec(name) for name in ("PIL", "scipy", "shapely")):
+        raise MissingExtraError("map", "a map")

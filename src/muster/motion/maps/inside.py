@@ -1,0 +1,70 @@
+"""Whether points are free in a space.
+
+Borders are free, and so is what is beyond one by no more than 1e-9 of the greatest coordinate (at least 1 m).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.motion.grid import Bools, Floats
+from muster.motion.spaces import GridSpace, Prism, PrismSpace, Space
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+_SLACK = 1e-9
+
+
+def free(space: Space, points: Floats) -> Bools:
+    """Whether points (n, 2) or (n, 3) of the map frame, metres, are free: (n,).
+
+    Heights count in a PrismSpace alone, which needs them.
+    """
+    places = np.asarray(points, dtype=np.float64)
+    slack = _SLACK * max(1.0, float(np.abs(places).max(initial=0.0)))
+    if isinstance(space, GridSpace):
+        return _in_free_cells(space, places, slack)
+    within = _within(space.region, places, slack)
+    if isinstance(space, PrismSpace):
+        within &= places[:, 2] >= space.lowest_m - slack
+        for prism in space.prisms:
+            within &= ~_inside_prism(prism, places, slack)
+    return within
+
+
+def _in_free_cells(space: GridSpace, places: Floats, slack: float) -> Bools:
+    """Whether one of the cells is free that a place lies in or on the border of."""
+    grid = space.grid
+    cells, reach = grid.to_grid(places[:, :2]), slack / grid.resolution_m
+    fenced = np.pad(grid.blocked, 1, constant_values=True)
+    rows, columns = grid.shape
+    found = np.zeros(len(places), dtype=np.bool_)
+    for across in (-reach, reach):
+        for up in (-reach, reach):
+            column = np.clip(np.floor(cells[:, 0] + across), -1, columns).astype(np.int64)
+            row = np.clip(np.floor(cells[:, 1] + up), -1, rows).astype(np.int64)
+            found |= ~fenced[row + 1, column + 1]
+    return found
+
+
+def _within(region: BaseGeometry, places: Floats, slack: float) -> Bools:
+    import shapely
+
+    shapely.prepare(region)
+    return np.asarray(shapely.dwithin(region, shapely.points(places[:, :2]), slack))
+
+
+def _inside_prism(prism: Prism, places: Floats, slack: float) -> Bools:
+    """Whether a place is deeper in a prism than the slack, through sides, floor and ceiling."""
+    import shapely
+
+    heights = places[:, 2]
+    inside = np.asarray((heights > prism.floor_m + slack) & (heights < prism.ceiling_m - slack))
+    feet = shapely.points(places[inside, :2])
+    shapely.prepare(prism.polygon)
+    beside = shapely.dwithin(prism.polygon.boundary, feet, slack)
+    inside[inside] = np.logical_and(shapely.contains_properly(prism.polygon, feet), ~beside)
+    return inside

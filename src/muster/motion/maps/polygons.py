@@ -1,0 +1,117 @@
+"""Polygons of a map: checked, grown by a body's radius, shrunk by it.
+
+Growing is exact along edges. Round corners become polygons that circumscribe the arc, so that no clearance is lost;
+the way around one of them is longer than the arc by at most tan(h) / h - 1 < 0.1 %, with h half the angle of a side.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.mission.kinds import Fault, Path
+from muster.mission.model import Point
+from muster.motion.grid import Floats
+from muster.motion.maps.occupancy import FARTHEST_M
+
+if TYPE_CHECKING:
+    import shapely
+
+    Region = shapely.Polygon | shapely.MultiPolygon
+
+_SIDE = math.pi / 30  # angle of a corner's side: 15 sides a quarter turn, 0.092 % too long
+_STRAIGHT = 1e-9  # m: a corner this near to the line past it only costs time
+
+
+def read_polygon(corners: Sequence[Point], at: Path, faults: list[Fault]) -> shapely.Polygon | None:
+    """The polygon with these corners; None where it is none, which is appended to `faults`."""
+    import shapely
+
+    far = max(abs(c) for corner in corners for c in corner)
+    if far > FARTHEST_M:
+        faults.append(Fault(at, f"a polygon that reaches {far:g} m", f"coordinates up to {FARTHEST_M:g} m"))
+        return None
+    polygon = shapely.Polygon(corners)
+    if polygon.is_valid and polygon.area > 0:
+        return polygon
+    faults.append(Fault(at, _trouble(polygon), "a polygon whose sides meet at its corners alone"))
+    return None
+
+
+def _trouble(polygon: shapely.Polygon) -> str:
+    """What is wrong with a polygon, and where."""
+    import shapely
+
+    reason = str(shapely.is_valid_reason(polygon))
+    where = re.fullmatch(r"(?P<what>.*)\[(?P<x>\S+) (?P<y>\S+)\]", reason)
+    if polygon.area == 0 and (where is None or polygon.minimum_rotated_rectangle.area == 0):
+        return "corners on one line"
+    if where is None:
+        return reason
+    what = "touches itself" if where["what"].startswith("Ring") else "crosses itself"
+    return f"{what} at ({float(where['x']):g}, {float(where['y']):g})"
+
+
+def grown(polygon: shapely.Polygon, radius_m: float) -> shapely.Polygon:
+    """All points nearer than the radius to a polygon, and at convex corners a little more."""
+    import shapely
+
+    result = shapely.union_all([polygon, *_band(polygon, radius_m)])
+    assert isinstance(result, shapely.Polygon)  # a union of connected parts that all meet the polygon
+    return shapely.simplify(result, _STRAIGHT)
+
+
+def free_region(boundary: shapely.Polygon, obstacles: Iterable[shapely.Polygon], radius_m: float) -> Region:
+    """Where a centre may be: within a boundary, at least the radius from it and from all obstacles.
+
+    A gap that is exactly as wide as the body is closed.
+    """
+    import shapely
+
+    taken = _band(boundary, radius_m)
+    for obstacle in obstacles:
+        taken += [obstacle, *_band(obstacle, radius_m)]
+    left = shapely.difference(boundary, shapely.union_all(taken))
+    parts = [part for part in shapely.get_parts(left) if isinstance(part, shapely.Polygon) and part.area > 0]
+    return shapely.simplify(parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts), _STRAIGHT)
+
+
+def _band(polygon: shapely.Polygon, radius_m: float) -> list[shapely.Polygon]:
+    """All points nearer than the radius to a polygon's outline: a rectangle along each edge, a fan at each corner."""
+    import shapely
+
+    if radius_m <= 0:
+        return []
+    corners = np.asarray(polygon.exterior.coords)[:-1]
+    steps = np.roll(corners, -1, axis=0) - corners
+    lengths = np.hypot(*steps.T)
+    corners, steps = corners[lengths > 0], steps[lengths > 0] / lengths[lengths > 0, None]
+    following = np.roll(corners, -1, axis=0)
+    aside = radius_m * np.column_stack([-steps[:, 1], steps[:, 0]])  # to the left of each edge
+    sides = np.stack([corners + aside, following + aside, following - aside, corners - aside], axis=1)
+    lap = 0.5 * min(radius_m, float(lengths[lengths > 0].min()))
+    fans = [_fan(corners[k], steps[[k - 1, k]], aside[[k - 1, k]], radius_m, lap) for k in range(len(corners))]
+    return [*map(shapely.Polygon, sides), *fans]
+
+
+def _fan(corner: Floats, steps: Floats, aside: Floats, radius_m: float, lap: float) -> shapely.Polygon:
+    """What the rectangles of two edges leave open at their corner, on the outer side of the turn.
+
+    It overlaps both by the length `lap`: rounding would leave slits where they only met.
+    """
+    import shapely
+
+    coming, going = steps
+    turn = math.atan2(coming[0] * going[1] - coming[1] * going[0], float(coming @ going))
+    outer = -1 if turn > 0 else 1  # a turn to the left opens a gap on the right
+    first, last = corner + outer * aside
+    count = max(1, math.ceil(abs(turn) / _SIDE))
+    start = math.atan2(*(outer * aside[0])[::-1])
+    angles = start + turn * (np.arange(count) + 0.5) / count
+    tips = corner + radius_m / math.cos(turn / (2 * count)) * np.column_stack([np.cos(angles), np.sin(angles)])
+    back, on = lap * coming, lap * going
+    return shapely.Polygon([corner - back, first - back, first, *tips, last, last + on, corner + on])

@@ -1,0 +1,89 @@
+"""Map files of ROS: the YAML of map_server and of nav2_map_server that stands beside an image.
+
+Keys that ROS does not know are passed over, as ROS passes over them. `mode` is trinary where it is absent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from muster.mission.errors import MissionError
+from muster.mission.kinds import INVALID, Choice, Fault, JsonSchema, Number, Record, Text, shown, spec, specified
+from muster.mission.kinds import Path as KeyPath
+from muster.mission.model import findings
+from muster.mission.text_files import read_text
+from muster.mission.yaml_reader import parse_data
+
+
+@dataclass(frozen=True)
+class _Pose:
+    """`[x, y, yaw]` in metres and radians."""
+
+    filler: ClassVar[tuple[float, float, float]] = (0.0, 0.0, 0.0)
+    expected: ClassVar[str] = "[x, y, yaw] in metres and radians"
+
+    def read(self, value: object, at: KeyPath, faults: list[Fault]) -> Any:
+        if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 3:
+            faults.append(Fault(at, shown(value), self.expected))
+            return INVALID
+        numbers = [Number().read(number, (*at, k), faults) for k, number in enumerate(value)]
+        return INVALID if INVALID in numbers else tuple(numbers)
+
+    def schema(self) -> JsonSchema:
+        return {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+
+
+@dataclass(frozen=True)
+class _Switch:
+    """0 or 1, false or true."""
+
+    filler: ClassVar[bool] = False
+    expected: ClassVar[str] = "0 or 1"
+
+    def read(self, value: object, at: KeyPath, faults: list[Fault]) -> Any:
+        if isinstance(value, int) and value in (0, 1):
+            return bool(value)
+        faults.append(Fault(at, shown(value), self.expected))
+        return INVALID
+
+    def schema(self) -> JsonSchema:
+        return {"enum": [0, 1, False, True]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RosMap:
+    """The keys of a ROS map file. The image is found from the folder of that file."""
+
+    image: str = spec(Text(), "the image's file")
+    resolution: float = spec(Number(above=0), "metres a pixel")
+    origin: tuple[float, float, float] = spec(_Pose(), "pose of the image's lower left corner")
+    negate: bool = spec(_Switch(), "white is occupied, not black")
+    occupied_thresh: float = spec(Number(minimum=0, maximum=1), "occupied above it")
+    free_thresh: float = spec(Number(minimum=0, maximum=1), "free below it")
+    mode: str = spec(Choice(("trinary", "scale", "raw")), "what a shade means", default="trinary")
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        free, occupied = values["free_thresh"], values["occupied_thresh"]
+        if free > occupied:
+            yield Fault(("free_thresh",), shown(free), f"a number of at most occupied_thresh ({occupied:g})")
+
+
+def read_ros_map(path: Path) -> RosMap:
+    """A ROS map file.
+
+    Raises
+    ------
+    MissionError
+        with every finding: file, line, field, value, what was expected.
+    """
+    record = Record(RosMap, "a map of ROS")
+    data, source, faults = parse_data(read_text(path), path, record.expected)
+    known = {f.name for f in specified(RosMap)}
+    chart: RosMap = record.read({key: value for key, value in data.items() if key in known}, (), faults)
+    if faults:
+        raise MissionError(findings(faults, source))
+    return chart
