@@ -47,7 +47,7 @@ def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: in
         return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
     if math.isinf(insertion.usage):
         lost = math.isinf(inspection.usages[i])
-        return Reason(robot, "unreachable", "there is no way along its route" if lost else "there is no way to it")
+        return Reason(robot, "unreachable", "there is no way along its route" if lost else problem.why_no_way(i, j))
     capacity = problem.capacity[i]
     if insertion.usage > capacity:
         return Reason(robot, "capacity", f"at least {insertion.usage:.2f} {unit} with it, of {capacity:.2f} {unit}")
@@ -69,7 +69,7 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
         if refusal is not None:
             reasons.append(Reason(robot.id, *refusal))
         elif all_named and robot.id not in bidders and math.isinf(least_usage(problem, i)[j]):
-            reasons.append(Reason(robot.id, "unreachable", "there is no way to it"))
+            reasons.append(Reason(robot.id, "unreachable", problem.why_no_way(i, j)))
         elif all_named and robot.id not in bidders:
             reasons.append(Reason(robot.id, "capacity", "too little was left of it"))
     return tuple(reasons)

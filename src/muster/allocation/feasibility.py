@@ -47,7 +47,7 @@ def _reason(problem: Problem, i: int, j: int, least: float, lost_before: str) ->
     if lost_before:
         return Reason(robot, "prerequisite", f"{lost_before} comes before it and can never be done")
     if math.isinf(least):
-        return Reason(robot, "unreachable", "there is no way to it")
+        return Reason(robot, "unreachable", problem.why_no_way(i, j))
     detail = f"takes at least {least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
     return Reason(robot, "capacity", detail)
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported import require_supported
+
+if TYPE_CHECKING:
+    from muster.allocation.map_travel import MapTravel
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -56,6 +59,7 @@ class Problem:
     robots: tuple[Robot, ...]
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
+    tabled: tuple[Floats, npt.NDArray[np.int32]] | None = None  # travel that the problem of which this is a part knew
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
@@ -87,7 +91,15 @@ class Problem:
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
-        return replace(self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed)
+        tabled = None
+        if self.mission.travel_rule == "map":
+            n, m = len(self.tasks), len(self.robots)
+            places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
+            table, classes = self.travel
+            tabled = table[:, places][:, :, places], classes[list(robots)]
+        return replace(
+            self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, tabled=tabled
+        )
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: what is made of them is made anew where the problem arrives."""
@@ -228,8 +240,28 @@ class Problem:
 
     @cached_property
     def travel(self) -> tuple[Floats, npt.NDArray[np.int32]]:
-        """Travel tables and each robot's table; empty where travel is straight (see `travel_table`)."""
+        """Travel tables and each robot's table; empty where travel is straight.
+
+        The table is (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no
+        way.
+        """
+        if self.tabled is not None:
+            return self.tabled
+        if self.mission.travel_rule == "map":
+            return self._over_map.table(), self._over_map.classes
         return travel_table(self.mission, self.robots, self.tasks)
+
+    @cached_property
+    def _over_map(self) -> MapTravel:
+        from muster.allocation.map_travel import MapTravel
+
+        return MapTravel.of(self.mission, self.robots, self._exits, self._entries)
+
+    def why_no_way(self, i: int, j: int) -> str:
+        """Why robot i cannot come to task j, which no way leads to."""
+        if self.mission.travel_rule != "map" or self.tabled is not None:
+            return "there is no way to it"
+        return self._over_map.why_not(i, self.start(i), j)
 
     @cached_property
     def _actuation_cost(self) -> Floats:

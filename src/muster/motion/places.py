@@ -61,19 +61,19 @@ def blocked_places(world: World, mission: Mission) -> tuple[BlockedPlace, ...]:
 
 
 def place_faults(world: World, mission: Mission) -> list[Fault]:
-    """Faults of a mission: robots that start or end where they cannot stand, and tasks where no robot can."""
-    faults = []
-    blocked = blocked_places(world, mission)
-    tasks = {("tasks", k): len(_bodies(mission, task)) for k, task in enumerate(mission.tasks)}
-    for place in blocked:
-        same = [other for other in blocked if other.path == place.path]
-        if place is same[0] and len(same) == tasks.get((str(place.path[0]), int(place.path[1])), 1):
-            faults.append(Fault(place.path, f"{shown(list(place.point))}, {place.detail}", _expected(same)))
-    return faults
+    """Faults of a mission: robots that start or end where they cannot stand.
+
+    A task where no robot can stand is none: it is impossible, and the others can be planned.
+    """
+    return [
+        Fault(place.path, f"{shown(list(place.point))}, {place.detail}", _expected(place.body))
+        for place in blocked_places(world, mission)
+        if place.path[0] == "robots"
+    ]
 
 
 def checked_world(mission: Mission) -> World:
-    """The world of a mission with a map, all of whose robots and tasks stand where they can.
+    """The world of a mission with a map, all of whose robots stand where they can.
 
     Raises
     ------
@@ -89,9 +89,8 @@ def checked_world(mission: Mission) -> World:
     return world
 
 
-def _expected(same: list[BlockedPlace]) -> str:
-    bodies = ", ".join(f"{place.body.kind}, radius {place.body.radius_m:g} m" for place in same)
-    return f"a place that is free for its robot ({bodies})"
+def _expected(body: Body) -> str:
+    return f"a place that is free for its robot ({body.kind}, radius {body.radius_m:g} m)"
 
 
 def _body(robot: Robot) -> Body:
