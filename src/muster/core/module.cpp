@@ -12,4 +12,6 @@ NB_MODULE(_core, m) {
   muster::bind_annealing(m);
   muster::bind_search(m);
   muster::bind_team(m);
+  muster::bind_grid(m);
+  muster::bind_ways(m);
 }
