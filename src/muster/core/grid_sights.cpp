@@ -55,20 +55,28 @@ GridSights::GridSights(const GridMap& map) : map_(map) {
   }
 }
 
-// A corner is a grid point with one of the four cells around it blocked.
+// A corner is a grid point with one of the four cells around it blocked. Numbers go up tile by tile: corners near each
+// other are near in memory.
 void GridSights::find_corners() {
+  constexpr int kTile = 16;
   numbers_.assign(static_cast<std::size_t>(map_.rows() + 1) * (map_.columns() + 1), -1);
-  for (int y = 0; y <= map_.rows(); ++y) {
-    for (int x = 0; x <= map_.columns(); ++x) {
-      const int mask = map_.around(x, y);
-      if (std::popcount(static_cast<unsigned>(mask)) != 1) continue;
-      numbers_[static_cast<std::size_t>(y) * (map_.columns() + 1) + x] = static_cast<int>(corners_.size());
-      corners_.push_back({.at = {x * kUnit, y * kUnit},
-                          .place = {static_cast<double>(x), static_cast<double>(y)},
-                          .one_wall = {east(mask) ? 1 : -1, 0},
-                          .other_wall = {0, north(mask) ? 1 : -1}});
+  for (int low = 0; low <= map_.rows(); low += kTile) {
+    for (int left = 0; left <= map_.columns(); left += kTile) {
+      for (int y = low; y < std::min(low + kTile, map_.rows() + 1); ++y) {
+        for (int x = left; x < std::min(left + kTile, map_.columns() + 1); ++x) add_corner(x, y);
+      }
     }
   }
+}
+
+void GridSights::add_corner(int x, int y) {
+  const int mask = map_.around(x, y);
+  if (std::popcount(static_cast<unsigned>(mask)) != 1) return;
+  numbers_[static_cast<std::size_t>(y) * (map_.columns() + 1) + x] = static_cast<int>(corners_.size());
+  corners_.push_back({.at = {x * kUnit, y * kUnit},
+                      .place = {static_cast<double>(x), static_cast<double>(y)},
+                      .one_wall = {east(mask) ? 1 : -1, 0},
+                      .other_wall = {0, north(mask) ? 1 : -1}});
 }
 
 void GridSights::make_view(View& view, bool flips_x, bool flips_y) const {

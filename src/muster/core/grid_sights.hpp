@@ -51,6 +51,7 @@ class GridSights : public Sights {
   struct Cone;
 
   void find_corners();
+  void add_corner(int x, int y);
   void make_view(View& view, bool flips_x, bool flips_y) const;
   const View& view(bool flips_x, bool flips_y) const { return views_[2 * flips_y + flips_x]; }
   int number(int x, int y) const { return numbers_[static_cast<std::size_t>(y) * (map_.columns() + 1) + x]; }

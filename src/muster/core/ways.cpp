@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 #include <utility>
 
+#include "heap.hpp"
 #include "parallel.hpp"
 
 namespace muster {
@@ -14,31 +14,46 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 struct Open {
-  double f, length;
+  double key;  // length, and in A* the estimate of the rest
   int corner;
-  friend bool operator<(const Open& a, const Open& b) { return a.f > b.f; }
 };
+
+bool turns_away(bool on_left, Lattice coming, Lattice leaving) {
+  const std::int64_t to_left = cross(coming, leaving);
+  return on_left ? to_left < 0 : to_left > 0;
+}
 
 }  // namespace
 
 // The shortest ways from one place to corners.
 struct Ways::Tree {
-  std::vector<double> length;
-  std::vector<int> parent;  // -1: the place itself
-  std::priority_queue<Open> open;
+  struct Node {
+    double length = kFar;
+    int parent = -1;       // -1: the place itself
+    bool on_left = false;  // the obstacle, as one comes
+    bool closed = false;   // expanded
+  };
+  std::vector<Node> nodes;
+  Heap<Open> open;
 
   void clear(std::size_t corners) {
-    length.assign(corners, kFar);
-    parent.assign(corners, -1);
-    open = {};
+    nodes.assign(corners, Node{});
+    open.clear();
   }
-  void reach(int corner, double by, int from, double estimate) {
-    if (by >= length[corner]) return;
-    length[corner] = by;
-    parent[corner] = from;
-    open.push({by + estimate, by, corner});
+  template <class Estimate>
+  void reach(int corner, Node by, Estimate estimate) {
+    Node& node = nodes[corner];
+    if (by.length >= node.length || node.closed) return;
+    node = by;
+    open.push({by.length + estimate(corner), corner});
   }
 };
+
+Ways::Ways(std::shared_ptr<const Sights> sights) : sights_(std::move(sights)) {
+  for (const Corner& corner : sights_->corners()) {
+    at_.push_back({static_cast<std::int32_t>(corner.at.x), static_cast<std::int32_t>(corner.at.y)});
+  }
+}
 
 void Ways::build(int threads) {
   const auto& corners = sights_->corners();
@@ -59,11 +74,14 @@ void Ways::build(int threads) {
     };
   });
   first_.assign(1, 0);
-  others_.clear();
+  pieces_.clear();
   for (std::size_t c = 0; c < seen.size(); ++c) {
-    first_.push_back(others_.size() + on_right[c]);
-    others_.insert(others_.end(), seen[c].begin(), seen[c].end());
-    first_.push_back(others_.size());
+    first_.push_back(pieces_.size() + on_right[c]);
+    for (const int o : seen[c]) {
+      const bool on_left = corners[o].on_left(corners[o].at - corners[c].at);
+      pieces_.push_back({distance(corners[c].place, corners[o].place), static_cast<std::uint32_t>(o), on_left});
+    }
+    first_.push_back(pieces_.size());
     seen[c] = {};
   }
 }
@@ -85,46 +103,55 @@ std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first,
 // Dijkstra over all corners; with a place to go to A*, which ends there.
 void Ways::grow(const Seat& from, const Seat* to, Tree& tree) const {
   const auto& corners = sights_->corners();
-  const auto estimate = [&](int corner) { return to ? distance(corners[corner].place, to->place) : 0.0; };
   tree.clear(corners.size());
-  for (const int corner : from.corners) tree.reach(corner, distance(from.place, corners[corner].place), -1, estimate(corner));
+  for (const int c : from.corners) {
+    const bool on_left = corners[c].on_left(corners[c].at - from.at);
+    tree.reach(c, {distance(from.place, corners[c].place), -1, on_left}, [&](int) { return estimate(c, to); });
+  }
   std::vector<int> ends = to ? to->corners : std::vector<int>{};
   std::sort(ends.begin(), ends.end());
   double best = kFar;
-  while (!tree.open.empty() && tree.open.top().f < best) {
-    const Open top = tree.open.top();
-    tree.open.pop();
-    if (top.length > tree.length[top.corner]) continue;
-    if (std::binary_search(ends.begin(), ends.end(), top.corner)) best = std::min(best, top.f);
-    expand(top.corner, from, to, tree);
+  while (!tree.open.empty() && tree.open.top().key < best) {
+    const Open top = tree.open.pop();
+    if (tree.nodes[top.corner].closed) continue;
+    tree.nodes[top.corner].closed = true;
+    if (std::binary_search(ends.begin(), ends.end(), top.corner)) best = top.key;
+    if (built()) {
+      expand(top.corner, from, to, tree);
+    } else {
+      look_around(top.corner, from, to, tree);
+    }
   }
+}
+
+double Ways::estimate(int corner, const Seat* to) const {
+  return to ? distance(sights_->corners()[corner].place, to->place) : 0.0;
 }
 
 // One who comes to a corner leaves it on the same side of the obstacle, and turns towards it.
 void Ways::expand(int c, const Seat& from, const Seat* to, Tree& tree) const {
-  const auto& corners = sights_->corners();
-  const Corner& corner = corners[c];
-  const int parent = tree.parent[c];
-  const Lattice coming = corner.at - (parent < 0 ? from.at : corners[parent].at);
-  const bool left = corner.on_left(coming);
-  const auto turns_away = [&](Lattice leaving) {
-    return left ? cross(coming, leaving) < 0 : cross(coming, leaving) > 0;
-  };
-  const auto reach = [&](int other) {
-    const Point place = corners[other].place;
-    tree.reach(other, tree.length[c] + distance(corner.place, place), c, to ? distance(place, to->place) : 0.0);
-  };
-  if (!built()) {
-    for (const int other : sights_->neighbours(c)) {
-      const Lattice leaving = corners[other].at - corner.at;
-      if (corner.on_left(leaving) == left && !turns_away(leaving)) reach(other);
-    }
-    return;
-  }
-  const std::size_t side = 2 * static_cast<std::size_t>(c) + left;
+  const Tree::Node node = tree.nodes[c];
+  const Lattice here = at_[c].wide();
+  const Lattice coming = here - (node.parent < 0 ? from.at : at_[node.parent].wide());
+  const std::size_t side = 2 * static_cast<std::size_t>(c) + node.on_left;
   for (std::size_t k = first_[side]; k < first_[side + 1]; ++k) {
-    if (turns_away(corners[others_[k]].at - corner.at)) break;
-    reach(others_[k]);
+    const Piece piece = pieces_[k];
+    const auto other = static_cast<int>(piece.other);
+    if (turns_away(node.on_left, coming, at_[other].wide() - here)) break;
+    tree.reach(other, {node.length + piece.length, c, piece.on_left != 0}, [&](int) { return estimate(other, to); });
+  }
+}
+
+// The same where the graph is not built.
+void Ways::look_around(int c, const Seat& from, const Seat* to, Tree& tree) const {
+  const Tree::Node node = tree.nodes[c];
+  const auto& corners = sights_->corners();
+  const Lattice coming = corners[c].at - (node.parent < 0 ? from.at : corners[node.parent].at);
+  for (const int o : sights_->neighbours(c)) {
+    const Lattice leaving = corners[o].at - corners[c].at;
+    if (corners[c].on_left(leaving) != node.on_left || turns_away(node.on_left, coming, leaving)) continue;
+    const double length = node.length + distance(corners[c].place, corners[o].place);
+    tree.reach(o, {length, c, corners[o].on_left(leaving)}, [&](int) { return estimate(o, to); });
   }
 }
 
@@ -132,7 +159,7 @@ Ways::Last Ways::last_piece(const Seat& from, const Seat& to, const Tree& tree) 
   if (!from.free || !to.free) return {kFar, -1};
   Last best{sights_->sees(from.at, to.at) ? distance(from.place, to.place) : kFar, -1};
   for (const int corner : to.corners) {
-    const double whole = tree.length[corner] + distance(sights_->corners()[corner].place, to.place);
+    const double whole = tree.nodes[corner].length + distance(sights_->corners()[corner].place, to.place);
     if (whole < best.length) best = {whole, corner};
   }
   return best;
@@ -148,7 +175,7 @@ std::vector<Point> Ways::way(Point a, Point b) const {
   const Last last = last_piece(from, to, tree);
   if (last.length == kFar) return {};
   std::vector<Point> way{b};
-  for (int corner = last.corner; corner >= 0; corner = tree.parent[corner]) {
+  for (int corner = last.corner; corner >= 0; corner = tree.nodes[corner].parent) {
     way.push_back(sights_->corners()[corner].place);
   }
   way.push_back(a);
