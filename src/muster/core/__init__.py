@@ -1,9 +1,11 @@
-"""The hot loops, in C++20. Called from `allocation` alone; a verb here has the name of the step it carries out."""
+"""The hot loops, in C++20. Called from `allocation` and `motion` alone; a verb here has the name of the step it carries out."""
 
 from muster.core._core import (
+    AirWays,
     Annealing,
     Bidders,
     Greedy,
+    GridMap,
     Insertion,
     Inspection,
     Matching,
@@ -11,12 +13,16 @@ from muster.core._core import (
     Problem,
     Search,
     Team,
+    Tree,
+    Ways,
 )
 
 __all__ = [
+    "AirWays",
     "Annealing",
     "Bidders",
     "Greedy",
+    "GridMap",
     "Insertion",
     "Inspection",
     "Matching",
@@ -24,4 +30,6 @@ __all__ = [
     "Problem",
     "Search",
     "Team",
+    "Tree",
+    "Ways",
 ]

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "air.hpp"
 #include "lattice.hpp"
 
 namespace muster {
@@ -31,6 +32,12 @@ inline Table table_of(const std::vector<Point>& points) {
   std::vector<double> values;
   for (const Point p : points) values.insert(values.end(), {p.x, p.y});
   return table_of(std::move(values), 2);
+}
+
+inline Table table_of(const std::vector<Spot>& spots) {
+  std::vector<double> values;
+  for (const Spot p : spots) values.insert(values.end(), {p.x, p.y, p.z});
+  return table_of(std::move(values), 3);
 }
 
 }  // namespace muster

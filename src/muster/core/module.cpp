@@ -14,4 +14,6 @@ NB_MODULE(_core, m) {
   muster::bind_team(m);
   muster::bind_grid(m);
   muster::bind_ways(m);
+  muster::bind_air(m);
+  muster::bind_tree(m);
 }
