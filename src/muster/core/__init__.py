@@ -4,9 +4,11 @@ Called from `allocation` and `motion` alone.
 """
 
 from muster.core._core import (
+    AirWays,
     Annealing,
     Bidders,
     Greedy,
+    GridMap,
     Insertion,
     Inspection,
     Matching,
@@ -14,13 +16,17 @@ from muster.core._core import (
     Problem,
     Search,
     Team,
+    Tree,
+    Ways,
     squared_distances,
 )
 
 __all__ = [
+    "AirWays",
     "Annealing",
     "Bidders",
     "Greedy",
+    "GridMap",
     "Insertion",
     "Inspection",
     "Matching",
@@ -28,5 +34,7 @@ __all__ = [
     "Problem",
     "Search",
     "Team",
+    "Tree",
+    "Ways",
     "squared_distances",
 ]

@@ -14,5 +14,9 @@ void bind_annealing(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
 void bind_team(nanobind::module_& m);
 void bind_distances(nanobind::module_& m);
+void bind_grid(nanobind::module_& m);
+void bind_ways(nanobind::module_& m);
+void bind_air(nanobind::module_& m);
+void bind_tree(nanobind::module_& m);
 
 }  // namespace muster

@@ -13,4 +13,8 @@ NB_MODULE(_core, m) {
   muster::bind_search(m);
   muster::bind_team(m);
   muster::bind_distances(m);
+  muster::bind_grid(m);
+  muster::bind_ways(m);
+  muster::bind_air(m);
+  muster::bind_tree(m);
 }

@@ -1,0 +1,80 @@
+// The air over a region without the inside of upright prisms: what is free, what sees what, where shortest ways may turn.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "lattice.hpp"
+
+namespace muster {
+
+struct Spot {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+
+  friend Spot operator+(Spot a, Spot b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Spot operator-(Spot a, Spot b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Spot operator*(double s, Spot a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+inline double dot(Spot a, Spot b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double distance(Spot a, Spot b) { return std::sqrt(dot(a - b, a - b)); }
+
+// Rings of a polygon, the inside by the even-odd rule.
+class Rings {
+ public:
+  explicit Rings(std::vector<std::vector<Point>> rings);
+
+  const std::vector<std::vector<Point>>& rings() const { return rings_; }
+  bool inside(Point p) const;
+  double distance_to_border(Point p) const;
+  // Whether the part from t = `from` to `to` of the straight piece a-b runs through the inside (or, if not `inner`,
+  // outside) for longer than kTouch.
+  bool enters(Point a, Point b, double from, double to, bool inner) const;
+
+ private:
+  std::vector<std::vector<Point>> rings_;
+  Point low_, high_;
+};
+
+struct PrismShape {
+  Rings base;
+  double floor;
+  double ceiling;
+};
+
+// An edge of an obstacle on which shortest ways may turn. `inward` is a unit normal of a level edge, towards the
+// obstacle; an upright edge has the two walls that start there instead.
+struct AirEdge {
+  Spot from, to;
+  bool upright = false;
+  bool top = false;
+  Point inward, other_wall;
+
+  // Whether the line in this direction keeps out of the obstacle beside the edge.
+  bool taut(Spot direction) const;
+};
+
+class Air {
+ public:
+  static constexpr double kTouch = 1e-7;  // metres that a line may be inside an obstacle: it touches
+
+  // `top` bounds the height at which turns around the region's own corners are sought.
+  Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top);
+
+  const std::vector<AirEdge>& edges() const { return edges_; }
+  bool free(Spot p) const;
+  bool sees(Spot a, Spot b) const;
+
+ private:
+  void add_upright(const Rings& rings, double from, double to, bool obstacle_inside);
+  void add_level(const PrismShape& prism, double z, bool top);
+
+  Rings region_;
+  std::vector<PrismShape> prisms_;
+  double lowest_;
+  std::vector<AirEdge> edges_;
+};
+
+}  // namespace muster

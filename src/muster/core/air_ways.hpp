@@ -1,0 +1,62 @@
+// Short ways through the air over and around prisms.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "air.hpp"
+
+namespace muster {
+
+// The shortest way turns on edges of obstacles only. Edges are sampled, the samples that see each other make a graph, and
+// the way that is shortest there is pulled straight: its turning points slide along their edges to the minimum, which is
+// the only one, for the length is convex in them.
+class AirWays {
+ public:
+  // Upright edges are sampled every `rise` metres, level ones every `run`, ends included.
+  AirWays(std::shared_ptr<const Air> air, double rise, double run) : air_(std::move(air)) { sample(rise, run); }
+
+  void build(int threads);
+  const Air& air() const { return *air_; }
+  std::size_t samples() const { return nodes_.size(); }
+  // A way with its ends; empty if there is none.
+  std::vector<Spot> way(Spot from, Spot to) const;
+  // The lengths from places[i], `first` <= i < `last`, to all places: of way(i, j). Zero on the diagonal.
+  std::vector<double> lengths(const std::vector<Spot>& places, int first, int last, int threads) const;
+
+ private:
+  struct Node {
+    Spot at;
+    int edge;
+    bool corner;  // where several edges meet: any direction may be taut
+  };
+  struct Piece {
+    int other;
+    double length;
+  };
+  // A place and the nodes that see it.
+  struct Seat {
+    Spot at;
+    bool free;
+    std::vector<Piece> nodes;
+  };
+  struct Tree;
+
+  void sample(double rise, double run);
+  bool taut(const Node& node, Spot direction) const {
+    return node.corner || air_->edges()[node.edge].taut(direction);
+  }
+  Seat seat(Spot p) const;
+  void grow(const Seat& from, Tree& tree) const;
+  std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
+  void pull(std::vector<Spot>& way, std::vector<int>& edges) const;
+  bool slide(std::vector<Spot>& way, const std::vector<int>& edges) const;
+  bool all_seen(const std::vector<Spot>& way) const;
+  void shorten(std::vector<Spot>& way, std::vector<int>& edges) const;
+
+  std::shared_ptr<const Air> air_;
+  std::vector<Node> nodes_;
+  std::vector<std::vector<Piece>> pieces_;
+};
+
+}  // namespace muster

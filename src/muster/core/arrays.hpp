@@ -1,0 +1,43 @@
+// Points between NumPy and the core.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "air.hpp"
+#include "lattice.hpp"
+
+namespace muster {
+
+using PointArray = nanobind::ndarray<const double, nanobind::c_contig, nanobind::device::cpu>;
+using Table = nanobind::ndarray<nanobind::numpy, double>;
+
+inline std::vector<Point> points_of(const PointArray& array) {
+  if (array.ndim() != 2 || array.shape(1) != 2) throw std::invalid_argument("an array of points must be (n, 2)");
+  std::vector<Point> points(array.shape(0));
+  for (std::size_t k = 0; k < points.size(); ++k) points[k] = {array.data()[2 * k], array.data()[2 * k + 1]};
+  return points;
+}
+
+inline Table table_of(std::vector<double> values, std::size_t columns) {
+  auto* kept = new std::vector<double>(std::move(values));
+  const nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return Table(kept->data(), {columns == 0 ? 0 : kept->size() / columns, columns}, owner);
+}
+
+inline Table table_of(const std::vector<Point>& points) {
+  std::vector<double> values;
+  for (const Point p : points) values.insert(values.end(), {p.x, p.y});
+  return table_of(std::move(values), 2);
+}
+
+inline Table table_of(const std::vector<Spot>& spots) {
+  std::vector<double> values;
+  for (const Spot p : spots) values.insert(values.end(), {p.x, p.y, p.z});
+  return table_of(std::move(values), 3);
+}
+
+}  // namespace muster

@@ -1,0 +1,79 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "grid_sights.hpp"
+#include "polygon_sights.hpp"
+#include "ways.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muster {
+
+namespace {
+
+using Pair = std::pair<double, double>;
+
+Point point(const Pair& p) { return {p.first, p.second}; }
+
+Table lengths(const Ways& ways, const PointArray& exits, const PointArray& entries, bool mutual, int first, int last,
+              int threads) {
+  const auto from = points_of(exits), to = points_of(entries);
+  if (first < 0 || last < first || last > static_cast<int>(from.size()) || (mutual && from.size() != to.size())) {
+    throw std::invalid_argument("the rows do not fit the places");
+  }
+  std::vector<double> values;
+  {
+    const nb::gil_scoped_release unlocked;
+    values = ways.lengths(from, to, mutual, first, last, threads);
+  }
+  return table_of(std::move(values), to.size());
+}
+
+}  // namespace
+
+void bind_ways(nb::module_& m) {
+  nb::class_<Ways>(m, "Ways", "Shortest ways in a plane with obstacles: taut pieces between corners.")
+      .def_static(
+          "on_grid", [](const GridMap& map) { return new Ways(std::make_shared<GridSights>(map)); }, "map"_a,
+          "In the unit of cells.")
+      .def_static(
+          "on_region",
+          [](const std::vector<PointArray>& rings) {
+            std::vector<std::vector<Point>> points;
+            for (const PointArray& ring : rings) points.push_back(points_of(ring));
+            return new Ways(std::make_shared<PolygonSights>(points));
+          },
+          "rings"_a, "Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.")
+      .def("build", &Ways::build, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
+           "Find what every corner sees, once; without it each search looks for itself, where it comes by.")
+      .def_prop_ro("built", &Ways::built)
+      .def_prop_ro("corners", &Ways::corners)
+      .def_prop_ro("pieces", &Ways::pieces, "Straight pieces between corners, each counted from both ends.")
+      .def("free", [](const Ways& w, const Pair& p) { return w.free(point(p)); }, "point"_a)
+      .def("sees", [](const Ways& w, const Pair& a, const Pair& b) { return w.sees(point(a), point(b)); }, "a"_a, "b"_a)
+      .def(
+          "way",
+          [](const Ways& w, const Pair& a, const Pair& b) {
+            std::vector<Point> found;
+            {
+              const nb::gil_scoped_release unlocked;
+              found = w.way(point(a), point(b));
+            }
+            return table_of(found);
+          },
+          "start"_a, "goal"_a, "The shortest way with its ends, (k, 2); empty if there is none.")
+      .def("lengths", &lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
+           "Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, "
+           "the entries are the exits, and row i holds what comes after column i alone, and 0 there.");
+}
+
+}  // namespace muster

@@ -1,0 +1,46 @@
+// What is seen from where: the corners around which shortest paths turn, and the straight pieces between them.
+#pragma once
+
+#include <vector>
+
+#include "lattice.hpp"
+
+namespace muster {
+
+// A convex corner of an obstacle: two walls start here, and the obstacle lies in the angle of less than 180 degrees between.
+struct Corner {
+  Lattice at;
+  Point place;  // the same point in its own unit
+  Lattice one_wall;
+  Lattice other_wall;
+
+  // Whether a straight piece in this direction, to or from here, may be part of a shortest path that turns here: its
+  // line does not enter the obstacle (it is taut).
+  bool taut(Lattice direction) const {
+    const std::int64_t one = cross(direction, one_wall), other = cross(direction, other_wall);
+    return (one >= 0 && other >= 0) || (one <= 0 && other <= 0);
+  }
+  // Whether the obstacle is to the left of one who passes in a taut direction.
+  bool on_left(Lattice direction) const { return cross(direction, one_wall) + cross(direction, other_wall) > 0; }
+};
+
+// A plane with obstacles. The corners have numbers from 0.
+class Sights {
+ public:
+  virtual ~Sights() = default;
+  const std::vector<Corner>& corners() const { return corners_; }
+
+  virtual Lattice snap(Point p) const = 0;
+  virtual bool free(Lattice p) const = 0;
+  // Whether the straight piece between two free points is free.
+  virtual bool sees(Lattice a, Lattice b) const = 0;
+  // The corners other than `p` itself that see it and are taut towards it.
+  virtual std::vector<int> seen_from(Lattice p) const = 0;
+  // The corners that a corner sees, taut at both ends. One corner may hide another that lies straight behind it.
+  virtual std::vector<int> neighbours(int corner) const = 0;
+
+ protected:
+  std::vector<Corner> corners_;
+};
+
+}  // namespace muster

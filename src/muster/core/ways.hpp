@@ -1,0 +1,73 @@
+// Shortest ways in a plane with obstacles: Dijkstra and A* over the taut pieces between corners.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sights.hpp"
+
+namespace muster {
+
+// The shortest way turns at corners of obstacles only, each time around the obstacle (Lozano-Perez and Wesley 1979; taut:
+// Oh and Leong 2017). Places are points in the unit of the sights.
+class Ways {
+ public:
+  explicit Ways(std::shared_ptr<const Sights> sights);
+
+  // Finds what every corner sees, once. Without it each search looks for itself, where it comes by.
+  void build(int threads);
+  bool built() const { return !first_.empty(); }
+  std::size_t corners() const { return sights_->corners().size(); }
+  std::size_t pieces() const { return pieces_.size(); }
+
+  bool free(Point p) const { return sights_->free(sights_->snap(p)); }
+  bool sees(Point a, Point b) const { return sights_->sees(sights_->snap(a), sights_->snap(b)); }
+  // The shortest way with its ends; empty if there is none.
+  std::vector<Point> way(Point from, Point to) const;
+  // Row after row from `first` to before `last`: the lengths from exits[i] to all entries; inf where there is no way. If
+  // `mutual`, entries are the exits, and row i holds its lengths to the entries after i alone, and 0 to itself.
+  std::vector<double> lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual, int first,
+                              int last, int threads) const;
+
+ private:
+  // A place and the corners that see it.
+  struct Seat {
+    Lattice at;
+    Point place;
+    bool free;
+    std::vector<int> corners;
+  };
+  struct Tree;
+  struct Last {
+    double length;
+    int corner;  // -1: straight from the place the tree begins at
+  };
+
+  Seat seat(Point p) const;
+  std::vector<Seat> seats(const std::vector<Point>& places, int first, int threads) const;
+  void grow(const Seat& from, const Seat* to, Tree& tree) const;
+  void expand(int corner, const Seat& from, const Seat* to, Tree& tree) const;
+  void look_around(int corner, const Seat& from, const Seat* to, Tree& tree) const;
+  double estimate(int corner, const Seat* to) const;
+  Last last_piece(const Seat& from, const Seat& to, const Tree& tree) const;
+
+  std::shared_ptr<const Sights> sights_;
+  // A straight piece to another corner, and whether the obstacle there is to the left of one who comes along it.
+  struct Piece {
+    double length;
+    std::uint32_t other : 31, on_left : 1;
+  };
+  // What corner c sees with the obstacle on the right is pieces_[first_[2c]] to before first_[2c + 1], then on the left;
+  // the furthest towards the obstacle first.
+  std::vector<std::size_t> first_;
+  std::vector<Piece> pieces_;
+  // The corners' points once more, in little memory: the search goes to and fro among them.
+  struct Small {
+    std::int32_t x, y;
+    Lattice wide() const { return {x, y}; }
+  };
+  std::vector<Small> at_;
+};
+
+}  // namespace muster

@@ -1,0 +1,29 @@
+"""Dijkstra's algorithm between the centres of cells (Dijkstra 1959; market paper, section 3.2.1)."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.motion.path import NoPath, Path
+from muster.motion.paths.on_grid import Parameters, question
+from muster.motion.paths.planner import Planner, in_plane
+from muster.motion.spaces import Space
+
+Floats = npt.NDArray[np.float64]
+
+
+def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
+    """No shorter way leads along the eight directions; corners of blocked cells are not cut."""
+    asked = question(in_plane(space, "dijkstra"), start, goal, params)
+    if isinstance(asked, NoPath):
+        return asked
+    return asked.path(asked.way(heuristic=False), start, goal)
+
+
+DIJKSTRA = Planner(
+    name="dijkstra",
+    summary="shortest along the 8 directions of a grid, without a heuristic",
+    parameters=Parameters,
+    algorithm=find_path,
+)

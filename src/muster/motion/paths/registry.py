@@ -1,0 +1,51 @@
+"""The planners of paths by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.motion.path import NoPath, Path
+from muster.motion.paths.a_star import A_STAR
+from muster.motion.paths.dijkstra import DIJKSTRA
+from muster.motion.paths.planner import Planner
+from muster.motion.paths.rrt_star import RRT_STAR
+from muster.motion.paths.shortest import SHORTEST
+from muster.motion.paths.theta_star import THETA_STAR
+from muster.motion.spaces import Space
+
+_IMPLEMENTATIONS = (SHORTEST, A_STAR, DIJKSTRA, THETA_STAR, RRT_STAR)
+
+PLANNERS: Mapping[str, Planner] = MappingProxyType({planner.name: planner for planner in _IMPLEMENTATIONS})
+
+
+def planner_named(name: str) -> Planner:
+    """The planner of that name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in PLANNERS:
+        hint = did_you_mean(str(name), PLANNERS)
+        raise ParameterError(f"planner: {name}; expected {', '.join(PLANNERS)}{hint}")
+    return PLANNERS[name]
+
+
+def find(
+    space: Space,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    planner: str = "shortest",
+    seed: int = 0,
+    params: Any = None,
+) -> Path | NoPath:
+    """A path by the planner of that name; see `Planner.find`."""
+    return planner_named(planner).find(space, start, goal, seed=seed, params=params)

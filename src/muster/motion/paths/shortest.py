@@ -1,0 +1,43 @@
+"""The shortest path at any angle: taut pieces between corners of obstacles.
+
+In the plane it is the true shortest path: that turns at convex corners of obstacles only (Lozano-Perez and Wesley 1979),
+each time around the obstacle, so only pieces that are taut at both ends count (Oh and Leong 2017, "Edge N-level sparse
+visibility graphs"). Whether points see each other is decided in whole numbers: on a grid to 2^-16 of a cell, in a region to
+2^-29 of its size.
+
+In the air among upright prisms the problem is NP-hard (Canny and Reif 1987). There turning points are sampled on the
+obstacles' edges (Papadimitriou 1985), and the shortest way between samples is pulled straight: its turning points slide
+along their edges to the minimum, which is the only one for that sequence of edges, for the length is convex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.motion.path import NoPath, Path
+from muster.motion.paths.planner import Planner
+from muster.motion.paths.way_finder import WayFinder
+from muster.motion.spaces import Space
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """None."""
+
+
+def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
+    """One path; who wants many makes a `WayFinder`."""
+    return WayFinder(space).path(start, goal)
+
+
+SHORTEST = Planner(
+    name="shortest",
+    summary="the shortest at any angle; in the air, nearly",
+    parameters=Parameters,
+    algorithm=find_path,
+)

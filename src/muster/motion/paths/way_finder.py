@@ -1,0 +1,217 @@
+"""Shortest ways in one space between many places: one graph, one search a place (see `shortest`)."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from muster import core
+from muster.mission.errors import ParameterError
+from muster.motion.grid import Grid
+from muster.motion.path import NoPath, Path
+from muster.motion.paths.on_grid import core_grid, without_repetitions
+from muster.motion.paths.planner import blocked, disconnected, point_of, points_of
+from muster.motion.paths.rings import rings_of
+from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
+
+Floats = npt.NDArray[np.float64]
+_ROWS_AT_A_TIME = 32  # so that Ctrl-C is heard
+
+
+class _Ways(Protocol):
+    """Shortest ways in metres of the map frame."""
+
+    def free(self, point: Floats) -> bool: ...
+    def way(self, start: Floats, goal: Floats) -> Floats: ...
+    def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats: ...
+
+
+class WayFinder:
+    """Shortest paths in one space, which is looked at once."""
+
+    def __init__(self, space: Space) -> None:
+        self._space = space
+        self._ways = _ways_in(space)
+
+    def path(self, start: npt.ArrayLike, goal: npt.ArrayLike) -> Path | NoPath:
+        """The shortest path between two points, (2,) or (3,) metres in the map frame; or why there is none.
+
+        Raises
+        ------
+        ParameterError
+            if one is no such point.
+        """
+        a, b = point_of(self._space, start, "start"), point_of(self._space, goal, "goal")
+        reason = blocked(self._ways.free(a), self._ways.free(b), a, b)
+        if reason is not None:
+            return reason
+        points = self._ways.way(a, b)
+        return Path(without_repetitions(points)) if len(points) else disconnected(a, b)
+
+    def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
+        """Metres of the shortest paths from each exit (n, d) to each entry (m, d): (n, m).
+
+        Without entries they are the exits, and the lengths symmetric. It is inf where there is no path; `path` says why.
+
+        Raises
+        ------
+        ParameterError
+            if there are no such places, or fewer than one thread.
+        """
+        if threads < 1:
+            raise ParameterError(f"threads: {threads}; expected 1 at least")
+        leave = points_of(self._space, exits, "exits")
+        enter = leave if entries is None else points_of(self._space, entries, "entries")
+        return self._ways.lengths(leave, enter, threads)
+
+
+def travel_lengths(space: Space, exits: npt.ArrayLike, entries: npt.ArrayLike, threads: int = 1) -> Floats:
+    """Metres of the shortest paths from each exit to each entry; see `WayFinder.lengths`."""
+    return WayFinder(space).lengths(exits, entries, threads=threads)
+
+
+def _ways_in(space: Space) -> _Ways:
+    if isinstance(space, GridSpace):
+        return _OnGrid(space.grid)
+    if space.region.is_empty:
+        return _Nowhere()
+    return _InRegion(space) if isinstance(space, PolygonSpace) else _InAir(space)
+
+
+class _Nowhere:
+    """A space without a free point."""
+
+    def free(self, point: Floats) -> bool:
+        return False
+
+    def way(self, start: Floats, goal: Floats) -> Floats:
+        return np.empty((0, 2))
+
+    def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
+        return np.full((len(exits), len(entries)), np.inf)
+
+
+class _InRegion:
+    def __init__(self, space: PolygonSpace) -> None:
+        self._ways = core.Ways.on_region(rings_of(space.region))
+
+    def free(self, point: Floats) -> bool:
+        return self._ways.free(_pair(point))
+
+    def way(self, start: Floats, goal: Floats) -> Floats:
+        return self._ways.way(_pair(start), _pair(goal))
+
+    def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
+        return _plane_lengths(self._ways, exits, entries, threads)
+
+
+class _OnGrid:
+    """The core counts in cells."""
+
+    def __init__(self, grid: Grid) -> None:
+        self._grid = grid
+        self._ways = core.Ways.on_grid(core_grid(grid))
+
+    def free(self, point: Floats) -> bool:
+        return self._ways.free(self._cell(point))
+
+    def way(self, start: Floats, goal: Floats) -> Floats:
+        way = self._grid.to_map(self._ways.way(self._cell(start), self._cell(goal)))
+        if len(way):
+            way[0], way[-1] = start, goal
+        return way
+
+    def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
+        in_cells = _plane_lengths(self._ways, self._grid.to_grid(exits), self._grid.to_grid(entries), threads)
+        return in_cells * self._grid.resolution_m
+
+    def _cell(self, point: Floats) -> tuple[float, float]:
+        return _pair(self._grid.to_grid(point[np.newaxis])[0])
+
+
+def _plane_lengths(ways: core.Ways, exits: Floats, entries: Floats, threads: int) -> Floats:
+    if not ways.built:
+        ways.build(threads)
+    mutual = np.array_equal(exits, entries)
+    rows = [
+        ways.lengths(exits, entries, mutual=mutual, first=first, last=last, threads=threads)
+        for first, last in _blocks(len(exits), threads)
+    ]
+    return _joined(rows, (len(exits), len(entries)), mutual=mutual)
+
+
+class _InAir:
+    """Samples: eight heights on upright edges, and 64 along the region; higher places make them anew."""
+
+    def __init__(self, space: PrismSpace) -> None:
+        self._space = space
+        ceilings = [prism.ceiling_m for prism in space.prisms if np.isfinite(prism.ceiling_m)]
+        self._top = max([space.lowest_m, *ceilings])
+        self._sample()
+
+    def _sample(self) -> None:
+        space = self._space
+        west, south, east, north = space.region.bounds
+        height, width = self._top - space.lowest_m, max(east - west, north - south)
+        self._ways = core.AirWays(
+            rings_of(space.region),
+            [(rings_of(prism.polygon), prism.floor_m, prism.ceiling_m) for prism in space.prisms],
+            lowest=space.lowest_m,
+            top=self._top,
+            rise=(height or width) / 8,
+            run=width / 64,
+        )
+        self._built = False
+
+    def _ready(self, places: Floats, threads: int) -> core.AirWays:
+        if len(places) and places[:, 2].max() > self._top:
+            self._top = float(places[:, 2].max())
+            self._sample()
+        if not self._built:
+            self._ways.build(threads)
+            self._built = True
+        return self._ways
+
+    def free(self, point: Floats) -> bool:
+        return self._ways.free(_triple(point))
+
+    def way(self, start: Floats, goal: Floats) -> Floats:
+        """Found from the lesser point, so that there and back are equally long."""
+        ways = self._ready(np.stack([start, goal]), 1)
+        if tuple(start) <= tuple(goal):
+            return ways.way(_triple(start), _triple(goal))
+        return ways.way(_triple(goal), _triple(start))[::-1]
+
+    def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
+        places, where = np.unique(np.concatenate([exits, entries]), axis=0, return_inverse=True)
+        ways = self._ready(places, threads)
+        rows = [
+            ways.lengths(places, first=first, last=last, threads=threads)
+            for first, last in _blocks(len(places), threads)
+        ]
+        table = _joined(rows, (len(places), len(places)), mutual=True)
+        where = where.reshape(-1)
+        return table[np.ix_(where[: len(exits)], where[len(exits) :])]
+
+
+def _blocks(rows: int, threads: int) -> list[tuple[int, int]]:
+    step = _ROWS_AT_A_TIME * threads
+    return [(first, min(first + step, rows)) for first in range(0, rows, step)]
+
+
+def _joined(rows: list[Floats], shape: tuple[int, int], *, mutual: bool) -> Floats:
+    table = np.concatenate(rows) if rows else np.empty(shape)
+    if mutual:
+        below = np.tril_indices(shape[0], -1)
+        table[below] = table.T[below]
+    return table
+
+
+def _pair(point: Floats) -> tuple[float, float]:
+    return float(point[0]), float(point[1])
+
+
+def _triple(point: Floats) -> tuple[float, float, float]:
+    return float(point[0]), float(point[1]), float(point[2])
