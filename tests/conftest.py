@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import logging
 import os
 
 import pytest
@@ -9,6 +10,15 @@ from hypothesis import HealthCheck, settings
 settings.register_profile("fixed", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("search", deadline=None, max_examples=2000, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
+
+
+@pytest.fixture(autouse=True)
+def log_level():
+    """What `-q` of a verb does to the log of this process ends with the test."""
+    logger = logging.getLogger("muster")
+    before = logger.level
+    yield
+    logger.setLevel(before)
 
 
 def pytest_addoption(parser):

@@ -131,5 +131,5 @@ def test_ctrl_c_ends_it():
     assert study.stdout.readline() == "ready\n"
     time.sleep(1.0)
     os.killpg(study.pid, signal.SIGINT)  # as a terminal does: to all processes
-    out, err = study.communicate(timeout=60)
+    out, err = study.communicate(timeout=300)  # however busy the machine is: its processes start first
     assert (study.returncode, out, err.strip()) == (130, "", "interrupted")

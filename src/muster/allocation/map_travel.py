@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,8 @@ import numpy.typing as npt
 from muster.mission.errors import Finding, NotSupportedError
 from muster.mission.model import Mission, Robot
 from muster.motion.path import NoPath
-from muster.motion.paths import WayFinder
-from muster.motion.places import checked_world
-from muster.motion.spaces import PrismSpace, Space
+from muster.motion.roads import Roads, body_of
+from muster.motion.world import Body
 
 Floats = npt.NDArray[np.float64]
 
@@ -26,23 +26,23 @@ class MapTravel:
 
     Parameters
     ----------
-    spaces, finders
-        of each class of robots: those with one radius and kind.
-    classes
-        (m,) the class of each robot.
+    roads
+        of the mission.
+    bodies, classes
+        the different bodies of the robots, and for each robot (m,) the number of its own.
     exits, entries
         (p, 3) metres in the map frame: where places are left and entered.
     """
 
-    spaces: tuple[Space, ...]
-    finders: tuple[WayFinder, ...]
+    roads: Roads
+    bodies: tuple[Body, ...]
     classes: npt.NDArray[np.int32]
     exits: Floats
     entries: Floats
 
     @classmethod
-    def of(cls, mission: Mission, robots: tuple[Robot, ...], exits: Floats, entries: Floats) -> MapTravel:
-        """Read the map, and look at it once for each class.
+    def of(cls, mission: Mission, robots: Sequence[Robot], exits: Floats, entries: Floats) -> MapTravel:
+        """Read the map.
 
         Raises
         ------
@@ -54,31 +54,20 @@ class MapTravel:
             for more places than a table can hold.
         """
         if len(exits) > _MOST_PLACES:
-            places = f"{len(exits)} places of tasks and robots"
-            raise NotSupportedError([Finding(mission.name, None, "map", places, f"at most {_MOST_PLACES} with a map")])
-        world = checked_world(mission)
-        bodies = sorted({_body(robot) for robot in robots})
-        spaces = tuple(world.free_space(radius, kind) for radius, kind in bodies)
-        classes = np.array([bodies.index(_body(robot)) for robot in robots], dtype=np.int32)
-        return cls(spaces, tuple(map(WayFinder, spaces)), classes, exits, entries)
+            places = f"{len(exits)} starts, ends and tasks"
+            expected = f"at most {_MOST_PLACES} for travel over a map"
+            raise NotSupportedError([Finding(mission.source.file, None, "map", places, expected)])
+        bodies = tuple(dict.fromkeys(body_of(robot) for robot in robots))
+        classes = np.array([bodies.index(body_of(robot)) for robot in robots], dtype=np.int32)
+        return cls(Roads.of(mission), bodies, classes, exits, entries)
 
     def table(self) -> Floats:
         """(classes, p, p) metres from the exit of each place to the entry of each other; inf where there is no way."""
         threads = os.cpu_count() or 1
-        return np.array([self._lengths(c, threads) for c in range(len(self.spaces))])
+        return np.array([self.roads.lengths(body, self.exits, self.entries, threads) for body in self.bodies])
 
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
-        answer = self.finders[self.classes[i]].path(self.exits[start], self.entries[end])
-        return f"{answer.reason}: {answer.detail}" if isinstance(answer, NoPath) else "there is no way to it"
-
-    def _lengths(self, c: int, threads: int) -> Floats:
-        """Of a way in the plane between places at different heights, the height changes evenly along it."""
-        plane = self.finders[c].lengths(self.exits, self.entries, threads=threads)
-        if isinstance(self.spaces[c], PrismSpace):
-            return plane
-        return np.hypot(plane, self.exits[:, None, 2] - self.entries[None, :, 2])
-
-
-def _body(robot: Robot) -> tuple[float, str]:
-    return robot.radius_m, robot.kind
+        body = self.bodies[self.classes[i]]
+        found = self.roads.path(body, self.exits[start].tolist(), self.entries[end].tolist())
+        return f"{found.reason}: {found.detail}" if isinstance(found, NoPath) else "there is no way to it"

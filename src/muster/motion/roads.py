@@ -1,0 +1,76 @@
+"""The ways of a mission's robots over its map: the shortest paths, as they will be driven and as they are paid for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.model import Mission, Robot
+from muster.motion.path import NoPath, Path
+from muster.motion.paths import WayFinder
+from muster.motion.places import checked_world
+from muster.motion.spaces import PrismSpace, Space
+from muster.motion.world import Body, World
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Roads:
+    """Shortest paths for each body over one map. Where a way is in the plane, the height changes evenly along it.
+
+    Parameters
+    ----------
+    world
+        the map.
+    """
+
+    world: World
+    _finders: dict[Body, WayFinder] = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(cls, mission: Mission) -> Roads:
+        """The roads of a mission with a map.
+
+        Raises
+        ------
+        MissionError
+            for a map that is wrong, and for robots that start or end where they cannot stand.
+        MissingExtraError
+            if the extra `map` is not installed.
+        """
+        return cls(checked_world(mission))
+
+    def path(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
+        """The shortest path between two points of the map frame; or why there is none."""
+        found = self._finder(body).path(start, goal)
+        if isinstance(found, NoPath) or found.points.shape[1] == len(start):
+            return found
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
+        share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
+        if len(share) == 1 and start[2] != goal[2]:  # straight up
+            return Path(np.array([start, goal], dtype=np.float64))
+        return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
+
+    def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
+        """Metres (n, m) from exits (n, 3) to entries (m, 3), inf where there is no path."""
+        metres = self._finder(body).lengths(exits, entries, threads=threads)
+        if isinstance(self._space(body), PrismSpace):
+            return metres
+        return np.hypot(metres, exits[:, None, 2] - entries[None, :, 2])
+
+    def _finder(self, body: Body) -> WayFinder:
+        if body not in self._finders:
+            self._finders[body] = WayFinder(self._space(body))
+        return self._finders[body]
+
+    def _space(self, body: Body) -> Space:
+        return self.world.free_space(body.radius_m, body.kind)
+
+
+def body_of(robot: Robot) -> Body:
+    """What a map knows of a robot."""
+    return Body(robot.radius_m, robot.kind)
