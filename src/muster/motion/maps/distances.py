@@ -26,7 +26,8 @@ def inflated(grid: Grid, radius_m: float) -> Grid:
     if radius_m <= 0:
         return grid
     gaps = _squared_gaps(grid.blocked, 1.0)
-    near = gaps < (radius_m / grid.resolution_m * (1 - _SLACK)) ** 2
+    reach = min(radius_m / grid.resolution_m, float(sum(grid.shape)))  # beyond the grid all is blocked
+    near = gaps < (reach * (1 - _SLACK)) ** 2
     return Grid(grid.blocked | near, grid.resolution_m, grid.origin)
 
 
