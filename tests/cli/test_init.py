@@ -71,6 +71,11 @@ def test_init_from_a_shipped_mission_with_a_map_copies_the_map_too(muster):
         "floor-plan.png: exists; expected the name of a new file\n",
     )
     assert not Path("again.yaml").exists()
+    assert muster("init", "--from", "floor", "-o", "floor-plan.yaml") == (
+        2,
+        "",
+        "floor-plan.yaml: the name of the mission's map; expected another one\n",
+    )
 
 
 def test_init_from_what_cannot_be_copied(muster):

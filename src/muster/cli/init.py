@@ -44,6 +44,8 @@ def command(name: str, shipped: str | None, output: Path | None, quiet: bool, ve
     path = output or Path(f"{stem}.yaml")
     text, beside = _template(path) if shipped is None else _shipped(shipped)
     files = {path: text.encode(), **{path.with_name(file.name): file.read_bytes() for file in beside}}
+    if len(files) <= len(beside):
+        raise ParameterError(f"{path}: the name of the mission's map; expected another one")
     for new in files:
         if new.exists() or new.is_symlink():
             raise ParameterError(f"{new}: exists; expected the name of a new file")
