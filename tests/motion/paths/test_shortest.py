@@ -1,0 +1,110 @@
+"""The shortest paths in the plane against all pairs of all vertices, and their lengths against the paths."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from muster.mission.errors import ParameterError
+from muster.motion.grid import Grid
+from muster.motion.path import Path
+from muster.motion.paths import WayFinder, find, travel_lengths
+from muster.motion.spaces import GridSpace, PolygonSpace
+from tests.motion.paths.brute import grid_lengths, region_lengths
+from tests.motion.paths.spaces import grids, places_in, places_on, regions
+
+
+def path_lengths(finder, places):
+    answers = [[finder.path(a, b) for b in places] for a in places]
+    return np.array([[a.length_m if isinstance(a, Path) else np.inf for a in row] for row in answers])
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_on_grids_nothing_is_shorter(data):
+    space = data.draw(grids(5))
+    places = data.draw(places_on(space, 3))
+    wanted = grid_lengths(space.grid.blocked, places)
+    finder = WayFinder(space)
+    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)  # looking where it comes by
+    assert finder.lengths(places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)  # with the graph
+
+
+@settings(max_examples=40, deadline=None)
+@given(regions(), places_in(4))
+def test_in_regions_nothing_is_shorter(space, places):
+    wanted = region_lengths(space.region, places)
+    finder = WayFinder(space)
+    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert finder.lengths(places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+
+
+@settings(max_examples=30, deadline=None)
+@given(regions(), st.integers(0, 2**32 - 1))
+def test_paths_stay_in_the_region(space, seed):
+    a, b = np.random.default_rng(seed).uniform((0, 0), (16, 12), (2, 2))
+    answer = find(space, a, b)
+    if isinstance(answer, Path):
+        assert space.region.buffer(1e-6).covers(shapely.LineString(answer.points))
+    else:
+        assert (answer.reason == "start blocked") == (not space.region.covers(shapely.Point(a)))
+
+
+@pytest.mark.parametrize("kind", ["grid", "region"])
+def test_lengths_are_symmetric_and_those_of_the_paths(kind):
+    rng = np.random.default_rng(5)
+    if kind == "grid":
+        space = GridSpace(Grid(rng.random((60, 80)) < 0.3, 0.25, (3.0, -2.0, 0.7)))
+        places = space.grid.to_map(rng.uniform((0, 0), (80, 60), (20, 2)))
+    else:
+        holes = [shapely.Point(p).buffer(1.5) for p in rng.uniform(0, 30, (20, 2))]
+        space = PolygonSpace(shapely.box(0, 0, 30, 30).difference(shapely.unary_union(holes)))
+        places = rng.uniform(0, 30, (20, 2))
+    finder = WayFinder(space)
+    lengths = finder.lengths(places)
+    assert (lengths == lengths.T).all()
+    assert np.isfinite(lengths).any()
+    assert np.isinf(lengths).any()
+    assert lengths == pytest.approx(path_lengths(finder, places), rel=1e-9)
+    assert (lengths == travel_lengths(space, places, places.copy(), threads=2)).all()
+    others = rng.permutation(places) + 0.01
+    assert travel_lengths(space, places, others) == pytest.approx(travel_lengths(space, others, places).T, rel=1e-9)
+
+
+def test_around_a_square():
+    space = PolygonSpace(shapely.box(0, 0, 10, 10).difference(shapely.box(4, 2, 6, 9)))
+    answer = find(space, (1, 5), (9, 5))
+    assert answer.points.tolist() == [[1, 5], [4, 2], [6, 2], [9, 5]]
+    assert answer.length_m == pytest.approx(2 * np.sqrt(18) + 2)
+
+
+def test_rooms_without_a_door_are_disconnected():
+    space = PolygonSpace(shapely.union(shapely.box(0, 0, 1, 1), shapely.box(2, 0, 3, 1)))
+    assert find(space, (0.5, 0.5), (2.5, 0.5)).reason == "disconnected"
+    assert find(space, (1.5, 0.5), (2.5, 0.5)).reason == "start blocked"
+    assert find(space, (0.5, 0.5), (1e12, 0.5)).reason == "goal blocked"
+
+
+def test_a_place_on_the_border_is_free():
+    space = PolygonSpace(shapely.box(0, 0, 3, 3).difference(shapely.box(1, 1, 2, 2)))
+    assert find(space, (1, 1.5), (2, 1.5)).length_m == pytest.approx(2.0)
+    assert find(space, (0, 0), (3, 3)).length_m == pytest.approx(2 * np.sqrt(5))
+
+
+def test_an_empty_space_is_blocked_everywhere():
+    space = PolygonSpace(shapely.Polygon())
+    assert find(space, (0, 0), (1, 1)).reason == "start blocked"
+    assert np.isinf(travel_lengths(space, [(0, 0)], [(0, 0)])).all()
+
+
+def test_no_places_no_lengths():
+    assert travel_lengths(GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), np.empty((0, 2)), np.empty((0, 2))).shape == (0, 0)
+
+
+@pytest.mark.parametrize(("places", "threads"), [([1.0, 2.0], 1), ([[1.0]], 1), ([[0.5, 0.5]], 0)])
+def test_bad_places_are_named(places, threads):
+    with pytest.raises(ParameterError):
+        travel_lengths(GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), places, places, threads)
