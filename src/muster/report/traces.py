@@ -5,13 +5,14 @@ All places are metres in the map frame, `(n, d)` with d 2 or 3 as the picture ha
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muster.mission.model import Mission, Point, Robot, Task
+from muster.motion.path import NoPath
 from muster.verification import RouteFigures, Verdict
 
 Places = NDArray[np.float64]
@@ -21,9 +22,10 @@ Places = NDArray[np.float64]
 class Trace:
     """One robot's way.
 
-    `travel` runs from the start through the tasks, from exit to entry; `work` from the entry of a task through its
-    position to its exit, where these differ. Both are polylines, parted by rows of NaN. `end` is the leg from the last
-    task to where the route must end, two rows or none.
+    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven; `work`
+    from the entry of a task through its
+    position to its exit, where these differ. Both are polylines, parted by rows of NaN. `end` is the leg from the last task to
+    where the route must end, no rows where it may end anywhere.
     """
 
     index: int
@@ -36,23 +38,49 @@ class Trace:
     end: Places
 
 
+Way = Callable[[Robot, Point, Point], Sequence[Point]]
+"""The points that a robot passes on its way from one place to another, both included."""
+
+
 def traces(mission: Mission, verdict: Verdict, dimensions: int) -> list[Trace]:
     """Trace the ways of all robots, in mission order."""
+    way = way_in(mission)
     tasks = {task.id: task for task in mission.tasks}
     found = []
     for index, (robot, figures) in enumerate(zip(mission.robots, verdict.routes, strict=True)):
         route = tuple(tasks[name] for name in figures.tasks)
-        found.append(_trace(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions))
+        found.append(_trace(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions, way))
     return found
 
 
+def way_in(mission: Mission) -> Way:
+    """How robots go from place to place: along the paths of the map where travel is by it, else straight."""
+    if mission.travel_rule != "map":
+        return lambda robot, start, goal: (start, goal)
+    from muster.motion.roads import Roads, body_of
+
+    roads = Roads.of(mission)
+
+    def way(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
+        found = roads.path(body_of(robot), start, goal)
+        return (start, goal) if isinstance(found, NoPath) else [tuple(point) for point in found.points.tolist()]
+
+    return way
+
+
 def _trace(
-    index: int, robot: Robot, figures: RouteFigures, tasks: tuple[Task, ...], end: Point | None, dimensions: int
+    index: int,
+    robot: Robot,
+    figures: RouteFigures,
+    tasks: tuple[Task, ...],
+    end: Point | None,
+    dimensions: int,
+    way: Way,
 ) -> Trace:
     travel, work, here = [[robot.position]], [], robot.position
     for task in tasks:
         entry, leaving = task.entry or task.position, task.exit or task.position
-        travel[-1].append(entry)
+        travel[-1] += way(robot, here, entry)[1:]
         if entry != task.position or leaving != task.position:
             work.append([entry, task.position, leaving])
         if entry != leaving:
@@ -66,7 +94,7 @@ def _trace(
         positions=places((task.position for task in tasks), dimensions),
         travel=_polylines(travel, dimensions),
         work=_polylines(work, dimensions),
-        end=places([here, end] if end is not None and tasks else [], dimensions),
+        end=places(way(robot, here, end) if end is not None and tasks else [], dimensions),
     )
 
 

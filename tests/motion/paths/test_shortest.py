@@ -101,7 +101,9 @@ def test_an_empty_space_is_blocked_everywhere():
 
 
 def test_no_places_no_lengths():
-    assert travel_lengths(GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), np.empty((0, 2)), np.empty((0, 2))).shape == (0, 0)
+    assert travel_lengths(
+        GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), np.empty((0, 2)), np.empty((0, 2))
+    ).shape == (0, 0)
 
 
 @pytest.mark.parametrize(("places", "threads"), [([1.0, 2.0], 1), ([[1.0]], 1), ([[0.5, 0.5]], 0)])
