@@ -17,7 +17,7 @@ import click
 from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
 from muster.mission.errors import MusterError
 
-VERBS = ("missions", "init", "check", "solve", "verify", "explain", "study", "bench")
+VERBS = ("missions", "init", "check", "solve", "verify", "explain", "path", "study", "bench")
 
 
 class _OutputClosedError(Exception):
@@ -63,6 +63,7 @@ _SUMMARIES = {
     "solve": "Plan a mission.",
     "verify": "Judge a plan from scratch.",
     "explain": "Say why a task is done by this robot, not by that one, or left out.",
+    "path": "Find a way over the map of a mission, from one point to another.",
     "study": "Repeat a published experiment beside its published numbers.",
     "bench": "Measure speed on this machine, or quality against other solvers.",
 }

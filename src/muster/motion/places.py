@@ -127,10 +127,10 @@ def _blocked(
         for body in bodies:
             space = world.free_space(body.radius_m, body.kind)
             if not free(space, np.array([point]))[0]:
-                yield BlockedPlace(path, owner, point, body, _why(world, point, body))
+                yield BlockedPlace(path, owner, point, body, why_blocked(world, point, body))
 
 
-def _why(world: World, point: Point, body: Body) -> str:
+def why_blocked(world: World, point: Point, body: Body) -> str:
     """Why a point is blocked for a body: what it lies in, else what is too near."""
     import shapely
 

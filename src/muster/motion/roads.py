@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Mission, Point, Robot
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import WayFinder
-from muster.motion.places import checked_world
+from muster.motion.places import checked_world, why_blocked
 from muster.motion.spaces import PrismSpace, Space
 from muster.motion.world import Body, World
 
@@ -47,13 +47,23 @@ class Roads:
     def path(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
         """The shortest path between two points of the map frame; or why there is none."""
         found = self._finder(body).path(start, goal)
-        if isinstance(found, NoPath) or found.points.shape[1] == len(start):
+        if isinstance(found, NoPath):
+            return self._told(found, body, tuple(start), tuple(goal))
+        if found.points.shape[1] == len(start):
             return found
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
         share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
         if len(share) == 1 and start[2] != goal[2]:  # straight up
             return Path(np.array([start, goal], dtype=np.float64))
         return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
+
+    def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
+        """With what is in the way of a body that cannot stand where it is to."""
+        for blocked, point in (("start blocked", start), ("goal blocked", goal)):
+            if found.reason == blocked:
+                place = ", ".join(f"{c:g}" for c in point)
+                return NoPath(blocked, f"({place}): {why_blocked(self.world, point, body)}")
+        return found
 
     def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
         """Metres (n, m) from exits (n, 3) to entries (m, 3), inf where there is no path."""

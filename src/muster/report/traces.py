@@ -22,10 +22,9 @@ Places = NDArray[np.float64]
 class Trace:
     """One robot's way.
 
-    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven; `work`
-    from the entry of a task through its
-    position to its exit, where these differ. Both are polylines, parted by rows of NaN. `end` is the leg from the last task to
-    where the route must end, no rows where it may end anywhere.
+    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven;
+    `work` from the entry of a task through its position to its exit, where these differ. Both are polylines, parted by
+    rows of NaN. `end` is the leg from the last task to where the route must end, no rows where it may end anywhere.
     """
 
     index: int

@@ -1,0 +1,177 @@
+"""`muster path`: how one robot gets from one point to another over a mission's map."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path as File
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.options import format_option, load_mission, mission_argument, quiet_option
+from muster.cli.outputs import require_drawable, require_writable
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.mission.model import Mission, Robot
+from muster.mission.plan import json_text
+
+if TYPE_CHECKING:
+    from muster.motion.path import NoPath, Path
+    from muster.motion.world import Body, World
+
+_PLANNERS = ("shortest", "theta-star", "a-star", "dijkstra", "rrt-star")
+_FILE = click.Path(path_type=File)
+
+
+@click.command()
+@mission_argument
+@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the way begins, metres.")
+@click.option("--to", "goal", required=True, metavar="X,Y[,Z]", help="Where it ends.")
+@click.option("--planner", type=click.Choice(_PLANNERS), default="shortest", show_default=True, help="What finds it.")
+@click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
+@click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
+@click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of rrt-star.")
+@format_option
+@click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
+@quiet_option
+def command(
+    mission: str,
+    robots: File | None,
+    suitability: File | None,
+    salesmen: int | None,
+    depot: str | None,
+    start: str,
+    goal: str,
+    planner: str,
+    robot: str | None,
+    radius: float | None,
+    kind: str | None,
+    seed: int,
+    form: str,
+    plot: File | None,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Find a way for one body over the map of a MISSION, from one point to another.
+
+    `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
+    the reason, and no error. Without a map the way is straight.
+    """
+    require_writable(None, (plot,), (mission, robots, suitability), ())
+    require_drawable(plot)
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
+    body = _body(loaded, robot, radius, kind)
+    world = _world(loaded)
+    found = _found(world, body, planner, ends, seed)
+    if plot is not None:
+        _draw(loaded, world, body, found, ends, planner, plot)
+    if form == "json":
+        click.echo(json_text(_answer(found)), nl=False)
+    else:
+        _print(found, loaded, body, planner)
+    return DONE
+
+
+def _world(mission: Mission) -> World | None:
+    from muster.motion.world import World
+
+    return None if mission.map is None else World.of(mission)
+
+
+def _found(
+    world: World | None, body: Body, planner: str, ends: tuple[list[float], list[float]], seed: int
+) -> Path | NoPath:
+    import numpy as np
+
+    from muster.motion.path import Path
+    from muster.motion.paths import planner_named
+    from muster.motion.roads import Roads
+
+    start, goal = ends
+    if world is None:
+        return Path(np.array(ends))
+    if planner == "shortest":
+        return Roads(world).path(body, start, goal)
+    return planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+
+
+def _point(mission: Mission, option: str, text: str) -> list[float]:
+    expected = "x,y,z" if mission.dimensions == 3 else "x,y"
+    try:
+        point = [float(part) for part in text.split(",")]
+    except ValueError:
+        point = []
+    if len(point) != mission.dimensions or not all(map(math.isfinite, point)):
+        raise ParameterError(f"{option}: {text!r}; expected {expected}, metres in the map frame")
+    return point
+
+
+def _body(mission: Mission, robot: str | None, radius: float | None, kind: str | None) -> Body:
+    from muster.motion.world import Body
+
+    if radius is not None and not (math.isfinite(radius) and radius >= 0):
+        raise ParameterError(f"--radius: {radius:g}; expected a finite number of at least 0")
+    own = None if robot is None else _robot(mission, robot)
+    radius_m = radius if radius is not None else 0.0 if own is None else own.radius_m
+    return Body(radius_m, kind or ("ground" if own is None else own.kind))
+
+
+def _robot(mission: Mission, name: str) -> Robot:
+    for robot in mission.robots:
+        if robot.id == name:
+            return robot
+    hint = did_you_mean(name, [robot.id for robot in mission.robots])
+    raise ParameterError(f"--robot: {name!r}; expected a robot of the mission{hint}")
+
+
+def _answer(found: Path | NoPath) -> dict[str, Any]:
+    from muster.motion.path import NoPath
+
+    if isinstance(found, NoPath):
+        return {"no_path": _reason(found)}
+    return {"length_m": found.length_m, "points": found.points.tolist()}
+
+
+def _reason(found: NoPath) -> str:
+    return f"{found.reason}: {found.detail}" if found.detail else found.reason
+
+
+def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str) -> None:
+    import numpy as np
+
+    from muster.cli.tables import print_table
+    from muster.motion.path import NoPath
+
+    if isinstance(found, NoPath):
+        click.echo(f"no path: {_reason(found)}")
+        return
+    legs = np.linalg.norm(np.diff(found.points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(legs)])
+    columns = (*(f"{axis} [m]" for axis in "xyz"[: found.points.shape[1]]), "so far [m]")
+    rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(found.points, along, strict=True)]
+    print_table(columns, rows, title=f"{mission.name}: {_facts(body, planner)}", right=columns)
+    click.echo(f"{found.length_m:.3f} m, {len(found.points) - 1} straight pieces")
+
+
+def _facts(body: Body, planner: str) -> str:
+    return f"{planner}, {body.kind}, radius {body.radius_m:g} m"
+
+
+def _draw(
+    mission: Mission,
+    world: World | None,
+    body: Body,
+    found: Path | NoPath,
+    ends: tuple[list[float], list[float]],
+    planner: str,
+    file: File,
+) -> None:
+    from muster.report.files import save_figure
+    from muster.report.way import plot_way
+
+    start, goal = (tuple(end) for end in ends)
+    image = None if world is None else world.image
+    save_figure(plot_way(mission, found, start, goal, facts=_facts(body, planner), image=image), file)
