@@ -86,7 +86,7 @@ class Curve:
             for a, b in pairwise(ends)
         ]
         which = np.repeat(np.arange(len(spans)), [len(span) for span in spans])
-        parts = self._parts(which, np.concatenate(spans))
+        parts = self.parts_at(which, np.concatenate(spans))
         return np.append(which, len(spans) - 1), np.append(parts, 1.0)
 
     def parameters(self, s: npt.ArrayLike) -> tuple[npt.NDArray[np.intp], Floats]:
@@ -94,7 +94,7 @@ class Curve:
         way = np.clip(np.atleast_1d(np.asarray(s, dtype=np.float64)), 0.0, self.length_m)
         ends = self._table[_PIECES:: _PIECES]
         which = np.minimum(np.searchsorted(ends, way, side="right"), len(self.control) - 1)
-        return which, self._parts(which, way)
+        return which, self.parts_at(which, way)
 
     def points_at(self, which: npt.NDArray[np.intp], parts: Floats) -> Floats:
         """S of (4) at parameters of segments."""
@@ -147,7 +147,7 @@ class Curve:
         speeds = np.linalg.norm(self._velocity(many, at.ravel()), axis=1).reshape(at.shape)
         return np.asarray(half * (speeds @ _WEIGHTS))
 
-    def _parts(self, which: npt.NDArray[np.intp], way: Floats) -> Floats:
+    def parts_at(self, which: npt.NDArray[np.intp], way: Floats) -> Floats:
         """Parameters of segments at arc lengths: from the table, then by two steps of Newton's."""
         index = np.clip(np.searchsorted(self._table, way, side="right") - 1, which * _PIECES, (which + 1) * _PIECES - 1)
         span = self._table[index + 1] - self._table[index]
