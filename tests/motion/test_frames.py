@@ -13,7 +13,7 @@ angle = st.floats(-math.pi, math.pi)
 metres = st.floats(-1e3, 1e3)
 poses = st.tuples(metres, metres, metres, angle, st.floats(-1.5, 1.5), angle)
 vectors = st.tuples(metres, metres, metres)
-quaternions = st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: 1e-3 < np.linalg.norm(q))
+quaternions = st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: np.linalg.norm(q) > 1e-3)
 
 
 def same(a, b, tolerance=1e-8):

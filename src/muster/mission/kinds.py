@@ -350,7 +350,11 @@ class Record:
                 either += [{"required": [f.name]}, {"required": [key]}]
         choice: JsonSchema = {"oneOf": either} if either else {}
         extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
-        return {"type": "object", "properties": properties, "required": need, "additionalProperties": False} | choice | extra
+        return (
+            {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
+            | choice
+            | extra
+        )
 
 
 def _schema(f: Field[Any]) -> JsonSchema:

@@ -82,8 +82,7 @@ class Curve:
         """Segment and parameter of the places of `sample`."""
         ends = self._table[::_PIECES]
         spans = [
-            np.linspace(a, b, max(1, int(np.ceil((b - a) / step_m - 1e-9))), endpoint=False)
-            for a, b in pairwise(ends)
+            np.linspace(a, b, max(1, int(np.ceil((b - a) / step_m - 1e-9))), endpoint=False) for a, b in pairwise(ends)
         ]
         which = np.repeat(np.arange(len(spans)), [len(span) for span in spans])
         parts = self.parts_at(which, np.concatenate(spans))
@@ -92,7 +91,7 @@ class Curve:
     def parameters(self, s: npt.ArrayLike) -> tuple[npt.NDArray[np.intp], Floats]:
         """Segment (n,) and parameter tau in [0, 1] (n,) at arc lengths from the start."""
         way = np.clip(np.atleast_1d(np.asarray(s, dtype=np.float64)), 0.0, self.length_m)
-        ends = self._table[_PIECES:: _PIECES]
+        ends = self._table[_PIECES::_PIECES]
         which = np.minimum(np.searchsorted(ends, way, side="right"), len(self.control) - 1)
         return which, self.parts_at(which, way)
 

@@ -256,7 +256,7 @@ def _with_cruising(straight: npt.NDArray[np.bool_], places: Places, limits: Limi
         reached = way[k] + (peak - first) / gain
         left = way[k + 1] - (peak - last) / gain
         inside = sorted({place for place in (reached, left) if way[k] < place < way[k + 1]})
-        at += [k + 1] * len(inside)
+        at += [int(k) + 1] * len(inside)
         more += [(place, peak) for place in inside]
     new = np.array(more).reshape(-1, 2)
     return (
@@ -280,9 +280,10 @@ def _excess(motion: Trajectory, bent: npt.NDArray[np.bool_], limits: Limits) -> 
         rates.append(np.stack([ends[k], middle, ends[k + 1]]))
     speed, yaw_rate = (np.linalg.norm(rate, axis=2) for rate in rates)
     gain, yaw_gain = (2 * np.linalg.norm(np.diff(rate, axis=0), axis=2) / span[:, 0] for rate in rates)
-    return max(
+    worst = max(
         (speed + yaw_rate * limits.track_m / 2).max() / limits.speed_mps,
         yaw_rate.max() / limits.yaw_rate_radps,
         math.sqrt(gain.max() / limits.acceleration_mps2),
         math.sqrt(yaw_gain.max() / limits.yaw_acceleration_radps2),
     )
+    return float(worst)

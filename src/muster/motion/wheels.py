@@ -4,9 +4,9 @@ With the rims' speeds left and right and the distance between the wheels (`track
 V_transl = (right + left) / 2 and turns at (right - left) / track, of which a rim feels V_rot = |yaw rate| track / 2. The
 faster rim goes at V_max = V_transl + V_rot: that is (5).
 
-(6) prints V_transl = V_max / (1 + L / R) with L and R the speeds of the wheels. That is half of V_max on the straight, where
-nothing turns and (5) gives V_max. With L half the track and R the radius of the turn V_rot is V_transl L / R, and (6)
-follows from (5). That is what stands here, with the curvature 1 / R.
+(6) prints V_transl = V_max / (1 + L / R) with L and R the speeds of the wheels. On the straight that is half of V_max,
+where nothing turns and (5) gives V_max. With L half the track and R the radius of the turn V_rot is V_transl L / R, and
+(6) follows from (5). That is what stands here, with the curvature 1 / R.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def wheel_speeds(speed: npt.ArrayLike, yaw_rate: npt.ArrayLike, track_m: float) -> Floats:
-    """Rim speeds (..., 2), left and right, in m/s, of a robot that goes at m/s (backwards below 0) and turns at rad/s."""
+    """Rim speeds (..., 2), left and right, in m/s, from m/s ahead (below 0 backwards) and rad/s."""
     forward, rim = np.broadcast_arrays(np.asarray(speed, float), np.asarray(yaw_rate, float) * track_m / 2)
     return np.stack([forward - rim, forward + rim], axis=-1)
 
