@@ -384,8 +384,8 @@ def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[An
 def spec(kind: Kind, doc: str, *, default: Any = MISSING, instead: tuple[str, Kind, str] | None = None) -> Any:
     """A dataclass field whose values are of `kind`; without `default` it is required.
 
-    `instead` is a key of files, its kind and description, that may stand in the field's place; whoever hands the data to
-    `Record` has turned it into the field by then.
+    `instead` is a key of files, its kind and description, that may stand in the field's place; whoever hands the data
+    to `Record` has turned it into the field by then.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc} | ({"instead": instead} if instead else {})
     return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)

@@ -99,7 +99,8 @@ class Curve:
         """S of (4) at parameters of segments."""
         t = parts[:, None]
         p0, p1, p2, p3 = (self.control[which, k] for k in range(4))
-        return ((-p0 + 3 * p1 - 3 * p2 + p3) * t + (3 * p0 - 6 * p1 + 3 * p2)) * t * t + (3 * p1 - 3 * p0) * t + p0
+        cubic, square = -p0 + 3 * p1 - 3 * p2 + p3, 3 * p0 - 6 * p1 + 3 * p2
+        return np.asarray(cubic * t**3 + square * t**2 + (-3 * p0 + 3 * p1) * t + p0)
 
     def tangents_at(self, which: npt.NDArray[np.intp], parts: Floats) -> Floats:
         """Unit vectors (n, d); zero where the segment is a point."""

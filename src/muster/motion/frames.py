@@ -1,8 +1,8 @@
 """Frames: where a thing is, seen from another (TCF thesis (4.1)-(4.4) and (5.1)-(5.6); axes by REP-103).
 
-A transform is a (4, 4) matrix, or a stack (..., 4, 4); the transform *from a to b* is b's pose in a, and takes points of b
-to points of a. In the plane it is (3, 3). Transforms follow on each other by `@`. A quaternion is (x, y, z, w) of length
-1, as in ROS. Angles are radians, anticlockwise; the map frame is ENU, a body's frame FLU (forward, left, up).
+A transform is a (4, 4) matrix, or a stack (..., 4, 4); the transform *from a to b* is b's pose in a, and takes points
+of b to points of a. In the plane it is (3, 3). Transforms follow on each other by `@`. A quaternion is (x, y, z, w) of
+length 1, as in ROS. Angles are radians, anticlockwise; the map frame is ENU, a body's frame FLU (forward, left, up).
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def inverse(matrix: Floats) -> Floats:
 def moved(matrix: Floats, points: npt.ArrayLike) -> Floats:
     """Points (n, d) of the child frame as points of the parent frame."""
     size = matrix.shape[-1] - 1
-    return np.asarray(points, dtype=np.float64) @ matrix[:size, :size].T + matrix[:size, size]
+    return np.asarray(np.asarray(points, dtype=np.float64) @ matrix[:size, :size].T + matrix[:size, size])
 
 
 def body_in_global(start: npt.ArrayLike, estimate: npt.ArrayLike) -> Floats:
@@ -109,8 +109,8 @@ def body_in_global(start: npt.ArrayLike, estimate: npt.ArrayLike) -> Floats:
 def goal_for_autopilot(start: npt.ArrayLike, goal: npt.ArrayLike) -> Floats:
     """(5.1)-(5.6): a goal of the global frame as an autopilot takes it: (4,) of x, y, z and yaw.
 
-    The autopilot's local frame is ENU, begins where it was powered up (`start`, (6,)) and calls forward north. `goal` is
-    (4,) in the global frame. (5.6) prints yaw - yaw_0 - pi/2; the quarter turn of (5.3), which takes forward to north,
+    The autopilot's local frame is ENU, begins where it was powered up (`start`, (6,)) and calls forward north. `goal`
+    is (4,) in the global frame. (5.6) prints yaw - yaw_0 - pi/2; the quarter turn of (5.3), which takes forward to north,
     adds pi/2 to every direction, so that is what stands here. `start` is taken as level, as (5.6) does.
     """
     beginning, aim = np.asarray(start, dtype=np.float64), np.asarray(goal, dtype=np.float64)
@@ -120,7 +120,7 @@ def goal_for_autopilot(start: npt.ArrayLike, goal: npt.ArrayLike) -> Floats:
 
 def enu_to_ned(vectors: npt.ArrayLike) -> Floats:
     """(..., 3) of east, north, up as north, east, down; and back, being its own inverse."""
-    return np.asarray(vectors, dtype=np.float64) @ ENU_NED.T
+    return np.asarray(np.asarray(vectors, dtype=np.float64) @ ENU_NED.T)
 
 
 def flu_to_frd(vectors: npt.ArrayLike) -> Floats:
@@ -185,7 +185,7 @@ def quaternion_of(matrix: Floats) -> Floats:
     )
     best = np.argmax(np.stack([ways[..., k, k] for k in range(4)], axis=-1), axis=-1)
     chosen = np.take_along_axis(ways, best[..., None, None], axis=-2)[..., 0, :]
-    unit = chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
+    unit: Floats = chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
     return np.where(unit[..., 3:] < 0, -unit, unit)
 
 
@@ -200,4 +200,4 @@ def slerp(first: npt.ArrayLike, second: npt.ArrayLike, share: npt.ArrayLike) -> 
     of_a = np.where(small, 1 - part, np.sin((1 - part) * angle) / safe)
     of_b = np.where(small, part, np.sin(part * angle) / safe)
     mixed = of_a * a + of_b * b
-    return mixed / np.linalg.norm(mixed, axis=-1, keepdims=True)
+    return np.asarray(mixed / np.linalg.norm(mixed, axis=-1, keepdims=True))

@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TrajectoryError:
-    """Distances between reference and actual places, in metres: `total` is (7), the others are of the paper's figure 8."""
+    """Distances between reference and actual places, in metres: `total` is (7), the others are of figure 8."""
 
     total: float
     mean: float

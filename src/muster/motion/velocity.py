@@ -237,7 +237,7 @@ def _squares(way: Floats, bend: Floats, turning: Floats, limits: Limits) -> Floa
 
 
 def _ratio(limit: float, of: Floats) -> Floats:
-    """limit / of, and inf where `of` is 0."""
+    """Limit / of, and inf where `of` is 0."""
     return np.where(of > 0, limit / np.where(of > 0, of, 1.0), np.inf)
 
 

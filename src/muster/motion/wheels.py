@@ -1,8 +1,8 @@
 """Wheels of a differential drive (market paper, section 3.2.3, equations (5) and (6)).
 
 With the rims' speeds left and right and the distance between the wheels (`track_m`) the robot goes at
-V_transl = (right + left) / 2 and turns at (right - left) / track, of which a rim feels V_rot = |yaw rate| track / 2. The
-faster rim goes at V_max = V_transl + V_rot: that is (5).
+V_transl = (right + left) / 2 and turns at (right - left) / track, which a rim feels as V_rot = |yaw rate| track / 2.
+The faster rim goes at V_max = V_transl + V_rot: that is (5).
 
 (6) prints V_transl = V_max / (1 + L / R) with L and R the speeds of the wheels. On the straight that is half of V_max,
 where nothing turns and (5) gives V_max. With L half the track and R the radius of the turn V_rot is V_transl L / R, and

@@ -38,7 +38,9 @@ def test_the_quadcopter_travels_as_4_11_asks_whatever_its_yaw(yaw, travel, most)
     state = np.array([[1.0, 2.0, 3.0, yaw]])
     wanted = np.array([[most * math.cos(travel), most * math.sin(travel), 0.0]])
     inputs = Quadcopter().inputs(state, wanted, None, LIMITS)
-    np.testing.assert_allclose(inputs, [[most * math.cos(travel - yaw), most * math.sin(travel - yaw), 0, 0]], atol=1e-9)
+    np.testing.assert_allclose(
+        inputs, [[most * math.cos(travel - yaw), most * math.sin(travel - yaw), 0, 0]], atol=1e-9
+    )
     np.testing.assert_allclose(Quadcopter().velocities(state, inputs)[:, :3], wanted, atol=1e-9)
 
 
