@@ -1,8 +1,8 @@
 """Places that a file gives in degrees become metres in the map frame, before the mission is read.
 
-A robot, a task and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and `pickup`
-may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at the altitude
-of the origin, and its height over the plane of the map frame is dropped.
+A robot, a task and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
+`pickup` may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at
+the altitude of the origin, and its height over the plane of the map frame is dropped.
 """
 
 from __future__ import annotations

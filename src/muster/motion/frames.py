@@ -110,8 +110,8 @@ def goal_for_autopilot(start: npt.ArrayLike, goal: npt.ArrayLike) -> Floats:
     """(5.1)-(5.6): a goal of the global frame as an autopilot takes it: (4,) of x, y, z and yaw.
 
     The autopilot's local frame is ENU, begins where it was powered up (`start`, (6,)) and calls forward north. `goal`
-    is (4,) in the global frame. (5.6) prints yaw - yaw_0 - pi/2; the quarter turn of (5.3), which takes forward to north,
-    adds pi/2 to every direction, so that is what stands here. `start` is taken as level, as (5.6) does.
+    is (4,) in the global frame. (5.6) prints yaw - yaw_0 - pi/2; the quarter turn of (5.3), which takes forward to
+    north, adds pi/2 to every direction, so that is what stands here. `start` is taken as level, as (5.6) does.
     """
     beginning, aim = np.asarray(start, dtype=np.float64), np.asarray(goal, dtype=np.float64)
     local = FLU_ENU @ moved(inverse(pose_transform(beginning)), aim[None, :3])[0]
