@@ -348,13 +348,10 @@ class Record:
                 key, kind, doc = f.metadata["instead"]
                 properties[key] = kind.schema() | {"description": doc}
                 either += [{"required": [f.name]}, {"required": [key]}]
-        choice: JsonSchema = {"oneOf": either} if either else {}
         extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
-        return (
-            {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
-            | choice
-            | extra
-        )
+        choice: JsonSchema = {"oneOf": either} if either else {}
+        whole = {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
+        return whole | choice | extra
 
 
 def _schema(f: Field[Any]) -> JsonSchema:
@@ -384,8 +381,7 @@ def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[An
 def spec(kind: Kind, doc: str, *, default: Any = MISSING, instead: tuple[str, Kind, str] | None = None) -> Any:
     """A dataclass field whose values are of `kind`; without `default` it is required.
 
-    `instead` is a key of files, its kind and description, that may stand in the field's place; whoever hands the data
-    to `Record` has turned it into the field by then.
+    `instead` is a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc} | ({"instead": instead} if instead else {})
     return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
