@@ -90,10 +90,17 @@ def test_every_key_of_a_mission_is_described():
     assert keys - described == set()
 
 
-def test_the_example_mission_is_one():
-    (example,) = blocks(MISSION_FILE, "yaml")
-    mission = parse_yaml(example, Path("example.yaml"))
-    assert [task.id for task in mission.tasks] == ["1", "2"]
+def test_the_example_missions_are_missions():
+    for example in blocks(MISSION_FILE, "yaml"):
+        mission = parse_yaml(example, Path("example.yaml"))
+        assert [task.id for task in mission.tasks] == ["1", "2"]
+
+
+def test_the_example_of_motion_runs():
+    (example,) = blocks((ROOT / "docs" / "motion.md").read_text(encoding="utf-8"), "python")
+    names = {}
+    exec(compile(example, "motion.md", "exec"), names)
+    assert names["motion"].positions[-1].tolist() == [4, 4]
 
 
 DOCUMENTS = sorted(str(file.relative_to(ROOT)) for folder in (ROOT, ROOT / "docs") for file in folder.glob("*.md"))

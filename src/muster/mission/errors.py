@@ -6,6 +6,10 @@
     │   └── PlanError         a plan file
     ├── NotSupportedError     the mission is right, but asks for what this version cannot do
     ├── ParameterError        a parameter of an algorithm or function is out of its range
+    ├── TransformError        the tree of frames cannot say where a frame is
+    │   ├── UnknownFrameError, DisconnectedFramesError
+    │   ├── ExtrapolationError   not at that time
+    │   └── FrameTreeError       what was to be added would be no tree
     └── MissingExtraError     an optional part of the installation is absent
 
 Outcomes that are to be expected (nobody can do a task, no admissible plan) are values, not exceptions.
@@ -69,6 +73,26 @@ class NotSupportedError(InputError):
 
 class ParameterError(MusterError, ValueError):
     """A parameter of an algorithm or function is out of its range."""
+
+
+class TransformError(MusterError):
+    """The tree of frames cannot say where a frame is, or cannot take in what it is told."""
+
+
+class UnknownFrameError(TransformError):
+    """No frame has this name."""
+
+
+class DisconnectedFramesError(TransformError):
+    """No chain of parents joins two frames."""
+
+
+class ExtrapolationError(TransformError):
+    """A transform is not known at the time asked for; the message names the interval in which it is."""
+
+
+class FrameTreeError(TransformError):
+    """A transform would make a cycle or a second parent, or change what is static."""
 
 
 class MissingExtraError(MusterError, ImportError):

@@ -294,7 +294,7 @@ class Record:
     """A mapping with known keys: one of the model's dataclasses.
 
     Always reads to an instance. Where a value is wrong, a filler stands in its place, so that the rest can still be
-    checked; whoever reads looks at `faults` before using the instance.
+    checked; whoever reads looks at `faults` before using the instance. INVALID in the data was refused before.
     """
 
     of: type[Any]
@@ -319,8 +319,9 @@ class Record:
         faults.extend(_unknown_key(str(key), item, at, known) for key, item in value.items() if key not in known)
         values: dict[str, Any] = {}
         for name, f in known.items():
-            if name in value and not (value[name] is None and f.default is None):
-                values[name] = f.metadata["kind"].read(value[name], (*at, name), faults)
+            item = value.get(name, INVALID)
+            if name in value and not (item is None and f.default is None):
+                values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
             elif required(f):
                 faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
         if len(faults) == before:
@@ -340,9 +341,17 @@ class Record:
     def schema(self) -> JsonSchema:
         own = specified(self.of)
         properties = {f.name: _schema(f) | _described(f) for f in own}
-        need = [f.name for f in own if required(f)]
+        need = [f.name for f in own if required(f) and "instead" not in f.metadata]
+        either: list[JsonSchema] = []
+        for f in own:
+            if "instead" in f.metadata:
+                key, kind, doc = f.metadata["instead"]
+                properties[key] = kind.schema() | {"description": doc}
+                either += [{"required": [f.name]}, {"required": [key]}]
         extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
-        return {"type": "object", "properties": properties, "required": need, "additionalProperties": False} | extra
+        choice: JsonSchema = {"oneOf": either} if either else {}
+        whole = {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
+        return whole | choice | extra
 
 
 def _schema(f: Field[Any]) -> JsonSchema:
@@ -363,17 +372,18 @@ def _described(f: Field[Any]) -> JsonSchema:
 def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[Any]]) -> Fault:
     if key in RESERVED_NAMES:
         return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
-    if key == "lat_lon":
-        return Fault((*at, key), shown(value), "position in metres: places in degrees are not read yet")
     if key == "<<":
         return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
     hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
     return Fault((*at, key), "unknown key", f"a known key{hint}")
 
 
-def spec(kind: Kind, doc: str, *, default: Any = MISSING) -> Any:
-    """A dataclass field whose values are of `kind`; without `default` it is required."""
-    metadata = {"kind": kind, "doc": doc}
+def spec(kind: Kind, doc: str, *, default: Any = MISSING, instead: tuple[str, Kind, str] | None = None) -> Any:
+    """A dataclass field whose values are of `kind`; without `default` it is required.
+
+    `instead` is a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
+    """
+    metadata: dict[str, Any] = {"kind": kind, "doc": doc} | ({"instead": instead} if instead else {})
     return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
 
 

@@ -28,6 +28,7 @@ from muster.mission.kinds import (
     spec,
     specified,
 )
+from muster.mission.places import LatLon, Place
 from muster.mission.source import IN_PYTHON, Source
 
 SCHEMA = "muster/1"
@@ -35,6 +36,8 @@ OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
 IGNORABLE = ("prerequisites", "suitability", "skills", "capacity")
 
 Point = tuple[float, ...]
+
+IN_DEGREES = ("lat_lon", LatLon(), "in place of position, beside origin_wgs84")
 
 
 class _Checked:
@@ -141,14 +144,14 @@ class Robot(_Checked):
     """One agent."""
 
     id: str = spec(Text(), "unique among the robots")
-    position: Point = spec(Position(), "where it starts")
+    position: Point = spec(Position(), "where it starts", instead=IN_DEGREES)
     type: str | None = spec(Text(), "row of the suitability table", default=None)
     work_capacity: float | None = spec(Number(minimum=0), "most usage; without it unlimited", default=None)
     skills: tuple[str, ...] = spec(Many(Text()), "what it can do", default=())
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
-    end_position: Point | None = spec(Position(), "where its route ends; stronger than return_to_start", default=None)
+    end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
     available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
@@ -190,7 +193,7 @@ class Action(_Checked):
     side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
     height_m: float | None = spec(Number(above=0), "raster-search: height of flight", default=None)
     spacing_m: float | None = spec(Number(above=0), "raster-search: distance between lanes", default=None)
-    pickup: Point | None = spec(Position(), "delivery: where the load is taken up", default=None)
+    pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
     duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
 
     OPTIONAL: ClassVar[dict[str, tuple[str, ...]]] = {"stationary-observation": ("heading_deg",)}
@@ -217,7 +220,7 @@ class Task(_Checked):
     """One piece of work at a place."""
 
     id: str = spec(Text(), "unique among the tasks")
-    position: Point = spec(Position(), "where it is")
+    position: Point = spec(Position(), "where it is", instead=IN_DEGREES)
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it, in the unit of usage", default=0.0)
     prerequisites: tuple[str, ...] = spec(Many(Text()), "ids of tasks that must be done before", default=())
@@ -227,8 +230,8 @@ class Task(_Checked):
     only_robots: tuple[str, ...] | None = spec(
         Many(Text(), minimum=1), "ids of the only robots that may do it", default=None
     )
-    entry: Point | None = spec(Position(), "where a robot arrives; without it the position", default=None)
-    exit: Point | None = spec(Position(), "where a robot leaves; without it the position", default=None)
+    entry: Point | None = spec(Place(), "where a robot arrives; without it the position", default=None)
+    exit: Point | None = spec(Place(), "where a robot leaves; without it the position", default=None)
     action: Action | None = spec(Record(Action, "an action"), "what the robot does there", default=None)
     across_partition: str = spec(
         Choice(("at-least-once", "at-most-once")), "what a split network may do to it", default="at-least-once"
@@ -247,7 +250,7 @@ class Task(_Checked):
 @dataclass(frozen=True, kw_only=True)
 class MovedTask(_Checked):
     task: str = spec(Text(), "id of the task")
-    position: Point = spec(Position(), "where it is from then on")
+    position: Point = spec(Position(), "where it is from then on", instead=IN_DEGREES)
 
 
 @dataclass(frozen=True, kw_only=True)

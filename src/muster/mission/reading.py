@@ -7,6 +7,7 @@ prerequisite three tasks later.
 from __future__ import annotations
 
 from muster.mission.consistency import inconsistencies
+from muster.mission.degrees import degrees_to_metres, in_degrees
 from muster.mission.errors import MissionError
 from muster.mission.kinds import Fault, Path, Record
 from muster.mission.model import Mission, findings
@@ -20,7 +21,7 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     Parameters
     ----------
     data
-        a mapping with the keys of `Mission`.
+        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres.
     source
         where the values came from; files named in the data are found from the folder of its file.
     faults
@@ -30,7 +31,10 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     ------
     MissionError
         with `faults` and everything else that was found.
+    MissingExtraError
+        if places are in degrees and pymap3d is not installed.
     """
+    places = degrees_to_metres(data, faults)
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
     object.__setattr__(mission, "source", source)
     if mission.travel_rule == "matrix" and mission.travel:
@@ -40,7 +44,7 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     around = {start for path in wrong for start in _prefixes(path)}
     faults.extend(
         fault
-        for fault in inconsistencies(mission)
+        for fault in (in_degrees(found, places) for found in inconsistencies(mission))
         if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path)) and not _in_doubt(fault, wrong)
     )
     if faults:

@@ -1,0 +1,129 @@
+"""Places that a file gives in degrees become metres in the map frame, before the mission is read.
+
+A robot, a task and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
+`pickup` may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at
+the altitude of the origin, and its height over the plane of the map frame is dropped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from muster.mission.geodesy import wgs84_to_enu
+from muster.mission.kinds import INVALID, Fault, Path, Record, shown
+from muster.mission.model import Origin
+from muster.mission.places import LatLon
+
+_OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
+_WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
+
+
+@dataclass(frozen=True)
+class InDegrees:
+    """A place in degrees: its value and path in the file; the path, and the mapping, in which the metres go."""
+
+    value: object
+    at: Path
+    metres_at: Path
+    record: dict[str, Any]
+
+
+def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegrees]:
+    """Replace, within `data`, places in degrees by metres; by INVALID, and a fault, those that are wrong.
+
+    Returns
+    -------
+    what was replaced, by the path at which the metres are now.
+
+    Raises
+    ------
+    MissingExtraError
+        if there are such places and pymap3d is not installed.
+    """
+    found = list(_places(data))
+    if not found:
+        return {}
+    origin = _origin(data, found[0], faults)
+    read = [_read(place, faults) for place in found]
+    for place, metres in zip(found, _metres(read, origin), strict=True):
+        place.record.pop("lat_lon", None)
+        place.record[str(place.metres_at[-1])] = metres
+    return {place.metres_at: place for place in found}
+
+
+def in_degrees(fault: Fault, places: Mapping[Path, InDegrees]) -> Fault:
+    """A fault of a place that was given in degrees, in the words of the file."""
+    place = places.get(fault.path)
+    if place is None:
+        return fault
+    expected = fault.expected
+    for metres, degrees in _WORDS:
+        expected = expected.replace(metres, degrees)
+    return replace(fault, path=place.at, value=shown(place.value), expected=expected)
+
+
+def _places(data: object) -> Iterator[InDegrees]:
+    for at, record in _records(data):
+        if "lat_lon" in record:
+            yield InDegrees(record["lat_lon"], (*at, "lat_lon"), (*at, "position"), record)
+        for key in _OTHER_PLACES:
+            value = record.get(key)
+            if isinstance(value, dict) and list(value) == ["lat_lon"]:
+                yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record)
+
+
+def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
+    """Everything in a mission that has places: robots, tasks and their actions, and those of events."""
+    for at, record in _items(data, "robots"):
+        yield at, record
+    for at, record in _items(data, "tasks"):
+        yield from _of_task(at, record)
+    for at, event in _items(data, "events"):
+        for key in ("robot_joins", "new_task", "move_task"):
+            if isinstance(event.get(key), dict):
+                yield from _of_task((*at, key), event[key])
+
+
+def _of_task(at: Path, record: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:
+    yield at, record
+    if isinstance(record.get("action"), dict):
+        yield (*at, "action"), record["action"]
+
+
+def _items(data: object, group: str) -> Iterator[tuple[Path, dict[str, Any]]]:
+    items = data.get(group) if isinstance(data, dict) else None
+    if isinstance(items, list):
+        yield from (((group, k), item) for k, item in enumerate(items) if isinstance(item, dict))
+
+
+def _read(place: InDegrees, faults: list[Fault]) -> Any:
+    if place.at[-2:] != (place.metres_at[-1], "lat_lon") and "position" in place.record:
+        faults.append(Fault(place.at, shown(place.value), "position or lat_lon, not both"))
+        return INVALID
+    return LatLon().read(place.value, place.at, faults)
+
+
+def _origin(data: object, first: InDegrees, faults: list[Fault]) -> Origin | None:
+    """The mission's origin, or None where there is none or it is wrong; of the latter the mission's reader tells."""
+    given = data.get("origin_wgs84") if isinstance(data, dict) else None
+    if given is None:
+        faults.append(Fault(first.at, shown(first.value), "origin_wgs84 in the mission, beside places in degrees"))
+        return None
+    wrong: list[Fault] = []
+    origin: Origin = Record(Origin, "an origin").read(given, (), wrong)
+    return None if wrong else origin
+
+
+def _metres(places: Sequence[Any], origin: Origin | None) -> list[Any]:
+    """Each place as a list of metres; INVALID for those that are INVALID, and for all without an origin."""
+    right = [k for k, place in enumerate(places) if place is not INVALID]
+    metres: list[Any] = [INVALID] * len(places)
+    if origin is None or not right:
+        return metres
+    spatial = [(*places[k][:2], places[k][2] if len(places[k]) == 3 else origin.alt_m) for k in right]
+    points = wgs84_to_enu(spatial, (origin.lat_deg, origin.lon_deg, origin.alt_m))
+    for k, point in zip(right, points.tolist(), strict=True):
+        metres[k] = point[: len(places[k])]
+    return metres

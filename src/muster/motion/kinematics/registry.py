@@ -1,0 +1,37 @@
+"""The kinds of kinematics by the names that missions have for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.mission.model import Robot
+from muster.motion.kinematics.differential_drive import DifferentialDrive
+from muster.motion.kinematics.holonomic import Holonomic
+from muster.motion.kinematics.kinematics import Kinematics, Limits
+from muster.motion.kinematics.quadcopter import Quadcopter
+
+_IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter())
+
+KINEMATICS: Mapping[str, Kinematics] = MappingProxyType({k.name: k for k in _IMPLEMENTATIONS})
+
+
+def kinematics_named(name: str) -> Kinematics:
+    """The kinematics of that name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in KINEMATICS:
+        raise ParameterError(f"kinematics: {name}; expected {', '.join(KINEMATICS)}{did_you_mean(name, KINEMATICS)}")
+    return KINEMATICS[name]
+
+
+def limits_of(robot: Robot) -> Limits:
+    """A robot's limits: what its mission does not say is as `Limits` has it."""
+    given = {"yaw_rate_radps": robot.yaw_rate_radps, "acceleration_mps2": robot.acceleration_mps2}
+    return Limits(speed_mps=robot.speed_mps, **{name: value for name, value in given.items() if value is not None})
