@@ -142,7 +142,7 @@ def _reason(found: NoPath) -> str:
 def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str) -> None:
     import numpy as np
 
-    from muster.cli.tables import print_table
+    from muster.cli.tables import counted, print_table
     from muster.motion.path import NoPath
 
     if isinstance(found, NoPath):
@@ -152,8 +152,9 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str) -> 
     along = np.concatenate([[0.0], np.cumsum(legs)])
     columns = (*(f"{axis} [m]" for axis in "xyz"[: found.points.shape[1]]), "so far [m]")
     rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(found.points, along, strict=True)]
-    print_table(columns, rows, title=f"{mission.name}: {_facts(body, planner)}", right=columns)
-    click.echo(f"{found.length_m:.3f} m, {len(found.points) - 1} straight pieces")
+    print_table(columns, rows, right=columns)
+    pieces = counted(len(legs), "straight piece")
+    click.echo(f"{mission.name}: {found.length_m:.3f} m in {pieces}; {_facts(body, planner)}")
 
 
 def _facts(body: Body, planner: str) -> str:

@@ -1,0 +1,126 @@
+"""`muster path`: a way over the map of a mission."""
+
+import json
+import math
+
+import pytest
+
+WALLED = """
+schema: muster/1
+name: walled
+map:
+  boundary: [[0, 0], [10, 0], [10, 10], [0, 10]]
+  zones:
+    - {polygon: [[4, 0], [6, 0], [6, 8], [4, 8]]}
+    - {polygon: [[0, 9], [1, 9], [1, 10], [0, 10]], forbidden_to: [air]}
+robots:
+  - {id: rover, position: [1, 1], radius_m: 0.5}
+  - {id: drone, position: [2, 1], kind: air, radius_m: 1.2}
+tasks:
+  - {id: a, position: [9, 1]}
+"""
+
+
+@pytest.fixture
+def walled(tmp_path):
+    file = tmp_path / "walled.yaml"
+    file.write_text(WALLED, encoding="utf-8")
+    return str(file)
+
+
+def answer(muster, *arguments):
+    code, out, err = muster("path", *arguments, "--format", "json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+def test_the_shortest_way_bends_at_corners(muster, walled):
+    found = answer(muster, walled, "--from", "1,1", "--to", "9,1")
+    assert found["points"] == [[1, 1], [4, 8], [6, 8], [9, 1]]
+    assert found["length_m"] == pytest.approx(2 * math.hypot(3, 7) + 2)
+
+
+@pytest.mark.parametrize("planner", ["theta-star", "a-star", "dijkstra", "rrt-star"])
+def test_other_planners_find_no_shorter_one(muster, walled, planner):
+    shortest = answer(muster, walled, "--from", "1,1", "--to", "9,1", "--radius", "0.5")
+    found = answer(muster, walled, "--from", "1,1", "--to", "9,1", "--radius", "0.5", "--planner", planner)
+    assert (found["points"][0], found["points"][-1]) == ([1, 1], [9, 1])
+    assert shortest["length_m"] <= found["length_m"] <= 1.15 * shortest["length_m"]
+
+
+def test_radius_and_kind_of_a_robot(muster, walled):
+    by_robot = answer(muster, walled, "--from", "2,2", "--to", "8,2", "--robot", "rover")
+    assert by_robot == answer(muster, walled, "--from", "2,2", "--to", "8,2", "--radius", "0.5")
+    assert by_robot["length_m"] > answer(muster, walled, "--from", "2,2", "--to", "8,2")["length_m"]
+    assert answer(muster, walled, "--from", "2,2", "--to", "8,2", "--robot", "drone") == {
+        "no_path": "disconnected: no free way leads from (2, 2) to (8, 2)"
+    }
+
+
+@pytest.mark.parametrize(
+    ("ends", "reason"),
+    [
+        (("5,5", "9,1"), "start blocked: (5, 5): inside zone 0"),
+        (("1,1", "5,5"), "goal blocked: (5, 5): inside zone 0"),
+        (("1,1", "11,1"), "goal blocked: (11, 1): outside the boundary"),
+    ],
+)
+def test_no_path_is_an_answer(muster, walled, ends, reason):
+    assert answer(muster, walled, "--from", ends[0], "--to", ends[1]) == {"no_path": reason}
+    code, out, err = muster("path", walled, "--from", ends[0], "--to", ends[1])
+    assert (code, out, err) == (0, f"no path: {reason}\n", "")
+
+
+def test_zones_hold_for_kinds(muster, walled):
+    assert "points" in answer(muster, walled, "--from", "1,1", "--to", "0.5,9.5")
+    assert "no_path" in answer(muster, walled, "--from", "1,1", "--to", "0.5,9.5", "--kind", "air")
+
+
+def test_for_people(muster, walled):
+    code, out, err = muster("path", walled, "--from", "1,1", "--to", "9,1")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[-1] == "walled: 17.232 m in 3 straight pieces; shortest, ground, radius 0 m"
+
+
+def test_in_the_air_over_a_wall(muster):
+    found = answer(muster, "yard", "--from", "10,20,1", "--to", "20,20,1", "--kind", "air")
+    assert found["length_m"] == pytest.approx(math.hypot(4, 3) + 0.5 + math.hypot(5.5, 3), rel=1e-6)
+    around = answer(muster, "yard", "--from", "10,20,1", "--to", "20,20,1")
+    assert around["length_m"] > found["length_m"]
+
+
+def test_the_height_of_a_ground_robot_changes_evenly(muster):
+    found = answer(muster, "yard", "--from", "3,3,0", "--to", "3,13,2")
+    assert found["length_m"] == pytest.approx(math.hypot(10, 2))
+
+
+def test_without_a_map_the_way_is_straight(muster):
+    assert answer(muster, "31T-6R", "--from", "0,0", "--to", "3,4") == {"length_m": 5.0, "points": [[0, 0], [3, 4]]}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--from", "1", "--to", "9,1"), "--from: '1'; expected x,y, metres in the map frame"),
+        (("--from", "1,1", "--to", "9,one"), "--to: '9,one'; expected x,y, metres in the map frame"),
+        (("--from", "1,1", "--to", "nan,1"), "--to: 'nan,1'; expected x,y, metres in the map frame"),
+        (("--from", "1,1,1", "--to", "9,1"), "--from: '1,1,1'; expected x,y, metres in the map frame"),
+        (("--from", "1,1", "--to", "9,1", "--radius", "-1"), "--radius: -1; expected a finite number of at least 0"),
+        (
+            ("--from", "1,1", "--to", "9,1", "--robot", "rovr"),
+            "--robot: 'rovr'; expected a robot of the mission; did you mean 'rover'?",
+        ),
+    ],
+)
+def test_bad_input(muster, walled, arguments, message):
+    assert muster("path", walled, *arguments) == (2, "", f"{message}\n")
+
+
+@pytest.mark.parametrize(("ends", "joined"), [(("1,1", "9,1"), True), (("1,1", "5,5"), False)])
+def test_the_picture(muster, walled, tmp_path, ends, joined):
+    file = tmp_path / "way.svg"
+    assert muster("path", walled, "--from", ends[0], "--to", ends[1], "--plot", str(file))[0] == 0
+    drawn = file.read_text(encoding="utf-8")
+    assert ('id="path"' in drawn) == joined
+    assert 'id="start"' in drawn
+    assert 'id="goal"' in drawn
