@@ -7,6 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
+from tests.motion.paths.brute import grid_sees
+from tests.motion.paths.spaces import grids, places_on, regions
 
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
@@ -14,8 +16,6 @@ from muster.motion.path import NoPath, Path
 from muster.motion.paths import PLANNERS, find
 from muster.motion.paths.on_grid import Parameters
 from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace
-from tests.motion.paths.brute import grid_sees
-from tests.motion.paths.spaces import grids, places_on, regions
 
 ON_GRIDS = ("dijkstra", "a-star", "theta-star", "shortest")
 
@@ -52,7 +52,9 @@ def test_dijkstra_and_a_star_are_as_short_as_scipy_says(data):
     start, goal = (free[data.draw(st.integers(0, len(free) - 1))] for _ in range(2))
     wanted = cell_lengths(blocked, start)[*goal]
     for planner in ("dijkstra", "a-star"):
-        assert length(find(space, start[::-1] + 0.5, goal[::-1] + 0.5, planner=planner)) == pytest.approx(wanted, rel=1e-9)
+        assert length(find(space, start[::-1] + 0.5, goal[::-1] + 0.5, planner=planner)) == pytest.approx(
+            wanted, rel=1e-9
+        )
 
 
 @settings(max_examples=80)
@@ -102,7 +104,9 @@ def test_no_path_is_a_value_with_its_reason(planner):
     assert find(space, wall, here, planner=planner).reason == "start blocked"
     assert find(space, here, wall, planner=planner).reason == "goal blocked"
     assert find(space, here, (0.0, 0.0), planner=planner).reason == "goal blocked"
-    assert find(space, here, beyond, planner=planner).reason == ("not found" if planner == "rrt-star" else "disconnected")
+    assert find(space, here, beyond, planner=planner).reason == (
+        "not found" if planner == "rrt-star" else "disconnected"
+    )
 
 
 @pytest.mark.parametrize("planner", PLANNERS)

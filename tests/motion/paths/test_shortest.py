@@ -5,14 +5,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.motion.paths.brute import grid_lengths, region_lengths
+from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
 from muster.motion.path import Path
 from muster.motion.paths import WayFinder, find, travel_lengths
 from muster.motion.spaces import GridSpace, PolygonSpace
-from tests.motion.paths.brute import grid_lengths, region_lengths
-from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
 
 def path_lengths(finder, places):
@@ -101,7 +101,9 @@ def test_an_empty_space_is_blocked_everywhere():
 
 
 def test_no_places_no_lengths():
-    assert travel_lengths(GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), np.empty((0, 2)), np.empty((0, 2))).shape == (0, 0)
+    assert travel_lengths(
+        GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), np.empty((0, 2)), np.empty((0, 2))
+    ).shape == (0, 0)
 
 
 @pytest.mark.parametrize(("places", "threads"), [([1.0, 2.0], 1), ([[1.0]], 1), ([[0.5, 0.5]], 0)])
