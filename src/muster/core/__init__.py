@@ -1,4 +1,4 @@
-"""The hot loops, in C++20. Called from `allocation` and `motion` alone; a verb here has the name of the step it carries out."""
+"""The hot loops, in C++20, for `allocation` and `motion` alone; a verb here has the name of the step it carries out."""
 
 from muster.core._core import (
     AirWays,

@@ -65,7 +65,7 @@ def clutter(side: int, share: float) -> Bools:
 
 
 def rooms() -> Bools:
-    """A floor of 5 x 5 rooms of 100 cells, walls four thick with doors of 20, and all of it wider by a disc of three."""
+    """5 x 5 rooms of 100 cells, walls four thick with doors of 20, the walls wider by a disc of three."""
     walls = np.zeros((500, 500), dtype=bool)
     for wall in range(100, 500, 100):
         walls[wall - 2 : wall + 2] = walls[:, wall - 2 : wall + 2] = True
@@ -85,7 +85,7 @@ def free_places(blocked: Bools, count: int) -> Floats:
     """Centres of free cells at random, (count, 2) of (column, row)."""
     free = np.argwhere(~blocked)
     chosen = np.random.default_rng(1).choice(len(free), count, replace=False)
-    return free[chosen][:, ::-1] + 0.5
+    return np.asarray(free[chosen][:, ::-1] + 0.5, dtype=np.float64)
 
 
 def _over_runs(name: str, seconds: list[float], aim: str, note: str) -> Measurement:

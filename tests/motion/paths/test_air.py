@@ -1,5 +1,7 @@
 """The air among prisms: over, under or around, where the shortest way is known, and against finer samples."""
 
+import itertools
+
 import numpy as np
 import pytest
 import shapely
@@ -77,7 +79,7 @@ def towers(seed, count=5):
 def outside_of_all(space, points):
     """Samples along the path are in no prism by more than a micrometre."""
     steps = np.linspace(0, 1, 200)[:, np.newaxis]
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in itertools.pairwise(points):
         line = a + steps * (b - a)
         for prism in space.prisms:
             inner = shapely.contains_xy(prism.polygon.buffer(-1e-6), line[:, 0], line[:, 1])
