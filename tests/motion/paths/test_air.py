@@ -68,9 +68,8 @@ def towers(seed, count=5):
     prisms = []
     for k in range(count):
         x, y = rng.uniform(2, 16, 2)
-        base = shapely.affinity.rotate(
-            shapely.box(x, y, x + rng.uniform(1, 6), y + rng.uniform(1, 6)), rng.uniform(0, 90)
-        )
+        box = shapely.box(x, y, x + rng.uniform(1, 6), y + rng.uniform(1, 6))
+        base = shapely.affinity.rotate(box, rng.uniform(0, 90))
         floor = rng.choice((0.0, 2.0))
         prisms.append(Prism(base.buffer(0.5, quad_segs=4) if k % 2 else base, floor, floor + rng.uniform(1, 8)))
     return PrismSpace(HALL, tuple(prisms))

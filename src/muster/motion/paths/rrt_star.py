@@ -23,8 +23,8 @@ _SAMPLES_AT_A_TIME = 500  # so that Ctrl-C is heard
 class Parameters:
     """How the tree grows.
 
-    `iterations`: samples. `step_m`: the longest branch; a tenth of the space's diagonal by default. `goal_share`: of the
-    samples, those that are the goal. `reach`: the radius of rewiring over the least one that converges to the shortest.
+    `iterations`: samples. `step_m`: the longest branch; a tenth of the space's diagonal by default. `goal_share`: of
+    the samples, those that are the goal. `reach`: the radius of rewiring over the least one that converges to the shortest.
     """
 
     iterations: int = 5000

@@ -53,7 +53,7 @@ class WayFinder:
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
         """Metres of the shortest paths from each exit (n, d) to each entry (m, d): (n, m).
 
-        Without entries they are the exits; then lengths are symmetric. It is inf where there is no path; `path` says why.
+        Without entries they are the exits; then lengths are symmetric. Where there is no path: inf; `path` says why.
 
         Raises
         ------
