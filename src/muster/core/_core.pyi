@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
-    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
         """
-        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
+        Robots (m), tasks (n) and travel: `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
         """
 
     @property
@@ -295,11 +295,6 @@ class Team:
 
     @property
     def routes(self) -> list[list[int]]: ...
-
-def squared_distances(blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], trim: float, squared: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
-    """
-    Write for each cell (rows, columns) the squared distance, in cells, to the nearest blocked cell: between centres with trim 0, from centre to square with 1/2, between squares with 1; inf where no cell is blocked.
-    """
 
 class GridMap:
     """

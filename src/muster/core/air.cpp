@@ -77,7 +77,8 @@ bool Rings::enters(Point a, Point b, double from, double to, bool inner) const {
   });
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t k = 1; k < cuts.size(); ++k) {
-    if ((cuts[k] - cuts[k - 1]) * length > Air::kTouch && is_there(along(a, b, (cuts[k] + cuts[k - 1]) / 2))) return true;
+    if ((cuts[k] - cuts[k - 1]) * length > Air::kTouch && is_there(along(a, b, (cuts[k] + cuts[k - 1]) / 2)))
+      return true;
   }
   return false;
 }
@@ -111,7 +112,8 @@ void Air::add_upright(const Rings& rings, double from, double to, bool obstacle_
       const Point at = ring[k], back = minus(ring[(k + count - 1) % count], at), on = minus(ring[(k + 1) % count], at);
       const double turn = cross(on, back);
       if (obstacle_inside ? turn <= 0.0 : turn >= 0.0) continue;
-      AirEdge edge{.from = {at.x, at.y, from}, .to = {at.x, at.y, to}, .upright = true, .inward = back, .other_wall = on};
+      AirEdge edge{
+          .from = {at.x, at.y, from}, .to = {at.x, at.y, to}, .upright = true, .inward = back, .other_wall = on};
       edges_.push_back(edge);
     }
   }

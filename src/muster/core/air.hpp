@@ -1,4 +1,5 @@
-// The air over a region without the inside of upright prisms: what is free, what sees what, where shortest ways may turn.
+// The air over a region without the inside of upright prisms: what is free, what sees what, where shortest ways may
+// turn.
 #pragma once
 
 #include <cmath>

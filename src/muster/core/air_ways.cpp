@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "heap.hpp"
 #include "parallel.hpp"
@@ -110,41 +112,103 @@ std::vector<Spot> AirWays::way(Spot a, Spot b) const {
 std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tree) const {
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
-  int last = -1;
-  double best = kFar;
-  for (const Piece& piece : to.nodes) {
-    if (tree.length[piece.other] + piece.length < best) best = tree.length[last = piece.other] + piece.length;
+  std::vector<Spot> shortest;
+  for (const int last : candidates(to, tree)) {
+    std::vector<Spot> way{to.at};
+    std::vector<int> edges{-1};
+    for (int node = last; node >= 0; node = tree.parent[node]) {
+      way.push_back(nodes_[node].at);
+      edges.push_back(nodes_[node].edge);
+    }
+    way.push_back(from.at);
+    edges.push_back(-1);
+    std::reverse(way.begin(), way.end());
+    std::reverse(edges.begin(), edges.end());
+    pull(way, edges);
+    if (shortest.empty() || length_of(way) < length_of(shortest)) shortest = std::move(way);
   }
-  if (last < 0) return {};
-  std::vector<Spot> way{to.at};
-  std::vector<int> edges{-1};
-  for (int node = last; node >= 0; node = tree.parent[node]) {
-    way.push_back(nodes_[node].at);
-    edges.push_back(nodes_[node].edge);
-  }
-  way.push_back(from.at);
-  edges.push_back(-1);
-  std::reverse(way.begin(), way.end());
-  std::reverse(edges.begin(), edges.end());
-  pull(way, edges);
-  return way;
+  return shortest;
 }
 
-// Slides and drops turning points as long as that helps. What slides out of sight goes back halfway.
+// The best last node of each edge, for what is second between samples may be first when it is pulled straight.
+std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
+  constexpr double kWorthPulling = 1.03;
+  constexpr std::size_t kMost = 8;
+  std::map<int, Open> best;  // of each edge
+  double least = kFar;
+  for (const Piece& piece : to.nodes) {
+    const double whole = tree.length[piece.other] + piece.length;
+    if (whole == kFar) continue;
+    least = std::min(least, whole);
+    const auto [at, fresh] = best.try_emplace(nodes_[piece.other].edge, Open{whole, piece.other});
+    if (!fresh && whole < at->second.key) at->second = {whole, piece.other};
+  }
+  std::vector<Open> order;
+  for (const auto& [edge, open] : best) {
+    if (open.key <= kWorthPulling * least) order.push_back(open);
+  }
+  std::sort(order.begin(), order.end(), [](const Open& a, const Open& b) { return a.key < b.key; });
+  std::vector<int> nodes;
+  for (std::size_t k = 0; k < std::min(kMost, order.size()); ++k) nodes.push_back(order[k].node);
+  return nodes;
+}
+
+// Slides and drops turning points as long as that helps. Where all at once would slide out of sight, one at a time.
 void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
-  constexpr int kRounds = 8, kHalvings = 6;
+  constexpr int kRounds = 40;
   for (int round = 0; round < kRounds; ++round) {
     shorten(way, edges);
     const double before = length_of(way);
     std::vector<Spot> moved = way;
     while (slide(moved, edges)) {
     }
-    for (int k = 0; k < kHalvings && !all_seen(moved); ++k) {
-      for (std::size_t p = 0; p < way.size(); ++p) moved[p] = 0.5 * (way[p] + moved[p]);
+    if (all_seen(moved)) {
+      way = moved;
+    } else {
+      slide_in_sight(way, edges);
+      turn_where_stuck(way, edges);
     }
-    if (!all_seen(moved) || length_of(moved) > before) return;
-    way = moved;
     if (before - length_of(way) <= 1e-9 * before) return;
+  }
+}
+
+void AirWays::slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const {
+  constexpr double kLeastShare = 0.05;
+  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
+    const Spot before = way[k - 1], at = way[k], after = way[k + 1];
+    const Spot wanted = turning_point(air_->edges()[edges[k]], before, after);
+    for (double share = 1.0; share > kLeastShare; share /= 2) {
+      const Spot there = at + share * (wanted - at);
+      if (!air_->sees(before, there) || !air_->sees(there, after)) continue;
+      way[k] = there;
+      break;
+    }
+  }
+}
+
+// A turning point that wants to go where it is not seen gets one more beside it, on an edge that lets it go there.
+void AirWays::turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const {
+  const auto& all = air_->edges();
+  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
+    const Spot before = way[k - 1], after = way[k + 1], wanted = turning_point(all[edges[k]], before, after);
+    const bool hidden_before = !air_->sees(before, wanted), hidden_after = !air_->sees(wanted, after);
+    if (hidden_before == hidden_after) continue;
+    const Spot from = hidden_before ? before : wanted, to = hidden_before ? wanted : after;
+    const double rest = hidden_before ? distance(wanted, after) : distance(before, wanted);
+    double best = distance(before, way[k]) + distance(way[k], after) - rest;
+    int edge = -1;
+    for (std::size_t e = 0; e < all.size(); ++e) {
+      const Spot turn = turning_point(all[e], from, to);
+      const double length = distance(from, turn) + distance(turn, to);
+      if (length < best * (1.0 - 1e-9) && air_->sees(from, turn) && air_->sees(turn, to))
+        best = length, edge = static_cast<int>(e);
+    }
+    if (edge < 0) continue;
+    way[k] = wanted;
+    const auto at = static_cast<std::ptrdiff_t>(hidden_before ? k : k + 1);
+    way.insert(way.begin() + at, turning_point(all[edge], from, to));
+    edges.insert(edges.begin() + at, edge);
+    ++k;
   }
 }
 
@@ -177,7 +241,8 @@ void AirWays::shorten(std::vector<Spot>& way, std::vector<int>& edges) const {
 
 std::vector<double> AirWays::lengths(const std::vector<Spot>& places, int first, int last, int threads) const {
   std::vector<Seat> seats(places.size());
-  for_each_parallel(static_cast<int>(places.size()), threads, [&] { return [&](int k) { seats[k] = seat(places[k]); }; });
+  for_each_parallel(static_cast<int>(places.size()), threads,
+                    [&] { return [&](int k) { seats[k] = seat(places[k]); }; });
   std::vector<double> table(static_cast<std::size_t>(last - first) * places.size(), kFar);
   for_each_parallel(last - first, threads, [&] {
     return [&, tree = Tree{}](int k) mutable {

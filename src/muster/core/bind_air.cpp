@@ -35,7 +35,8 @@ Rings rings_of(const std::vector<PointArray>& arrays) {
 std::vector<Spot> spots_of(const PointArray& array) {
   if (array.ndim() != 2 || array.shape(1) != 3) throw std::invalid_argument("an array of places must be (n, 3)");
   std::vector<Spot> spots(array.shape(0));
-  for (std::size_t k = 0; k < spots.size(); ++k) spots[k] = {array.data()[3 * k], array.data()[3 * k + 1], array.data()[3 * k + 2]};
+  for (std::size_t k = 0; k < spots.size(); ++k)
+    spots[k] = {array.data()[3 * k], array.data()[3 * k + 1], array.data()[3 * k + 2]};
   return spots;
 }
 
@@ -72,9 +73,11 @@ void bind_air(nb::module_& m) {
       .def("build", &AirWays::build, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
            "Find which samples see each other; before it there are no ways but straight ones.")
       .def_prop_ro("samples", &AirWays::samples)
-      .def("free", [](const AirWays& w, const Triple& p) { return w.air().free(spot(p)); }, "point"_a)
-      .def("sees", [](const AirWays& w, const Triple& a, const Triple& b) { return w.air().sees(spot(a), spot(b)); },
-           "a"_a, "b"_a)
+      .def(
+          "free", [](const AirWays& w, const Triple& p) { return w.air().free(spot(p)); }, "point"_a)
+      .def(
+          "sees", [](const AirWays& w, const Triple& a, const Triple& b) { return w.air().sees(spot(a), spot(b)); },
+          "a"_a, "b"_a)
       .def(
           "way",
           [](const AirWays& w, const Triple& a, const Triple& b) {

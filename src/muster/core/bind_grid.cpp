@@ -26,7 +26,8 @@ Point point(const Pair& p) { return {p.first, p.second}; }
 }  // namespace
 
 void bind_grid(nb::module_& m) {
-  nb::class_<GridMap>(m, "GridMap", "Cells that are free or blocked; points are (column, row), cell (0, 0) from 0 to 1.")
+  nb::class_<GridMap>(m, "GridMap",
+                      "Cells that are free or blocked; points are (column, row), cell (0, 0) from 0 to 1.")
       .def(
           "__init__",
           [](GridMap* self, const Cells& blocked) {
@@ -37,10 +38,13 @@ void bind_grid(nb::module_& m) {
                                static_cast<int>(blocked.shape(0)), static_cast<int>(blocked.shape(1)));
           },
           "blocked"_a, "`blocked` is (rows, columns). Raises ValueError if a side has more than 16384 cells.")
-      .def("free", [](const GridMap& g, const Pair& p) { return g.free(GridMap::snap(point(p))); }, "point"_a)
+      .def(
+          "free", [](const GridMap& g, const Pair& p) { return g.free(GridMap::snap(point(p))); }, "point"_a)
       .def(
           "sees",
-          [](const GridMap& g, const Pair& a, const Pair& b) { return g.sees(GridMap::snap(point(a)), GridMap::snap(point(b))); },
+          [](const GridMap& g, const Pair& a, const Pair& b) {
+            return g.sees(GridMap::snap(point(a)), GridMap::snap(point(b)));
+          },
           "a"_a, "b"_a, "Whether the straight piece between two points is free, exactly.")
       .def(
           "cells_at", [](const GridMap& g, const Pair& p) { return g.cells_at(GridMap::snap(point(p))); }, "point"_a,

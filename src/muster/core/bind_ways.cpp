@@ -58,8 +58,10 @@ void bind_ways(nb::module_& m) {
       .def_prop_ro("built", &Ways::built)
       .def_prop_ro("corners", &Ways::corners)
       .def_prop_ro("pieces", &Ways::pieces, "Straight pieces between corners, each counted from both ends.")
-      .def("free", [](const Ways& w, const Pair& p) { return w.free(point(p)); }, "point"_a)
-      .def("sees", [](const Ways& w, const Pair& a, const Pair& b) { return w.sees(point(a), point(b)); }, "a"_a, "b"_a)
+      .def(
+          "free", [](const Ways& w, const Pair& p) { return w.free(point(p)); }, "point"_a)
+      .def(
+          "sees", [](const Ways& w, const Pair& a, const Pair& b) { return w.sees(point(a), point(b)); }, "a"_a, "b"_a)
       .def(
           "way",
           [](const Ways& w, const Pair& a, const Pair& b) {
@@ -71,9 +73,10 @@ void bind_ways(nb::module_& m) {
             return table_of(found);
           },
           "start"_a, "goal"_a, "The shortest way with its ends, (k, 2); empty if there is none.")
-      .def("lengths", &lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
-           "Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, "
-           "the entries are the exits, and row i holds what comes after column i alone, and 0 there.");
+      .def(
+          "lengths", &lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
+          "Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, "
+          "the entries are the exits, and row i holds what comes after column i alone, and 0 there.");
 }
 
 }  // namespace muster

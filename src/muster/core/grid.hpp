@@ -8,8 +8,9 @@
 
 namespace muster {
 
-// Cells of side 1; (0, 0) lies between the points (0, 0) and (1, 1). Free is every free cell with its border; two blocked
-// cells that touch at a corner let nothing through. Whole numbers are exact: a cell is kUnit of the lattice wide.
+// Cells of side 1; (0, 0) lies between the points (0, 0) and (1, 1). Free is every free cell with its border; two
+// blocked cells that touch at a corner let nothing through. Whole numbers are exact: a cell is kUnit of the lattice
+// wide.
 class GridMap {
  public:
   static constexpr std::int64_t kUnit = 1 << 16;

@@ -1,4 +1,5 @@
-// Hart, Nilsson, Raphael 1968 (A*); Dijkstra 1959; Nash, Daniel, Koenig, Felner 2007 (Theta*), algorithm of the same names.
+// Hart, Nilsson, Raphael 1968 (A*); Dijkstra 1959; Nash, Daniel, Koenig, Felner 2007 (Theta*), algorithm of the same
+// names.
 #include "grid_search.hpp"
 
 #include <algorithm>
@@ -41,7 +42,8 @@ class Searcher {
     const auto cells = static_cast<std::size_t>(map.rows()) * map.columns();
     state_.assign(cells, kUnseen);
     found_ = std::make_unique_for_overwrite<Found[]>(cells);
-    for (const int cell : map.cells_at(GridMap::snap(start))) reach(cell, x(cell), y(cell), distance(start, centre(cell)), cell);
+    for (const int cell : map.cells_at(GridMap::snap(start)))
+      reach(cell, x(cell), y(cell), distance(start, centre(cell)), cell);
   }
 
   std::vector<int> run() {
@@ -81,7 +83,8 @@ class Searcher {
       if (diagonal && (map_.blocked(to_column, row) || map_.blocked(column, to_row))) continue;
       const int next = cell + step.dy * map_.columns() + step.dx;
       if (state_[next] == kClosed) continue;
-      // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through it.
+      // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through
+      // it.
       const int from = found_[cell].parent;
       if (how_.any_angle && from != cell && map_.sees(lattice(from), lattice(next))) {
         reach(next, to_column, to_row, found_[from].g + distance(centre(from), centre(next)), from);

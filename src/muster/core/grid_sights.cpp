@@ -87,7 +87,8 @@ void GridSights::make_view(View& view, bool flips_x, bool flips_y) const {
   view.corners = BitRows(rows + 1, columns + 1);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      if (map_.blocked(column, row)) view.blocked.set(flips_y ? rows - 1 - row : row, flips_x ? columns - 1 - column : column);
+      if (map_.blocked(column, row))
+        view.blocked.set(flips_y ? rows - 1 - row : row, flips_x ? columns - 1 - column : column);
     }
   }
   for (const Corner& corner : corners_) {
@@ -117,8 +118,8 @@ std::vector<int> GridSights::neighbours(int corner) const {
   return found;
 }
 
-// Row after row upwards, cones of free directions are split by the blocked cells that they meet. A cone without width is
-// dropped: it touches a corner on each side, and the way goes on from the second.
+// Row after row upwards, cones of free directions are split by the blocked cells that they meet. A cone without width
+// is dropped: it touches a corner on each side, and the way goes on from the second.
 void GridSights::scan(const View& view, Lattice origin, std::vector<int>& found) const {
   const Lattice from{view.flips_x ? map_.columns() * kUnit - origin.x : origin.x,
                      view.flips_y ? map_.rows() * kUnit - origin.y : origin.y};
@@ -135,7 +136,8 @@ void GridSights::scan(const View& view, Lattice origin, std::vector<int>& found)
 
 // Adds the parts of a cone that get through its row.
 void GridSights::clip(const View& view, Lattice origin, const Cone& cone, std::vector<Cone>& open) const {
-  const std::int64_t low = std::max<std::int64_t>(cone.row * kUnit - origin.y, 0), high = (cone.row + 1) * kUnit - origin.y;
+  const std::int64_t low = std::max<std::int64_t>(cone.row * kUnit - origin.y, 0),
+                     high = (cone.row + 1) * kUnit - origin.y;
   const std::int64_t from = origin.x + floor_of(cone.left.x * low, cone.left.y);
   std::int64_t to = map_.columns() * kUnit;
   if (from >= to) return;

@@ -47,7 +47,9 @@ PolygonSights::PolygonSights(const std::vector<std::vector<Point>>& rings) {
 
 Lattice PolygonSights::snap(Point p) const {
   // What is far outside is outside; so no coordinate leaves the range in which all is exact.
-  const auto near = [](double value) { return std::llround(std::clamp(value, -1.0, static_cast<double>(kSize) + 1.0)); };
+  const auto near = [](double value) {
+    return std::llround(std::clamp(value, -1.0, static_cast<double>(kSize) + 1.0));
+  };
   return {near((p.x - origin_.x) * scale_), near((p.y - origin_.y) * scale_)};
 }
 
@@ -60,7 +62,8 @@ void PolygonSights::add_ring(const std::vector<Point>& ring) {
   const std::size_t count = places.size();
   if (count < 3) return;
   for (std::size_t k = 0; k < count; ++k) {
-    const Lattice before = snap(places[(k + count - 1) % count]), at = snap(places[k]), next = snap(places[(k + 1) % count]);
+    const Lattice before = snap(places[(k + count - 1) % count]), at = snap(places[k]),
+                  next = snap(places[(k + 1) % count]);
     sides_.push_back({before, at, next});
     if (turn(before, at, next) < 0) corners_.push_back({at, places[k], before - at, next - at});
   }
@@ -87,7 +90,9 @@ void PolygonSights::sort_into_boxes() {
 template <class Visit>
 bool PolygonSights::for_boxes(Lattice a, Lattice b, Visit visit) const {
   if (a.y > b.y) std::swap(a, b);
-  const auto box = [&](std::int64_t value) { return static_cast<int>(std::clamp<std::int64_t>(value / box_size_, 0, boxes_ - 1)); };
+  const auto box = [&](std::int64_t value) {
+    return static_cast<int>(std::clamp<std::int64_t>(value / box_size_, 0, boxes_ - 1));
+  };
   const Lattice d = b - a;
   for (int row = box(a.y - 1); row <= box(b.y + 1); ++row) {
     const std::int64_t low = std::clamp<std::int64_t>(row * box_size_, a.y, b.y);
@@ -142,7 +147,8 @@ std::vector<int> PolygonSights::seen_from(Lattice p) const {
   std::vector<int> found;
   for (std::size_t c = 0; c < corners_.size(); ++c) {
     const Lattice towards = corners_[c].at - p;
-    if (!(corners_[c].at == p) && corners_[c].taut(towards) && sees(p, corners_[c].at)) found.push_back(static_cast<int>(c));
+    if (!(corners_[c].at == p) && corners_[c].taut(towards) && sees(p, corners_[c].at))
+      found.push_back(static_cast<int>(c));
   }
   return found;
 }

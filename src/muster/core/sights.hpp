@@ -7,7 +7,8 @@
 
 namespace muster {
 
-// A convex corner of an obstacle: two walls start here, and the obstacle lies in the angle of less than 180 degrees between.
+// A convex corner of an obstacle: two walls start here, and the obstacle lies in the angle of less than 180 degrees
+// between.
 struct Corner {
   Lattice at;
   Point place;  // the same point in its own unit

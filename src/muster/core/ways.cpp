@@ -65,7 +65,8 @@ void Ways::build(int threads) {
       const Corner& corner = corners[c];
       auto others = sights_->neighbours(c);
       const auto direction = [&](int other) { return corners[other].at - corner.at; };
-      const auto middle = std::partition(others.begin(), others.end(), [&](int o) { return !corner.on_left(direction(o)); });
+      const auto middle =
+          std::partition(others.begin(), others.end(), [&](int o) { return !corner.on_left(direction(o)); });
       std::sort(others.begin(), middle, [&](int a, int b) { return cross(direction(a), direction(b)) > 0; });
       std::sort(middle, others.end(), [&](int a, int b) { return cross(direction(a), direction(b)) < 0; });
       on_right[c] = static_cast<std::size_t>(middle - others.begin());
@@ -94,9 +95,8 @@ Ways::Seat Ways::seat(Point p) const {
 
 std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first, int threads) const {
   std::vector<Seat> all(places.size());
-  for_each_parallel(static_cast<int>(places.size()) - first, threads, [&] {
-    return [&](int k) { all[first + k] = seat(places[first + k]); };
-  });
+  for_each_parallel(static_cast<int>(places.size()) - first, threads,
+                    [&] { return [&](int k) { all[first + k] = seat(places[first + k]); }; });
   return all;
 }
 

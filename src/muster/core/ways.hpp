@@ -9,8 +9,8 @@
 
 namespace muster {
 
-// The shortest way turns at corners of obstacles only, each time around the obstacle (Lozano-Perez and Wesley 1979; taut:
-// Oh and Leong 2017). Places are points in the unit of the sights.
+// The shortest way turns at corners of obstacles only, each time around the obstacle (Lozano-Perez and Wesley 1979;
+// taut: Oh and Leong 2017). Places are points in the unit of the sights.
 class Ways {
  public:
   explicit Ways(std::shared_ptr<const Sights> sights);
@@ -25,10 +25,10 @@ class Ways {
   bool sees(Point a, Point b) const { return sights_->sees(sights_->snap(a), sights_->snap(b)); }
   // The shortest way with its ends; empty if there is none.
   std::vector<Point> way(Point from, Point to) const;
-  // Row after row from `first` to before `last`: the lengths from exits[i] to all entries; inf where there is no way. If
-  // `mutual`, entries are the exits, and row i holds its lengths to the entries after i alone, and 0 to itself.
-  std::vector<double> lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual, int first,
-                              int last, int threads) const;
+  // Row after row from `first` to before `last`: the lengths from exits[i] to all entries; inf where there is no way.
+  // If `mutual`, entries are the exits, and row i holds its lengths to the entries after i alone, and 0 to itself.
+  std::vector<double> lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
+                              int first, int last, int threads) const;
 
  private:
   // A place and the corners that see it.
@@ -58,8 +58,8 @@ class Ways {
     double length;
     std::uint32_t other : 31, on_left : 1;
   };
-  // What corner c sees with the obstacle on the right is pieces_[first_[2c]] to before first_[2c + 1], then on the left;
-  // the furthest towards the obstacle first.
+  // What corner c sees with the obstacle on the right is pieces_[first_[2c]] to before first_[2c + 1], then on the
+  // left; the furthest towards the obstacle first.
   std::vector<std::size_t> first_;
   std::vector<Piece> pieces_;
   // The corners' points once more, in little memory: the search goes to and fro among them.

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -18,21 +17,9 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
+from muster.studies.bench_motion import MOTION_BENCHES
+from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """One line of the table: what was measured, the median and range over the runs, and the aim it stands against."""
-
-    name: str
-    unit: str
-    median: float
-    lowest: float
-    highest: float
-    runs: int
-    aim: str
-    note: str = ""
 
 
 def _over_runs(name: str, unit: str, values: list[float], aim: str, note: str = "") -> Measurement:
@@ -184,4 +171,5 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "auction-large": auction_large,
     "search": search_quality,
     "start-up": start_up,
+    **MOTION_BENCHES,
 }

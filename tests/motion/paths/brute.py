@@ -1,7 +1,7 @@
 """Shortest ways found the slow way: every point sees every other or not, by code that shares nothing with Muster's."""
 
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
@@ -24,7 +24,7 @@ def grid_sees(blocked, a, b):
         return [a[0] + t * d[0], a[1] + t * d[1]]
 
     inner = [at(t) for t in times[1:-1]]
-    middles = [at((s + t) / 2) for s, t in zip(times, times[1:], strict=False)]
+    middles = [at((s + t) / 2) for s, t in pairwise(times)]
     return all(grid_free(blocked, point) for point in middles) and not any(pinched(blocked, point) for point in inner)
 
 

@@ -34,7 +34,8 @@ def regions(draw):
             region = region.difference(obstacle)
     region = shapely.set_precision(region, 2.0**-10)
     parts = [part for part in shapely.get_parts(region) if part.area > 0]
-    return PolygonSpace(max(parts, key=lambda part: part.area) if parts else shapely.box(0, 0, 16, 12))
+    largest = max(parts, key=lambda part: part.area) if parts else shapely.box(0, 0, 16, 12)
+    return PolygonSpace(shapely.set_precision(largest, 0))  # the points as they are, of which buffers may be made
 
 
 @st.composite

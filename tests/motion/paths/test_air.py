@@ -1,5 +1,7 @@
 """The air among prisms: over, under or around, where the shortest way is known, and against finer samples."""
 
+import itertools
+
 import numpy as np
 import pytest
 import shapely
@@ -66,9 +68,8 @@ def towers(seed, count=5):
     prisms = []
     for k in range(count):
         x, y = rng.uniform(2, 16, 2)
-        base = shapely.affinity.rotate(
-            shapely.box(x, y, x + rng.uniform(1, 6), y + rng.uniform(1, 6)), rng.uniform(0, 90)
-        )
+        box = shapely.box(x, y, x + rng.uniform(1, 6), y + rng.uniform(1, 6))
+        base = shapely.affinity.rotate(box, rng.uniform(0, 90))
         floor = rng.choice((0.0, 2.0))
         prisms.append(Prism(base.buffer(0.5, quad_segs=4) if k % 2 else base, floor, floor + rng.uniform(1, 8)))
     return PrismSpace(HALL, tuple(prisms))
@@ -77,7 +78,7 @@ def towers(seed, count=5):
 def outside_of_all(space, points):
     """Samples along the path are in no prism by more than a micrometre."""
     steps = np.linspace(0, 1, 200)[:, np.newaxis]
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in itertools.pairwise(points):
         line = a + steps * (b - a)
         for prism in space.prisms:
             inner = shapely.contains_xy(prism.polygon.buffer(-1e-6), line[:, 0], line[:, 1])

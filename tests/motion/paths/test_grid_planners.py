@@ -7,6 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
+from tests.motion.paths.brute import grid_sees
+from tests.motion.paths.spaces import grids, places_on, regions
 
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
@@ -14,8 +16,6 @@ from muster.motion.path import NoPath, Path
 from muster.motion.paths import PLANNERS, find
 from muster.motion.paths.on_grid import Parameters
 from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace
-from tests.motion.paths.brute import grid_sees
-from tests.motion.paths.spaces import grids, places_on, regions
 
 ON_GRIDS = ("dijkstra", "a-star", "theta-star", "shortest")
 

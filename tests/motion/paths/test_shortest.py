@@ -5,14 +5,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.motion.paths.brute import grid_lengths, region_lengths
+from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
 from muster.motion.path import Path
 from muster.motion.paths import WayFinder, find, travel_lengths
 from muster.motion.spaces import GridSpace, PolygonSpace
-from tests.motion.paths.brute import grid_lengths, region_lengths
-from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
 
 def path_lengths(finder, places):

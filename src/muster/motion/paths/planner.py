@@ -76,7 +76,8 @@ def point_of(space: Space, point: npt.ArrayLike, name: str) -> Floats:
     array = np.asarray(point, dtype=np.float64)
     if array.ndim != 1:
         raise ParameterError(f"{name}: an array of shape {array.shape}; expected a point, x,y or x,y,z in metres")
-    return points_of(space, array[np.newaxis], name)[0]
+    found: Floats = points_of(space, array[np.newaxis], name)[0]
+    return found
 
 
 def blocked(start_is_free: bool, goal_is_free: bool, start: Floats, goal: Floats) -> NoPath | None:

@@ -21,8 +21,10 @@ _SAMPLES_AT_A_TIME = 500  # so that Ctrl-C is heard
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """`iterations`: samples. `step_m`: the longest branch; a tenth of the space's diagonal by default. `goal_share`: of the
-    samples that are the goal. `reach`: the radius of rewiring over the least one that converges to the shortest path.
+    """How the tree grows.
+
+    `iterations`: samples. `step_m`: the longest branch; a tenth of the space's diagonal by default. `goal_share`: of
+    the samples, those that are the goal. `reach`: the radius of rewiring over the least one that converges to the shortest.
     """
 
     iterations: int = 5000
@@ -42,16 +44,16 @@ class Parameters:
 
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
-    """A path that gets shorter with the samples, in the end the shortest; `not found` if they did not reach the goal."""
+    """A path that nears the shortest with the samples; `not found` if they did not reach the goal."""
     field = _field_of(space, start, goal)
-    reason = blocked(field.where.free(field.start), field.where.free(field.goal), start, goal)
+    reason = blocked(_free(field, field.start), _free(field, field.goal), start, goal)
     if reason is not None:
         return reason
     if (start == goal).all():
         return Path(start[np.newaxis])
     step = float(np.linalg.norm(np.subtract(field.high, field.low))) / 10
     tree = core.Tree(
-        field.where,  # type: ignore[arg-type]  # one of the two that it takes
+        field.where,
         low=field.low,
         high=field.high,
         start=_triple(field.start),
@@ -98,6 +100,11 @@ def _field_of(space: Space, start: Floats, goal: Floats) -> _Field:
     prisms = [(rings_of(prism.polygon), prism.floor_m, prism.ceiling_m) for prism in space.prisms]
     air = core.AirWays(rings_of(space.region), prisms, lowest=space.lowest_m, top=top, rise=width, run=width)
     return _Field(air, (west, south, space.lowest_m), (east, north, top), _floats(start), _floats(goal))
+
+
+def _free(field: _Field, point: tuple[float, ...]) -> bool:
+    x, y, z = _triple(point)
+    return field.where.free((x, y)) if isinstance(field.where, core.Ways) else field.where.free((x, y, z))
 
 
 def _top(space: PrismSpace, start: Floats, goal: Floats) -> float:

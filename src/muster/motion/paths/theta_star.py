@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import numpy.typing as npt
 
@@ -16,8 +18,8 @@ Floats = npt.NDArray[np.float64]
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
     """Never longer than the path of A*.
 
-    Theta* alone does not promise that: a parent that it fixes early may turn out worse. So the path of A* with its string
-    pulled is a second answer, and the shorter one is given.
+    Theta* alone does not promise that: a parent that it fixes early may turn out worse. So the path of A* with its
+    string pulled is a second answer, and the shorter one is given.
     """
     asked = question(in_plane(space, "theta-star"), start, goal, params)
     if isinstance(asked, NoPath):
@@ -29,7 +31,7 @@ def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Para
 def pulled(asked: Question, way: Floats) -> Floats:
     """The way (k, 2) in cells without the points that the one before can do without: it sees the one after."""
     kept = list(way[:1])
-    for point, after in zip(way[1:], way[2:], strict=False):
+    for point, after in pairwise(way[1:]):
         if not asked.cells.sees(_pair(kept[-1]), _pair(after)):
             kept.append(point)
     return np.array([*kept, *way[-1:]]) if len(way) > 1 else way

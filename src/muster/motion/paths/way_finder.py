@@ -53,7 +53,7 @@ class WayFinder:
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
         """Metres of the shortest paths from each exit (n, d) to each entry (m, d): (n, m).
 
-        Without entries they are the exits, and the lengths symmetric. It is inf where there is no path; `path` says why.
+        Without entries they are the exits; then lengths are symmetric. Where there is no path: inf; `path` says why.
 
         Raises
         ------
@@ -143,7 +143,7 @@ def _plane_lengths(ways: core.Ways, exits: Floats, entries: Floats, threads: int
 
 
 class _InAir:
-    """Samples: eight heights on upright edges, and 64 along the region; higher places make them anew."""
+    """Samples: 16 steps over the height of the obstacles, 100 along the region; higher places make them anew."""
 
     def __init__(self, space: PrismSpace) -> None:
         self._space = space
@@ -160,8 +160,8 @@ class _InAir:
             [(rings_of(prism.polygon), prism.floor_m, prism.ceiling_m) for prism in space.prisms],
             lowest=space.lowest_m,
             top=self._top,
-            rise=(height or width) / 8,
-            run=width / 64,
+            rise=(height or width) / 16,
+            run=width / 100,
         )
         self._built = False
 
