@@ -1,4 +1,4 @@
-"""The hot loops, in C++20. Called from `allocation` alone; a verb here has the name of the step it carries out."""
+"""The hot loops, in C++20, for `allocation` and `motion`; a verb here has the name of the step it carries out."""
 
 from muster.core._core import (
     Annealing,
@@ -7,10 +7,19 @@ from muster.core._core import (
     Insertion,
     Inspection,
     Matching,
+    PlaneAgents,
     Population,
     Problem,
     Search,
+    SpaceAgents,
     Team,
+    VelocityObstacle,
+    closest_approach,
+    hrvo,
+    hybrid_obstacle,
+    nearest_in_plane,
+    nearest_in_space,
+    rvo,
 )
 
 __all__ = [
@@ -20,8 +29,17 @@ __all__ = [
     "Insertion",
     "Inspection",
     "Matching",
+    "PlaneAgents",
     "Population",
     "Problem",
     "Search",
+    "SpaceAgents",
     "Team",
+    "VelocityObstacle",
+    "closest_approach",
+    "hrvo",
+    "hybrid_obstacle",
+    "nearest_in_plane",
+    "nearest_in_space",
+    "rvo",
 ]

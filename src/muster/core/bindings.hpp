@@ -13,5 +13,6 @@ void bind_bidders(nanobind::module_& m);
 void bind_annealing(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
 void bind_team(nanobind::module_& m);
+void bind_avoidance(nanobind::module_& m);
 
 }  // namespace muster

@@ -12,4 +12,5 @@ NB_MODULE(_core, m) {
   muster::bind_annealing(m);
   muster::bind_search(m);
   muster::bind_team(m);
+  muster::bind_avoidance(m);
 }
