@@ -106,12 +106,13 @@ void bind_agents(nb::module_& m, const char* name, const char* document) {
       .def(
           "orca",
           [](const Agents<D>& agents, const Pairs<D>& walls, double dt, double horizon, double wall_horizon, int most,
-             double distance, int threads) {
-            const OrcaSettings settings{horizon, wall_horizon, {most, distance}};
+             double distance, bool apart, int threads) {
+            const OrcaSettings settings{horizon, wall_horizon, {most, distance}, apart};
             const std::vector<Wall<D>> still = walls_of<D>(walls);
             return unlocked<D>([&] { return orca_velocities<D>(agents, still, settings, dt, threads); });
           },
-          "walls"_a, "dt"_a, nb::kw_only(), "horizon"_a, "wall_horizon"_a, "most"_a, "distance"_a, "threads"_a,
+          "walls"_a, "dt"_a, nb::kw_only(), "horizon"_a, "wall_horizon"_a, "most"_a, "distance"_a, "apart"_a,
+          "threads"_a,
           "New velocities by optimal reciprocal collision avoidance. Walls: ends of segments, or corners of boxes.");
 }
 

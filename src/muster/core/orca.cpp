@@ -1,5 +1,8 @@
 #include "orca.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "agent_tree.hpp"
 #include "parallel.hpp"
 
@@ -39,7 +42,13 @@ class Navigator {
  public:
   Navigator(const Agents<D>& agents, const std::vector<Wall<D>>& walls, const OrcaSettings& settings, double dt,
             const AgentTree<D>& tree)
-      : agents_(agents), walls_(walls), settings_(settings), dt_(dt), tree_(tree) {}
+      : agents_(agents),
+        walls_(walls),
+        settings_(settings),
+        dt_(dt),
+        tree_(tree),
+        largest_radius_(*std::max_element(agents.radii.begin(), agents.radii.end())),
+        largest_speed_(*std::max_element(agents.max_speeds.begin(), agents.max_speeds.end())) {}
 
   Vec<D> velocity(int i) {
     Vec<D> x;
@@ -47,11 +56,13 @@ class Navigator {
     const Aim<D> aim{agents_.preferred[i], false};
     spaces_.clear();
     face_walls(i);
+    const std::size_t walls = spaces_.size();
+    if (settings_.apart) keep_apart(i);
     const std::size_t hard = spaces_.size();
     face_agents(i);
     std::size_t held = program_.solve(spaces_, most, aim, x);
     if (held < hard) {
-      keep_still_possible(i);
+      keep_still_possible(i, walls);
       held = program_.solve(spaces_, most, aim, x);
     }
     if (held < spaces_.size()) least_penetration<D>(spaces_, hard, held, most, program_, x);
@@ -81,10 +92,22 @@ class Navigator {
   }
 
   // Instead of lines through the walls' velocity obstacles that leave nothing, those that always leave velocity 0.
-  void keep_still_possible(int i) {
-    for (std::size_t k = 0; k < near_walls_.size(); ++k) {
+  void keep_still_possible(int i, std::size_t walls) {
+    for (std::size_t k = 0; k < walls; ++k) {
       spaces_[k] = still_space<D>(*near_walls_[k], agents_.positions[i], agents_.radii[i], settings_.wall_horizon, dt_);
       spaces_[k].offset = std::min(spaces_[k].offset, 0.0);
+    }
+  }
+
+  // Where the program has no solution ORCA promises nothing. This does: two agents that come nearer to each other by at
+  // most half of the gap each do not touch within the step. Velocity 0 is always left.
+  void keep_apart(int i) {
+    const double reach = agents_.radii[i] + largest_radius_ + dt_ * (agents_.max_speeds[i] + largest_speed_);
+    tree_.near(i, {std::numeric_limits<int>::max(), reach}, found_);
+    for (const int k : found_) {
+      const Vec<D> apart = agents_.positions[k] - agents_.positions[i];
+      const double distance = norm(apart), gap = distance - agents_.radii[i] - agents_.radii[k];
+      if (distance > 0.0) spaces_.push_back({(-1.0 / distance) * apart, -std::max(0.0, gap) / (2.0 * dt_)});
     }
   }
 
@@ -101,6 +124,7 @@ class Navigator {
   const OrcaSettings& settings_;
   double dt_;
   const AgentTree<D>& tree_;
+  double largest_radius_, largest_speed_;
   Program<D> program_;
   std::vector<HalfSpace<D>> spaces_;
   std::vector<const Wall<D>*> near_walls_;
@@ -121,6 +145,7 @@ HalfSpace<D> orca_space(const Vec<D>& apart, const Vec<D>& v_a, const Vec<D>& v_
 template <int D>
 std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<Wall<D>>& walls,
                                     const OrcaSettings& settings, double dt, int threads) {
+  if (agents.size() == 0) return {};
   const AgentTree<D> tree(agents.positions);
   std::vector<Vec<D>> result(agents.positions.size());
   in_parts(agents.size(), threads, [&](int begin, int end) {

@@ -13,6 +13,7 @@ namespace muster {
 struct OrcaSettings {
   double horizon, wall_horizon;  // tau, for agents and for what stands still: seconds
   Neighbourhood neighbourhood;
+  bool apart;  // whether no agent may use more than half of the gap to another in a step, whatever else
 };
 
 // ORCA of an agent with velocity v_a towards another with v_b, `apart` = p_b - p_a: velocities with which neither

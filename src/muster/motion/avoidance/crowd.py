@@ -117,12 +117,15 @@ def towards(goals: Floats, max_speeds: Floats, dt: float) -> Preference:
     return preferred
 
 
-def perturbed(preference: Preference, share: float, seed: int) -> Preference:
-    """The same, each velocity shifted at random by at most this share of its length, so that symmetry does not last."""
+def perturbed(preference: Preference, share: float, seed: int, hold: int = 1) -> Preference:
+    """The same, each velocity shifted at random by this share of its length, so that symmetry does not last.
+
+    A shift lasts for `hold` steps: one that changes at every step comes to nothing where robots hold each other up.
+    """
 
     def preferred(positions: Floats, step: int) -> Floats:
         velocities = preference(positions, step)
-        shift = np.random.default_rng((seed, step)).normal(size=velocities.shape)
+        shift = np.random.default_rng((seed, step // hold)).normal(size=velocities.shape)
         shift /= np.linalg.norm(shift, axis=1, keepdims=True)
         return velocities + share * np.linalg.norm(velocities, axis=1, keepdims=True) * shift
 

@@ -39,6 +39,9 @@ class Parameters:
         the same for what stands still.
     most_neighbours, neighbour_distance_m
         a robot looks at the nearest others, up to this distance between centres.
+    keep_apart
+        whether no robot may use more than half of the gap to another in one step, whatever else: then robots that do
+        not overlap never will.
     threads
         of the processor; the result does not depend on them.
 
@@ -52,6 +55,7 @@ class Parameters:
     wall_horizon_s: float = 10.0
     most_neighbours: int = 10
     neighbour_distance_m: float = 15.0
+    keep_apart: bool = True
     threads: int = 1
 
     def __post_init__(self) -> None:
@@ -79,5 +83,6 @@ class Orca:
             wall_horizon=p.wall_horizon_s,
             most=p.most_neighbours,
             distance=p.neighbour_distance_m,
+            apart=p.keep_apart,
             threads=p.threads,
         )
