@@ -60,7 +60,9 @@ class Agents:
         object.__setattr__(self, "velocities", _shaped("velocities", self.velocities, positions.shape))
         object.__setattr__(self, "preferred", _shaped("preferred", self.preferred, positions.shape))
         object.__setattr__(self, "radii", not_negative("radii", _shaped("radii", self.radii, count)))
-        object.__setattr__(self, "max_speeds", not_negative("max_speeds", _shaped("max_speeds", self.max_speeds, count)))
+        object.__setattr__(
+            self, "max_speeds", not_negative("max_speeds", _shaped("max_speeds", self.max_speeds, count))
+        )
         object.__setattr__(self, "priorities", _shaped("priorities", priorities, count))
 
     @property
@@ -71,7 +73,9 @@ class Agents:
     def in_plane(self) -> core.PlaneAgents:
         """The same for the core. Raises ParameterError unless the robots are in the plane."""
         if self.dimensions != 2:
-            raise ParameterError(f"positions: shape {self.positions.shape}; expected (n, 2): this method is for the plane")
+            raise ParameterError(
+                f"positions: shape {self.positions.shape}; expected (n, 2): this method is for the plane"
+            )
         return core.PlaneAgents(*self._arrays())
 
     def in_space(self) -> core.SpaceAgents:
