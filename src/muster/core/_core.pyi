@@ -295,3 +295,96 @@ class Team:
 
     @property
     def routes(self) -> list[list[int]]: ...
+
+class PlaneAgents:
+    """Robots that share the plane."""
+
+    def __init__(self, positions: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], velocities: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], preferred: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], max_speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], priorities: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Raises ValueError if the arrays are of different lengths."""
+
+    def near(self, most: int, distance: float) -> list[list[int]]:
+        """For each agent the nearest others, as indices, the nearest first."""
+
+    def orca(self, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, wall_horizon: float, most: int, distance: float, apart: bool, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+        """
+        New velocities by optimal reciprocal collision avoidance. Walls: ends of segments, or corners of boxes.
+        """
+
+class SpaceAgents:
+    """Robots that share the space."""
+
+    def __init__(self, positions: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], velocities: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], preferred: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], max_speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], priorities: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Raises ValueError if the arrays are of different lengths."""
+
+    def near(self, most: int, distance: float) -> list[list[int]]:
+        """For each agent the nearest others, as indices, the nearest first."""
+
+    def orca(self, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, wall_horizon: float, most: int, distance: float, apart: bool, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """
+        New velocities by optimal reciprocal collision avoidance. Walls: ends of segments, or corners of boxes.
+        """
+
+def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, v_min: float, magnitudes: int, n: float, w: float, ideal: bool, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+    """
+    New velocities by reciprocal velocity obstacles (TCF thesis, appendix A3.2).
+    """
+
+def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+    """
+    New velocities by hybrid reciprocal velocity obstacles (Snape et al. 2011).
+    """
+
+class VelocityObstacle:
+    """VO_{i,k} of the TCF thesis (A.5)."""
+
+    def __init__(self, x_i: Sequence[float], x_k: Sequence[float], v_i: Sequence[float], v_k: Sequence[float], radius: float, yields: float = 0.5) -> None:
+        """`radius` is R_i + R_k, which is 2 R_i."""
+
+    @property
+    def boundaries(self) -> list[float]:
+        """VO^1 to VO^8."""
+
+    @property
+    def theta_ik(self) -> float:
+        """(A.6)"""
+
+    @property
+    def theta_R(self) -> float:
+        """(A.7)"""
+
+    def phi_delta(self, v: Sequence[float]) -> float:
+        """(A.12)"""
+
+    def phi_1(self, v: Sequence[float]) -> float:
+        """(A.19)"""
+
+    def suitable(self, v: Sequence[float]) -> bool:
+        """(A.13)"""
+
+    def time_to_collision(self, v: Sequence[float]) -> float:
+        """t_c (A.18), seconds; of a velocity that is not suitable."""
+
+def hybrid_obstacle(apart: Sequence[float], v_a: Sequence[float], v_b: Sequence[float], radius: float, dt: float, yields: float = 0.5) -> tuple[list[float], list[float], list[float]]:
+    """
+    Apex, left and right side of an HRVO, as seen by a robot from which the other is `apart`.
+    """
+
+def nearest_in_plane(normals: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], radius: float, wanted: Sequence[float], hard: int = 0) -> tuple[list[float], bool]:
+    """
+    The point nearest to the wanted one with normal . x >= offset for all and |x| <= radius, and True; or where there is none, the point least deep outside all but the first `hard`, and False.
+    """
+
+def nearest_in_space(normals: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], radius: float, wanted: Sequence[float], hard: int = 0) -> tuple[list[float], bool]:
+    """
+    The point nearest to the wanted one with normal . x >= offset for all and |x| <= radius, and True; or where there is none, the point least deep outside all but the first `hard`, and False.
+    """
+
+def closest_approach_in_plane(positions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 2), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], tolerance: float) -> tuple[list[float], list[float], list[tuple[int, int]]]:
+    """
+    Of robots that move straight between points of time: for each step the least distance of two centres, and the least distance less the radii; and the pairs that ever overlap by more than the tolerance.
+    """
+
+def closest_approach_in_space(positions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], tolerance: float) -> tuple[list[float], list[float], list[tuple[int, int]]]:
+    """
+    Of robots that move straight between points of time: for each step the least distance of two centres, and the least distance less the radii; and the pairs that ever overlap by more than the tolerance.
+    """

@@ -192,9 +192,9 @@ void bind_program(nb::module_& m, const char* name) {
 }
 
 template <int D>
-void bind_approach(nb::module_& m) {
+void bind_approach(nb::module_& m, const char* name) {
   m.def(
-      "closest_approach",
+      name,
       [](const Ways<D>& positions, const Numbers& radii, double tolerance) {
         if (positions.shape(0) == 0 || positions.shape(1) != radii.size())
           throw std::invalid_argument("positions must be (steps + 1, n, d), radii (n,)");
@@ -218,8 +218,8 @@ void bind_avoidance(nb::module_& m) {
   bind_obstacles(m);
   bind_program<2>(m, "nearest_in_plane");
   bind_program<3>(m, "nearest_in_space");
-  bind_approach<2>(m);
-  bind_approach<3>(m);
+  bind_approach<2>(m, "closest_approach_in_plane");
+  bind_approach<3>(m, "closest_approach_in_space");
 }
 
 }  // namespace muster

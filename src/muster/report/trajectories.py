@@ -105,5 +105,4 @@ def _draw_velocities(ax: Any, ways: Ways, axis: int, name: str) -> None:
 
 
 def _times(ways: Ways) -> Floats:
-    times: Floats = ways.dt * np.arange(1, len(ways.velocities) + 1)
-    return times
+    return np.arange(1, len(ways.velocities) + 1, dtype=np.float64) * ways.dt

@@ -59,10 +59,8 @@ class Agents:
         object.__setattr__(self, "positions", positions)
         object.__setattr__(self, "velocities", _shaped("velocities", self.velocities, positions.shape))
         object.__setattr__(self, "preferred", _shaped("preferred", self.preferred, positions.shape))
-        object.__setattr__(self, "radii", not_negative("radii", _shaped("radii", self.radii, count)))
-        object.__setattr__(
-            self, "max_speeds", not_negative("max_speeds", _shaped("max_speeds", self.max_speeds, count))
-        )
+        for name, array in (("radii", self.radii), ("max_speeds", self.max_speeds)):
+            object.__setattr__(self, name, _not_negative(name, _shaped(name, array, count)))
         object.__setattr__(self, "priorities", _shaped("priorities", priorities, count))
 
     @property
@@ -149,8 +147,7 @@ def _shaped(name: str, values: Floats, shape: tuple[int, ...]) -> Floats:
     return array
 
 
-def not_negative(name: str, array: Floats) -> Floats:
-    """Return the array. Raises ParameterError if a number is below 0."""
+def _not_negative(name: str, array: Floats) -> Floats:
     if (array < 0).any():
         raise ParameterError(f"{name}: {array[array < 0][:_SOME].tolist()}; expected at least 0")
     return array

@@ -1,5 +1,6 @@
-"""Many robots at once on their ways to goals: holonomic bodies that keep a chosen velocity for a step, TCF thesis (A.21),
-(A.22).
+"""Many robots at once on their ways to goals.
+
+Holonomic bodies that keep a chosen velocity for a step: TCF thesis (A.21), (A.22).
 """
 
 from __future__ import annotations
@@ -55,15 +56,18 @@ class Crowd:
     def arrived(self, positions: Floats, tolerance_m: float) -> npt.NDArray[np.bool_]:
         """Which robots are at their goals: (n,).
 
-        A robot is at its goal within the tolerance. Where two robots have the same goal, it is enough for one to stand
-        beside the other, which is there: as near as the inflated radii allow, within the tolerance.
+        A robot is at its goal within the tolerance. Two robots with the same goal, where only one can stand, are both
+        there when they are beside each other and both so near to it: within the sum of their inflated radii, and the
+        tolerance.
         """
-        there: npt.NDArray[np.bool_] = np.linalg.norm(positions - self.goals, axis=1) <= tolerance_m
-        result = there.copy()
-        for i in np.flatnonzero(~there):
-            for k in np.flatnonzero(there & (self.goals == self.goals[i]).all(axis=1)):
-                room = self.avoided_radii[i] + self.avoided_radii[k] + tolerance_m
-                result[i] |= np.linalg.norm(positions[i] - positions[k]) <= room
+        away = np.linalg.norm(positions - self.goals, axis=1)
+        result: npt.NDArray[np.bool_] = away <= tolerance_m
+        for i in np.flatnonzero(~result):
+            room = self.avoided_radii + self.avoided_radii[i] + tolerance_m
+            near = np.maximum(np.linalg.norm(positions - positions[i], axis=1), np.maximum(away, away[i])) <= room
+            rivals = (self.goals == self.goals[i]).all(axis=1)
+            rivals[i] = False
+            result[i] = (near & rivals).any()
         return result
 
 
@@ -113,7 +117,8 @@ def towards(goals: Floats, max_speeds: Floats, dt: float) -> Preference:
         way = goals - positions
         distance = np.linalg.norm(way, axis=1)
         speed = np.minimum(max_speeds, distance / dt)
-        return way * np.divide(speed, distance, out=np.zeros_like(distance), where=distance > 0)[:, None]
+        wanted: Floats = way * np.divide(speed, distance, out=np.zeros_like(distance), where=distance > 0)[:, None]
+        return wanted
 
     return preferred
 
@@ -128,7 +133,8 @@ def perturbed(preference: Preference, share: float, seed: int, hold: int = 1) ->
         velocities = preference(positions, step)
         shift = np.random.default_rng((seed, step // hold)).normal(size=velocities.shape)
         shift /= np.linalg.norm(shift, axis=1, keepdims=True)
-        return velocities + share * np.linalg.norm(velocities, axis=1, keepdims=True) * shift
+        shifted: Floats = velocities + share * np.linalg.norm(velocities, axis=1, keepdims=True) * shift
+        return shifted
 
     return preferred
 
@@ -176,7 +182,8 @@ def run(
 def _trajectories(
     crowd: Crowd, dt: float, positions: Floats, velocities: Floats, there: npt.NDArray[np.bool_]
 ) -> Trajectories:
-    distances, gaps, contacts = core.closest_approach(positions, crowd.radii, CONTACT_M)
+    approach = core.closest_approach_in_plane if crowd.starts.shape[1] == 2 else core.closest_approach_in_space
+    distances, gaps, contacts = approach(positions, crowd.radii, CONTACT_M)
     away = len(there) - np.argmax(~there[::-1], axis=0)  # the step after the last one away from the goal
     steps = np.where(there.all(axis=0), 0, away)
     return Trajectories(

@@ -5,11 +5,11 @@ the reciprocal velocity obstacle, the left side of it is replaced by that of the
 side costs more (section IV). The apex is where the two sides cross.
 
 A robot takes the velocity nearest to the preferred one outside all obstacles. Candidates are those of ClearPath (Guy et
-al. 2009): the preferred velocity, 0, the nearest point of each side, where sides cross each other and the disc of possible
-speeds. Where none is outside all, the candidate is taken whose first violated obstacle belongs to the farthest robot.
+al. 2009): the preferred velocity, 0, the nearest point of each side, where sides cross each other and the disc of
+possible speeds. Where none is outside all, it is the one whose first violated obstacle belongs to the farthest robot.
 
-Walls enter as half-planes that keep off them for the horizon (ORCA, section 5.2, with velocity 0). Of two robots the one
-with the lower priority alone gives way, with the whole velocity obstacle; the other does not look at it.
+Walls enter as half-planes that keep off them for the horizon (ORCA, section 5.2, with velocity 0). Of two robots the
+one with the lower priority alone gives way, with the whole velocity obstacle; the other does not look at it.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Hrvo:
         """See `Method`; robots in the plane only."""
         require_finite_positive(dt=dt)
         p = self.params
-        return core.hrvo(
+        chosen: Floats = core.hrvo(
             agents.in_plane(),
             obstacles.still(2),
             dt,
@@ -79,3 +79,4 @@ class Hrvo:
             distance=p.neighbour_distance_m,
             threads=p.threads,
         )
+        return chosen

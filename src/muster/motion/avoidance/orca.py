@@ -76,7 +76,7 @@ class Orca:
         require_finite_positive(dt=dt)
         p = self.params
         known = agents.in_plane() if agents.dimensions == 2 else agents.in_space()
-        return known.orca(
+        chosen: Floats = known.orca(
             obstacles.still(agents.dimensions),
             dt,
             horizon=p.horizon_s,
@@ -86,3 +86,4 @@ class Orca:
             apart=p.keep_apart,
             threads=p.threads,
         )
+        return chosen

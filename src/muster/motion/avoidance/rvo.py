@@ -98,7 +98,7 @@ class Rvo:
         """See `Method`; robots in the plane only."""
         require_finite_positive(dt=dt)
         p = self.params
-        return core.rvo(
+        chosen: Floats = core.rvo(
             agents.in_plane(),
             obstacles.still(2),
             dt,
@@ -112,3 +112,4 @@ class Rvo:
             distance=p.neighbour_distance_m,
             threads=p.threads,
         )
+        return chosen

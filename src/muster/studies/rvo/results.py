@@ -9,7 +9,16 @@ import numpy as np
 
 from muster.motion.avoidance import Trajectories
 from muster.studies.effort import Effort
-from muster.studies.rvo.runs import ARRIVAL_M, CIRCLE_ARRIVAL_M, CIRCLE_HORIZON_S, HOLD_S, METHODS, SHARE, Job
+from muster.studies.rvo.runs import (
+    ARRIVAL_M,
+    CIRCLE_ARRIVAL_M,
+    CIRCLE_HORIZON_S,
+    CIRCLE_SHARE,
+    HOLD_S,
+    METHODS,
+    SHARE,
+    Job,
+)
 from muster.studies.rvo.scenarios import misprints, scenarios, tables
 from muster.studies.tables import Cell, Table
 
@@ -69,11 +78,13 @@ class Published:
                 found = [one for job, one in results.items() if (job.subject, job.method) == (scenario, method)]
                 rows.append((scenario.name, method, *_figures(found, least_distance=True), verdict(found)))
         parameters = tables()["A.18"]
+        inflated = 2 * parameters["inflated_radius_m"]
         notes = (
-            f"Bodies of {parameters['radius_m']} m touch at {2 * parameters['radius_m']:.2f} m between centres; inflated, "
-            f"at {2 * parameters['inflated_radius_m']:.2f} m. Between points of time too: robots move straight.",
-            f"A robot is there within {ARRIVAL_M} m of its goal, for good. Where two have one goal, the other one is there "
-            f"when it stands beside the first, as near as inflated radii allow, within {ARRIVAL_M} m.",
+            f"Bodies of {parameters['radius_m']} m touch at {2 * parameters['radius_m']:.2f} m between centres, "
+            f"inflated ones at {inflated:.2f} m. Looked at between points of time too.",
+            f"A robot is there within {ARRIVAL_M} m of its goal, for good. Two with one goal are there when they stand "
+            f"beside each other and both so near to it: {inflated:.2f} m and {ARRIVAL_M} m.",
+            f"The preferred velocities of ORCA are shifted by {SHARE} of their length (seeds 0 and up).",
             *misprints(self.number),
             "The thesis takes 0.16 m between centres for contact, its robots' radius; two of them touch at 0.32 m.",
         )
@@ -106,7 +117,8 @@ class Circle:
             "Radius 1.5 m each, at most 2 m/s; the circle has a radius of 200 m for 250 robots (on a diameter of 200 m "
             "they would overlap), and in proportion for others. A robot is there within "
             f"{CIRCLE_ARRIVAL_M} m of its goal, for good. contacts: pairs that ever overlap, over all runs.",
-            f"ORCA with a horizon of {CIRCLE_HORIZON_S:.0f} s.",
+            f"ORCA has a horizon of {CIRCLE_HORIZON_S:.0f} s. All preferred velocities are shifted, by {CIRCLE_SHARE} "
+            "of their length.",
         )
         return Table(self.number, "Crossing circle, to the opposite side", columns, tuple(rows), notes, decimals=3)
 
@@ -121,9 +133,8 @@ def _figures(found: Sequence[Found], *, least_distance: bool = False) -> tuple[C
 _ROUNDING_M = 1e-9
 
 LEGEND = (
-    "s: until the last robot of the slowest run is there, or time is up. least gap: least distance between two bodies in "
-    "any run, metres. ✓: all robots of all runs arrive, none touches another.",
-    f"perturbed: each preferred velocity is shifted at random by {SHARE} of its length, anew every {HOLD_S:.0f} s (seeds 0 "
-    "and up); so are those of ORCA everywhere, and of all methods on the circle. ORCA alone would wait for ever where "
-    "robots meet head on. RVO and HRVO have their own asymmetry.",
+    "s: until the last robot of the slowest run is there, or time is up. least gap: least distance between two bodies "
+    "in any run, in metres. ✓: all robots of all runs arrive, none touches another.",
+    "ORCA alone would wait for ever where robots meet head on, so its preferred velocities are shifted at random, anew "
+    f"every {HOLD_S:.0f} s; on the circle so are those of all methods. RVO and HRVO find a side without that.",
 )

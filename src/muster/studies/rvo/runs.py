@@ -31,7 +31,7 @@ CIRCLE_HORIZON_S = 2.0
 """Of ORCA; with longer ones the circle of 8 sometimes holds itself up for ever."""
 CIRCLE_NEIGHBOURS: dict[str, Any] = {"most_neighbours": 10, "neighbour_distance_m": 15.0}
 
-SHARE, HOLD_S = 0.8, 5.0
+SHARE, CIRCLE_SHARE, HOLD_S = 0.1, 0.8, 5.0
 """By how much of their length the preferred velocities are shifted, and for how long a shift lasts."""
 
 
@@ -51,14 +51,15 @@ class Job:
 
     def perform(self) -> Trajectories:
         if isinstance(self.subject, int):
-            return self._go(_circle_method(self.method), 0.25, CIRCLE_UNTIL_S[self.subject], CIRCLE_ARRIVAL_M)
-        return self._go(_method(self.method), tables()["A.18"]["timestep_s"], UNTIL_S, ARRIVAL_M)
+            until_s, method = CIRCLE_UNTIL_S[self.subject], _circle_method(self.method)
+            return self._go(method, CIRCLE_SHARE, until_s=until_s, arrival_m=CIRCLE_ARRIVAL_M)
+        return self._go(_method(self.method), SHARE, until_s=UNTIL_S, arrival_m=ARRIVAL_M)
 
-    def _go(self, method: Method, dt: float, until_s: float, arrival_m: float) -> Trajectories:
-        crowd = self.crowd
+    def _go(self, method: Method, share: float, *, until_s: float, arrival_m: float) -> Trajectories:
+        crowd, dt = self.crowd, tables()["A.18"]["timestep_s"]
         preference = towards(crowd.goals, crowd.max_speeds, dt)
         if self.seed is not None:
-            preference = perturbed(preference, SHARE, self.seed, round(HOLD_S / dt))
+            preference = perturbed(preference, share, self.seed, round(HOLD_S / dt))
         return run(crowd, method, dt=dt, until_s=until_s, arrival_m=arrival_m, preference=preference)
 
 
