@@ -16,7 +16,9 @@ from muster.mission.hints import did_you_mean
 
 @click.group(invoke_without_command=True)
 @click.option(
-    "--only", metavar="NAMES", help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up."
+    "--only",
+    metavar="NAMES",
+    help="Some of: greedy-small, genetic, greedy-large, auction-large, search, avoidance, start-up.",
 )
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
