@@ -20,4 +20,4 @@ def test_the_stub_is_generated(tmp_path):
 def test_the_surface_is_that_of_the_module():
     from muster.core import _core
 
-    assert sorted(muster.core.__all__) == sorted(name for name in vars(_core) if name[0].isupper())
+    assert sorted(muster.core.__all__) == sorted(name for name in vars(_core) if not name.startswith("_"))

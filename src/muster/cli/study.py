@@ -81,7 +81,7 @@ def command(
     _show(report, form, output)
     if plot is not None and isinstance(study, Illustrated):
         plot.mkdir(parents=True, exist_ok=True)
-        for path in study.draw(plot):
+        for path in study.draw(effort, plot):
             click.echo(f"drew {path}", err=True)
     if verbose:
         click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)

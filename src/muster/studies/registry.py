@@ -34,9 +34,9 @@ class Study(Protocol):
 
 @runtime_checkable
 class Illustrated(Protocol):
-    """A study with pictures."""
+    """A study with pictures of the tables that are wanted."""
 
-    def draw(self, folder: Path) -> list[Path]: ...
+    def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
 
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (

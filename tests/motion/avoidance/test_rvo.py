@@ -156,8 +156,8 @@ def test_hybrid_obstacle_by_hand():
 
 @given(seed=st.integers(0, 10**6))
 @settings(max_examples=25)
-def test_hybrid_velocities_are_outside_all_obstacles_or_the_first_ones(seed):
-    """Where robots have room, nobody chooses within an obstacle; and no sample outside all is nearer to what is wanted."""
+def test_hybrid_velocities_are_the_nearest_outside_all_obstacles(seed):
+    """Where robots have room nobody chooses within an obstacle, and no sample outside all is nearer to the wanted."""
     agents = random_agents(seed, 9, spacing=9.0)
     found = Hrvo().velocities(agents)
     random = np.random.default_rng(seed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from muster.report import save_figure
@@ -12,10 +13,10 @@ from muster.studies.rvo.scenarios import Scenario, scenarios, tables
 FIGURES = {"A.17": "A.4 to A.9", "A.22": "A.15 to A.17"}
 
 
-def draw(folder: Path) -> list[Path]:
-    """One file for each scenario."""
+def draw(folder: Path, numbers: Sequence[str]) -> list[Path]:
+    """One file for each scenario of these tables; the files made."""
     made = []
-    for table in FIGURES:
+    for table in (number for number in FIGURES if number in numbers):
         for scenario in scenarios(table):
             path = folder / f"{table}-{scenario.name.replace(' ', '-')}.png"
             save_figure(plot_ways([_ways(scenario, method) for method in METHODS], _title(scenario)), path)

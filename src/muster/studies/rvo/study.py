@@ -59,6 +59,6 @@ class CollisionAvoidance:
             tables=tuple(table.table(effort, results) for table in wanted),
         )
 
-    def draw(self, folder: Path) -> list[Path]:
+    def draw(self, effort: Effort, folder: Path) -> list[Path]:
         """Draw Figures A.4 to A.9 and A.15 to A.17 into a folder, all methods side by side; the files made."""
-        return draw(folder)
+        return draw(folder, effort.wanted(self.tables))
