@@ -1,5 +1,5 @@
 // The velocity nearest to a wanted one within a ball and within half-spaces: the low-dimensional linear program of van
-// den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), section 5.3, in two and three
+// den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), section 5, in two and three
 // dimensions. Half-spaces are added one by one (Seidel; de Berg et al., "Computational Geometry", chapter 4): where a
 // new one is violated, the optimum lies on its boundary, which is the same program with one dimension less.
 #pragma once
@@ -113,7 +113,7 @@ class Program<1> {
 };
 
 // Where no point is in all half-spaces: x that lies in the first `hard` ones and goes least deep outside the others
-// (2011, section 5.3). `held` half-spaces hold x when it begins.
+// (2011, on densely packed conditions). `held` half-spaces hold x when it begins.
 template <int D>
 void least_penetration(std::span<const HalfSpace<D>> spaces, std::size_t hard, std::size_t held, double radius,
                        Program<D>& program, Vec<D>& x) {

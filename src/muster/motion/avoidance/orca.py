@@ -1,9 +1,9 @@
 """ORCA: van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), in the plane and in space.
 
 Each pair of robots leaves each other a half of the velocities (section 4); a robot takes the velocity nearest to the
-preferred one that all others and all walls leave it, by a linear program (section 5.1), and where they leave none, the
-one that goes least deep into what they do not leave (5.3). Against walls in the plane the half-plane is the one nearest
-to the robot's own velocity, and where those leave nothing, the one nearest to 0 (5.2), which always leaves 0; against
+preferred one that all others and all walls leave it, by a linear program (section 5), and where they leave none, the
+one that goes least deep into what they do not leave. Against walls in the plane the half-plane is the one nearest
+to the robot's own velocity, and where those leave nothing, the one nearest to 0, which always leaves 0; against
 boxes in space it is always that one.
 
 Of what two robots have to change in their relative velocity, equals take one half each; the one with the lower priority
