@@ -171,7 +171,7 @@ def avoidance(runs: int) -> list[Measurement]:
         for program, milliseconds in times.items():
             ratio = "" if program == "RVO2" else f"{statistics.median(milliseconds) / theirs:.2f} of the time of RVO2"
             name = f"ORCA step, {count:,} robots, {program}"
-            found.append(_over_runs(name, "ms", milliseconds, "" if program == "RVO2" else aim, ratio))
+            found.append(_over_runs(name, "CPU ms", milliseconds, "" if program == "RVO2" else aim, ratio))
     return found
 
 

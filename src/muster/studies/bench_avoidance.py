@@ -41,32 +41,31 @@ class Scene:
         return cls(grid + random.uniform(-jitter, jitter, grid.shape), preferred)
 
 
-def muster_ms(scene: Scene, threads: int = 1, keep_apart: bool = True) -> float:
-    """Milliseconds of a step of ORCA, conversion of all arrays included; the median of some steps."""
+def muster_ms(scene: Scene, keep_apart: bool = True) -> float:
+    """Milliseconds of processor time of a step of ORCA, with the conversion of all arrays; the median of some steps."""
     parameters = Parameters(
         horizon_s=HORIZON_S,
         wall_horizon_s=HORIZON_S,
         most_neighbours=NEIGHBOURS,
         neighbour_distance_m=DISTANCE_M,
         keep_apart=keep_apart,
-        threads=threads,
     )
     count, method = len(scene.positions), Orca(parameters)
     radii, speeds = np.full(count, RADIUS_M), np.full(count, TOP_SPEED_MPS)
     positions, velocities, found = scene.positions, np.zeros_like(scene.positions), []
     for _ in range(STEPS):
-        begin = time.perf_counter()
+        begin = time.process_time()
         agents = Agents(
             positions=positions, velocities=velocities, preferred=scene.preferred, radii=radii, max_speeds=speeds
         )
         velocities = method.velocities(agents, dt=DT_S)
-        found.append(1000 * (time.perf_counter() - begin))
+        found.append(1000 * (time.process_time() - begin))
         positions = positions + DT_S * velocities
     return statistics.median(found)
 
 
 def rvo2_ms(scene: Scene) -> float:
-    """Milliseconds of a step of RVO2, in C++ alone; the median of some steps.
+    """Milliseconds of processor time of a step of RVO2, in C++ alone; the median of some steps.
 
     Raises
     ------
@@ -76,9 +75,9 @@ def rvo2_ms(scene: Scene) -> float:
     simulator = rvo2(scene)
     found = []
     for _ in range(STEPS):
-        begin = time.perf_counter()
+        begin = time.process_time()
         simulator.do_step()
-        found.append(1000 * (time.perf_counter() - begin))
+        found.append(1000 * (time.process_time() - begin))
     return statistics.median(found)
 
 
@@ -96,7 +95,7 @@ def rvo2(scene: Scene) -> Any:
 
 
 def compared(count: int, runs: int) -> dict[str, list[float]]:
-    """By program the milliseconds of a step, for scenes with the seeds 0 to runs - 1; one after the other."""
+    """By program milliseconds of processor time of a step, for scenes with the seeds 0 to runs - 1."""
     programs: dict[str, Callable[[Scene], float]] = {
         "Muster": muster_ms,
         "Muster, without keep_apart": lambda scene: muster_ms(scene, keep_apart=False),
