@@ -17,6 +17,7 @@ TABLES = {
     "auction-1": [f"5.{k}" for k in range(1, 16)],
     "auction-2": [f"5.{k}" for k in range(16, 24)],
     "market-rescue": ["Figure 3", "Figure 5"],
+    "tcf-avoidance": ["A.17", "A.18", "A.22"],
     "tcf-experiments": ["6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11"],
     "tcf-objectives": ["3.21", "3.22"],
     "tcf-prerequisites": ["3.8", "3.9", "3.10", "3.11", "3.12"],
@@ -42,6 +43,8 @@ ERRATA = {  # table -> how many of its values are misprinted
     "6.7": 1,
     "6.9": 2,
     "6.11": 2,
+    "A.17": 1,
+    "A.18": 1,
 }
 PRINTED_TO = 0.0105  # the documents round some numbers and cut off others
 

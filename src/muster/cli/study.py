@@ -42,6 +42,9 @@ _LEAST_SECONDS = 0.01
     metavar="FILE",
     help="Write the tables (.json, .md, or text).",
 )
+@click.option(
+    "--plot", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Draw its pictures into a folder."
+)
 @quiet_option
 def command(
     name: str | None,
@@ -53,6 +56,7 @@ def command(
     workers: int | None,
     form: str,
     output: Path | None,
+    plot: Path | None,
     quiet: bool,
     verbose: bool,
 ) -> int:
@@ -60,7 +64,7 @@ def command(
 
     All own numbers are the judge's. Without NAME the studies are listed.
     """
-    from muster.studies import Effort, study_named
+    from muster.studies import Effort, Illustrated, study_named
 
     if name is None or list_studies:
         _list(form)
@@ -70,9 +74,15 @@ def command(
     effort = Effort(seeds=seeds, iterations=iterations, quick=quick, tables=wanted)
     if output is not None and (output.is_dir() or not output.parent.is_dir()):
         raise ParameterError(f"{output}: cannot be written; expected a file in a folder that exists")
+    if plot is not None and not isinstance(study, Illustrated):
+        raise ParameterError(f"--plot: study {study.name} has no pictures; expected one that has, such as rvo")
     with _progress_bar(not quiet, study.name) as on_done:
         report = study.run(effort, workers or os.cpu_count() or 1, on_done)
     _show(report, form, output)
+    if plot is not None and isinstance(study, Illustrated):
+        plot.mkdir(parents=True, exist_ok=True)
+        for path in study.draw(effort, plot):
+            click.echo(f"drew {path}", err=True)
     if verbose:
         click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)
     return DONE

@@ -1,7 +1,7 @@
 """The hot loops of Muster."""
 
 from collections.abc import Sequence
-from typing import Annotated, overload
+from typing import Annotated
 
 import numpy
 from numpy.typing import NDArray
@@ -296,113 +296,95 @@ class Team:
     @property
     def routes(self) -> list[list[int]]: ...
 
-class GridMap:
+class PlaneAgents:
+    """Robots that share the plane."""
+
+    def __init__(self, positions: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], velocities: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], preferred: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], max_speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], priorities: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Raises ValueError if the arrays are of different lengths."""
+
+    def near(self, most: int, distance: float) -> list[list[int]]:
+        """For each agent the nearest others, as indices, the nearest first."""
+
+    def orca(self, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, wall_horizon: float, most: int, distance: float, apart: bool, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+        """
+        New velocities by optimal reciprocal collision avoidance. Walls: ends of segments, or corners of boxes.
+        """
+
+class SpaceAgents:
+    """Robots that share the space."""
+
+    def __init__(self, positions: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], velocities: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], preferred: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], max_speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], priorities: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Raises ValueError if the arrays are of different lengths."""
+
+    def near(self, most: int, distance: float) -> list[list[int]]:
+        """For each agent the nearest others, as indices, the nearest first."""
+
+    def orca(self, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, wall_horizon: float, most: int, distance: float, apart: bool, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C')]:
+        """
+        New velocities by optimal reciprocal collision avoidance. Walls: ends of segments, or corners of boxes.
+        """
+
+def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, v_min: float, magnitudes: int, n: float, w: float, ideal: bool, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
     """
-    Cells that are free or blocked; points are (column, row), cell (0, 0) from 0 to 1.
-    """
-
-    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
-        """
-        `blocked` is (rows, columns). Raises ValueError if a side has more than 16384 cells.
-        """
-
-    def free(self, point: tuple[float, float]) -> bool: ...
-
-    def sees(self, a: tuple[float, float], b: tuple[float, float]) -> bool:
-        """Whether the straight piece between two points is free, exactly."""
-
-    def cells_at(self, point: tuple[float, float]) -> list[int]:
-        """
-        The free cells that have a point inside or on their border, as row * columns + column.
-        """
-
-    def search(self, start: tuple[float, float], goal: tuple[float, float], *, heuristic: bool, any_angle: bool) -> list[int]:
-        """
-        The cells of the shortest way between cell centres, as row * columns + column; empty if there is none.
-        """
-
-class Ways:
-    """Shortest ways in a plane with obstacles: taut pieces between corners."""
-
-    @staticmethod
-    def on_grid(map: GridMap) -> Ways:
-        """In the unit of cells."""
-
-    @staticmethod
-    def on_region(rings: Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]]) -> Ways:
-        """
-        Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.
-        """
-
-    def build(self, threads: int) -> None:
-        """
-        Find what every corner sees, once; without it each search looks for itself, where it comes by.
-        """
-
-    @property
-    def built(self) -> bool: ...
-
-    @property
-    def corners(self) -> int: ...
-
-    @property
-    def pieces(self) -> int:
-        """Straight pieces between corners, each counted from both ends."""
-
-    def free(self, point: tuple[float, float]) -> bool: ...
-
-    def sees(self, a: tuple[float, float], b: tuple[float, float]) -> bool: ...
-
-    def way(self, start: tuple[float, float], goal: tuple[float, float]) -> NDArray[numpy.float64]:
-        """The shortest way with its ends, (k, 2); empty if there is none."""
-
-    def lengths(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
-        """
-        Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, the entries are the exits, and row i holds what comes after column i alone, and 0 there.
-        """
-
-class AirWays:
-    """Short ways through the air over and around upright prisms, in metres."""
-
-    def __init__(self, region: Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]], prisms: Sequence[tuple[Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]], float, float]], *, lowest: float, top: float, rise: float, run: float) -> None:
-        """
-        `region` is rings (k, 2) with the inside on their left, a prism (rings, floor, ceiling). Upright edges are sampled every `rise` metres up to `top`, level ones every `run`.
-        """
-
-    def build(self, threads: int) -> None:
-        """
-        Find which samples see each other; before it there are no ways but straight ones.
-        """
-
-    @property
-    def samples(self) -> int: ...
-
-    def free(self, point: Sequence[float]) -> bool: ...
-
-    def sees(self, a: Sequence[float], b: Sequence[float]) -> bool: ...
-
-    def way(self, start: Sequence[float], goal: Sequence[float]) -> NDArray[numpy.float64]:
-        """A way with its ends, (k, 3); empty if there is none."""
-
-    def lengths(self, places: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
-        """
-        Rows `first` to before `last` of the lengths between places: what comes after column i, and 0 there; inf where there is no way.
-        """
-
-class Tree:
-    """
-    RRT*: a tree of random points that keeps shortening itself; start and goal are free.
+    New velocities by reciprocal velocity obstacles (TCF thesis, appendix A3.2).
     """
 
-    @overload
-    def __init__(self, where: Ways, *, low: Sequence[float], high: Sequence[float], start: Sequence[float], goal: Sequence[float], seed: int, step: float, goal_share: float, reach: float) -> None: ...
+def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+    """
+    New velocities by hybrid reciprocal velocity obstacles (Snape et al. 2011).
+    """
 
-    @overload
-    def __init__(self, where: AirWays, *, low: Sequence[float], high: Sequence[float], start: Sequence[float], goal: Sequence[float], seed: int, step: float, goal_share: float, reach: float) -> None: ...
+class VelocityObstacle:
+    """VO_{i,k} of the TCF thesis (A.5)."""
 
-    def grow(self, samples: int) -> None: ...
+    def __init__(self, x_i: Sequence[float], x_k: Sequence[float], v_i: Sequence[float], v_k: Sequence[float], radius: float, yields: float = 0.5) -> None:
+        """`radius` is R_i + R_k, which is 2 R_i."""
 
-    def way(self) -> NDArray[numpy.float64]:
-        """
-        The shortest way found so far with its ends, (k, 3); empty if there is none.
-        """
+    @property
+    def boundaries(self) -> list[float]:
+        """VO^1 to VO^8."""
+
+    @property
+    def theta_ik(self) -> float:
+        """(A.6)"""
+
+    @property
+    def theta_R(self) -> float:
+        """(A.7)"""
+
+    def phi_delta(self, v: Sequence[float]) -> float:
+        """(A.12)"""
+
+    def phi_1(self, v: Sequence[float]) -> float:
+        """(A.19)"""
+
+    def suitable(self, v: Sequence[float]) -> bool:
+        """(A.13)"""
+
+    def time_to_collision(self, v: Sequence[float]) -> float:
+        """t_c (A.18), seconds; of a velocity that is not suitable."""
+
+def hybrid_obstacle(apart: Sequence[float], v_a: Sequence[float], v_b: Sequence[float], radius: float, dt: float, yields: float = 0.5) -> tuple[list[float], list[float], list[float]]:
+    """
+    Apex, left and right side of an HRVO, as seen by a robot from which the other is `apart`.
+    """
+
+def nearest_in_plane(normals: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], radius: float, wanted: Sequence[float], hard: int = 0) -> tuple[list[float], bool]:
+    """
+    The point nearest to the wanted one with normal . x >= offset for all and |x| <= radius, and True; or where there is none, the point least deep outside all but the first `hard`, and False.
+    """
+
+def nearest_in_space(normals: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], offsets: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], radius: float, wanted: Sequence[float], hard: int = 0) -> tuple[list[float], bool]:
+    """
+    The point nearest to the wanted one with normal . x >= offset for all and |x| <= radius, and True; or where there is none, the point least deep outside all but the first `hard`, and False.
+    """
+
+def closest_approach_in_plane(positions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 2), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], tolerance: float) -> tuple[list[float], list[float], list[tuple[int, int]]]:
+    """
+    Of robots that move straight between points of time: for each step the least distance of two centres, and the least distance less the radii; and the pairs that ever overlap by more than the tolerance.
+    """
+
+def closest_approach_in_space(positions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], tolerance: float) -> tuple[list[float], list[float], list[tuple[int, int]]]:
+    """
+    Of robots that move straight between points of time: for each step the least distance of two centres, and the least distance less the radii; and the pairs that ever overlap by more than the tolerance.
+    """

@@ -18,5 +18,6 @@ void bind_grid(nanobind::module_& m);
 void bind_ways(nanobind::module_& m);
 void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
+void bind_avoidance(nanobind::module_& m);
 
 }  // namespace muster

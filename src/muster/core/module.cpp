@@ -17,4 +17,5 @@ NB_MODULE(_core, m) {
   muster::bind_ways(m);
   muster::bind_air(m);
   muster::bind_tree(m);
+  muster::bind_avoidance(m);
 }

@@ -1,4 +1,4 @@
-// Independent pieces of work over threads.
+// Work over threads.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +32,17 @@ void for_each_parallel(int count, int threads, Make make) {
     work();
   }
   if (trouble) std::rethrow_exception(trouble);
+}
+
+// Calls work(begin, end) for parts of 0 to count - 1 that together are all of it, where a piece is small.
+template <typename Work>
+void in_parts(int count, int threads, const Work& work) {
+  threads = std::clamp(threads, 1, std::max(1, count));
+  std::vector<std::jthread> others;
+  const auto bound = [&](int part) { return static_cast<int>(static_cast<long>(count) * part / threads); };
+  for (int part = 1; part < threads; ++part)
+    others.emplace_back([&work, begin = bound(part), end = bound(part + 1)] { work(begin, end); });
+  work(0, bound(1));
 }
 
 }  // namespace muster

@@ -17,6 +17,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
+from muster.studies.bench_avoidance import compared
 from muster.studies.bench_motion import MOTION_BENCHES
 from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
@@ -148,6 +149,19 @@ def _above_best(found: Quality) -> Measurement:
     return _over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)
 
 
+def avoidance(runs: int) -> list[Measurement]:
+    """A step of ORCA for many robots, beside RVO2 in the same run."""
+    found = []
+    for count, aim in ((1_000, "< 10"), (10_000, "< 150")):
+        times = compared(count, runs)
+        theirs = statistics.median(times["RVO2"])
+        for program, milliseconds in times.items():
+            ratio = "" if program == "RVO2" else f"{statistics.median(milliseconds) / theirs:.2f} of the time of RVO2"
+            name = f"ORCA step, {count:,} robots, {program}"
+            found.append(_over_runs(name, "CPU ms", milliseconds, "" if program == "RVO2" else aim, ratio))
+    return found
+
+
 def start_up(runs: int) -> list[Measurement]:
     """Whole processes: `import muster` and `muster --help`, with what Python itself takes."""
     commands = (
@@ -170,6 +184,7 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "greedy-large": greedy_large,
     "auction-large": auction_large,
     "search": search_quality,
+    "avoidance": avoidance,
     "start-up": start_up,
     **MOTION_BENCHES,
 }

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
@@ -13,6 +14,7 @@ from muster.studies.auction_5 import Auction5
 from muster.studies.effort import Effort
 from muster.studies.market_rescue import MarketRescue
 from muster.studies.peers import Peers
+from muster.studies.rvo import CollisionAvoidance
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import Thesis33
 
@@ -30,7 +32,21 @@ class Study(Protocol):
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
 
 
-_IMPLEMENTATIONS: tuple[Study, ...] = (Thesis33(), Auction5(), MarketRescue(), Allocators(), Peers())
+@runtime_checkable
+class Illustrated(Protocol):
+    """A study with pictures of the tables that are wanted."""
+
+    def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
+
+
+_IMPLEMENTATIONS: tuple[Study, ...] = (
+    Thesis33(),
+    Auction5(),
+    MarketRescue(),
+    Allocators(),
+    Peers(),
+    CollisionAvoidance(),
+)
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})
 

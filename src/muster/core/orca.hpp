@@ -1,0 +1,31 @@
+// Optimal reciprocal collision avoidance: van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance"
+// (2011), in the plane, and in space by the same formulas.
+#pragma once
+
+#include <vector>
+
+#include "agents.hpp"
+#include "linear_program.hpp"
+#include "walls.hpp"
+
+namespace muster {
+
+struct OrcaSettings {
+  double horizon, wall_horizon;  // tau, for agents and for what stands still: seconds
+  Neighbourhood neighbourhood;
+  bool apart;  // whether no agent may use more than half of the gap to another in a step, whatever else
+};
+
+// ORCA of an agent with velocity v_a towards another with v_b, `apart` = p_b - p_a: velocities with which neither
+// touches the other for `horizon`, if the other keeps to its own half of the bargain; `radius` is the sum of radii. Of
+// what has to be changed the agent takes the part `yields`; where there is room to spare it leaves that part of it.
+template <int D>
+HalfSpace<D> orca_space(const Vec<D>& apart, const Vec<D>& v_a, const Vec<D>& v_b, double radius, double horizon,
+                        double dt, double yields);
+
+// The new velocity of every agent.
+template <int D>
+std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<Wall<D>>& walls,
+                                    const OrcaSettings& settings, double dt, int threads);
+
+}  // namespace muster

@@ -1,0 +1,23 @@
+"""Collision avoidance: one method a file behind one interface, and crowds that are led by one."""
+
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
+from muster.motion.avoidance.crowd import Crowd, Trajectories, perturbed, run, towards
+from muster.motion.avoidance.hrvo import Hrvo
+from muster.motion.avoidance.method import Method
+from muster.motion.avoidance.orca import Orca
+from muster.motion.avoidance.rvo import Rvo
+
+__all__ = [
+    "NO_OBSTACLES",
+    "Agents",
+    "Crowd",
+    "Hrvo",
+    "Method",
+    "Obstacles",
+    "Orca",
+    "Rvo",
+    "Trajectories",
+    "perturbed",
+    "run",
+    "towards",
+]

@@ -1,0 +1,89 @@
+"""ORCA: van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), in the plane and in space.
+
+Each pair of robots leaves each other a half of the velocities (section 4); a robot takes the velocity nearest to the
+preferred one that all others and all walls leave it, by a linear program (section 5), and where they leave none, the
+one that goes least deep into what they do not leave. Against walls in the plane the half-plane is the one nearest
+to the robot's own velocity, and where those leave nothing, the one nearest to 0, which always leaves 0; against
+boxes in space it is always that one.
+
+Of what two robots have to change in their relative velocity, equals take one half each; the one with the lower priority
+takes all. Of what they have to spare, equals may use one half each; the one with the higher priority may use all. So
+the two parts always add up to the whole, on which the guarantee rests.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from muster.motion.avoidance.agents import (
+    NO_OBSTACLES,
+    Agents,
+    Floats,
+    Obstacles,
+    require_counts,
+    require_finite_positive,
+    require_positive,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of ORCA; the defaults are those of the authors' circle of 250 robots.
+
+    Parameters
+    ----------
+    horizon_s
+        tau: for how long a velocity keeps robots apart.
+    wall_horizon_s
+        the same for what stands still.
+    most_neighbours, neighbour_distance_m
+        a robot looks at the nearest others, up to this distance between centres.
+    keep_apart
+        whether no robot may use more than half of the gap to another in one step, whatever else: then robots that do
+        not overlap never will.
+    threads
+        of the processor; the result does not depend on them.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    horizon_s: float = 10.0
+    wall_horizon_s: float = 10.0
+    most_neighbours: int = 10
+    neighbour_distance_m: float = 15.0
+    keep_apart: bool = True
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        require_finite_positive(horizon_s=self.horizon_s, wall_horizon_s=self.wall_horizon_s)
+        require_positive(neighbour_distance_m=self.neighbour_distance_m)
+        require_counts(most_neighbours=self.most_neighbours, threads=self.threads)
+
+
+@dataclass(frozen=True)
+class Orca:
+    """Optimal reciprocal collision avoidance, 2-D and 3-D."""
+
+    params: Parameters = field(default_factory=Parameters)
+    name: ClassVar[str] = "ORCA"
+
+    def velocities(self, agents: Agents, obstacles: Obstacles = NO_OBSTACLES, dt: float = 0.25) -> Floats:
+        """See `Method`."""
+        require_finite_positive(dt=dt)
+        p = self.params
+        known = agents.in_plane() if agents.dimensions == 2 else agents.in_space()
+        chosen: Floats = known.orca(
+            obstacles.still(agents.dimensions),
+            dt,
+            horizon=p.horizon_s,
+            wall_horizon=p.wall_horizon_s,
+            most=p.most_neighbours,
+            distance=p.neighbour_distance_m,
+            apart=p.keep_apart,
+            threads=p.threads,
+        )
+        return chosen

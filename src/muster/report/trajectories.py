@@ -1,0 +1,108 @@
+"""Where robots went and how near they came to each other, for several methods side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.report.canvas import quiet_frame, require_matplotlib
+from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Floats = npt.NDArray[np.float64]
+
+_INCHES = 3.6
+"""Width and height of one panel."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ways:
+    """What one method made of one scenario.
+
+    Parameters
+    ----------
+    goals
+        (n, 2) metres.
+    positions, velocities
+        (steps + 1, n, 2) metres and (steps, n, 2) metres a second.
+    least_distances_m
+        (steps,) between two centres.
+    touch_m, inflated_m
+        the sum of two radii, and of two inflated ones.
+    """
+
+    method: str
+    robots: tuple[str, ...]
+    goals: Floats
+    positions: Floats
+    velocities: Floats
+    least_distances_m: Floats
+    dt: float
+    touch_m: float
+    inflated_m: float
+
+
+def plot_ways(ways: Sequence[Ways], title: str) -> Figure:
+    """Draw for each method, from above: the ways, the least distance over time, and both components of velocity.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    require_matplotlib()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(_INCHES * len(ways), 3.4 * _INCHES), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    rows = figure.subplots(4, len(ways), squeeze=False, height_ratios=(1.6, 1, 0.8, 0.8))
+    for column, one in enumerate(ways):
+        _draw_ways(rows[0][column], one)
+        _draw_distances(rows[1][column], one)
+        for axis, name in enumerate("xy"):
+            _draw_velocities(rows[2 + axis][column], one, axis, name)
+        for row in rows:
+            quiet_frame(row[column])
+    figure.suptitle(title, fontsize=11, fontweight="bold", color=TEXT)
+    rows[0][0].legend(loc="best", fontsize=7, frameon=False)
+    rows[1][0].legend(loc="best", fontsize=7, frameon=False)
+    return figure
+
+
+def _draw_ways(ax: Any, ways: Ways) -> None:
+    for index, robot in enumerate(ways.robots):
+        color, (x, y) = robot_style(index).color, ways.positions[:, index].T
+        ax.plot(x, y, color=color, linewidth=1.2, label=robot)
+        ax.plot(x[0], y[0], "o", color=color, markersize=5)
+        ax.plot(*ways.goals[index], "x", color=color, markersize=7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_title(ways.method, fontsize=10, color=TEXT)
+    ax.set_xlabel("x (m); o start, x goal")
+    ax.set_ylabel("y (m)")
+
+
+def _draw_distances(ax: Any, ways: Ways) -> None:
+    ax.plot(_times(ways), ways.least_distances_m, color=TEXT, linewidth=1.2, label="least distance")
+    ax.axhline(ways.inflated_m, color=QUIET_TEXT, linestyle=DASHED, linewidth=1.0, label="inflated radii")
+    ax.axhline(ways.touch_m, color=ALARM, linewidth=1.0, label="contact")
+    ax.set_ylim(bottom=0.0)
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel("least distance of centres (m)")
+
+
+def _draw_velocities(ax: Any, ways: Ways, axis: int, name: str) -> None:
+    for index in range(len(ways.robots)):
+        ax.plot(_times(ways), ways.velocities[:, index, axis], color=robot_style(index).color, linewidth=0.9)
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel(f"velocity, {name} (m/s)")
+
+
+def _times(ways: Ways) -> Floats:
+    return np.arange(1, len(ways.velocities) + 1, dtype=np.float64) * ways.dt

@@ -1,0 +1,35 @@
+"""Ways of robots: what is drawn."""
+
+import numpy as np
+import pytest
+
+from muster.report.trajectories import Ways, plot_ways
+
+pytest.importorskip("matplotlib")
+
+
+def ways(method):
+    positions = np.array([[[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.5], [3.0, -0.5]], [[2.0, 0.0], [2.5, 0.0]]])
+    return Ways(
+        method=method,
+        robots=("r_0", "r_1"),
+        goals=np.array([[2.0, 0.0], [2.5, 0.0]]),
+        positions=positions,
+        velocities=np.diff(positions, axis=0) / 0.5,
+        least_distances_m=np.array([2.2, 0.5]),
+        dt=0.5,
+        touch_m=0.3,
+        inflated_m=0.4,
+    )
+
+
+def test_panels():
+    figure = plot_ways([ways("RVO"), ways("ORCA")], "a title")
+    assert len(figure.axes) == 8
+    paths, distances, x, y = figure.axes[0], figure.axes[2], figure.axes[4], figure.axes[6]
+    assert [ax.get_title() for ax in figure.axes[:2]] == ["RVO", "ORCA"]
+    assert paths.lines[0].get_xydata().tolist() == [[0, 0], [1, 0.5], [2, 0]]
+    assert distances.lines[0].get_xydata().tolist() == [[0.5, 2.2], [1.0, 0.5]]
+    assert {line.get_ydata()[0] for line in distances.lines[1:]} == {0.3, 0.4}
+    assert x.lines[1].get_ydata().tolist() == [-2.0, -1.0]
+    assert y.lines[0].get_ydata().tolist() == [1.0, -1.0]
