@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 _HAIR = 1e-10  # of the region's extent
 _SLACK = 1e-9  # relative: so far beyond a border a place is still free
 _TURN = 1e-5  # sine of an angle that may be rounding
-_AT_ONCE = 1 << 20  # pairs that are looked at together
 
 
 class Regions:
@@ -61,22 +60,19 @@ class Regions:
     def between_corners(self) -> Indices:
         """Pairs (k, 2) of corners that see each other, where a way may turn at both."""
         found = [np.empty((0, 2), dtype=np.int64)]
-        count = len(self.corners)
-        rows = max(1, _AT_ONCE // max(count, 1))
-        for first in range(0, count, rows):
-            i, j = np.meshgrid(np.arange(first, min(first + rows, count)), np.arange(count), indexing="ij")
-            i, j = i[i < j], j[i < j]
-            taut = self._taut(i, self.corners[j] - self.corners[i]) & self._taut(j, self.corners[i] - self.corners[j])
-            found.append(np.stack([i[taut], j[taut]], axis=1))
+        for i, corner in enumerate(self.corners):
+            steps = self.corners[i + 1 :] - corner
+            j = np.flatnonzero(_taut(self._back[i], self._on[i], steps))
+            j = j[_taut(self._back[i + 1 + j], self._on[i + 1 + j], steps[j])] + i + 1
+            found.append(np.stack([np.full(len(j), i), j], axis=1))
         pairs = np.concatenate(found)
         return pairs[self._sees(self.corners[pairs[:, 0]], self.corners[pairs[:, 1]])]
 
     def from_places(self, places: Floats) -> Indices:
         """Pairs (k, 2) of a place and a corner it sees, where a way may turn at the corner."""
         found = [np.empty((0, 2), dtype=np.int64)]
-        every = np.arange(len(self.corners))
         for k, place in enumerate(places):
-            taut = every[self._taut(every, place - self.corners)]
+            taut = np.flatnonzero(_taut(self._back, self._on, place - self.corners))
             found.append(np.stack([np.full(len(taut), k), taut], axis=1))
         pairs = np.concatenate(found)
         return pairs[self._sees(places[pairs[:, 0]], self.corners[pairs[:, 1]])]
@@ -90,11 +86,15 @@ class Regions:
 
         return np.asarray(shapely.covers(self._open, shapely.linestrings(np.stack([starts, ends], axis=1))))
 
-    def _taut(self, corners: Indices, steps: Floats) -> Bools:
-        """Whether a way that leaves a corner along a step can have turned there: its two sides are on one side."""
-        along = steps / np.maximum(np.hypot(*steps.T), np.finfo(float).tiny)[:, None]
-        back, on = _cross(along, self._back[corners]), _cross(along, self._on[corners])
-        return np.asarray((np.minimum(back, on) >= -_TURN) | (np.maximum(back, on) <= _TURN))
+
+def _taut(back: Floats, on: Floats, steps: Floats) -> Bools:
+    """Whether a way along each step can turn at a corner at its one end: the corner's sides are on one side of it.
+
+    `back` and `on` are directions (2,) or (n, 2) of the corner's sides, `steps` (n, 2) lead to it or from it.
+    """
+    doubt = _TURN * np.hypot(steps[:, 0], steps[:, 1])
+    before, after = _cross(steps, back), _cross(steps, on)
+    return np.asarray((np.minimum(before, after) >= -doubt) | (np.maximum(before, after) <= doubt))
 
 
 def _inward_corners(region: Region) -> tuple[Floats, Floats, Floats]:
@@ -115,4 +115,4 @@ def _inward_corners(region: Region) -> tuple[Floats, Floats, Floats]:
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
