@@ -18,7 +18,7 @@ def require_supported(mission: Mission) -> None:
     Raises
     ------
     NotSupportedError
-        for travel over a map, actions with geometry, and numbers whose sums may overflow.
+        for actions with geometry, and numbers whose sums may overflow.
     """
     found = findings(_unsupported(mission), mission.source)
     if found:
@@ -26,12 +26,6 @@ def require_supported(mission: Mission) -> None:
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:
-    if mission.travel_rule == "map":
-        expected = "rules.travel: euclidean or matrix; travel over a map is not supported yet"
-        if mission.rules.travel is None:
-            yield Fault(("map",), "a map, and no rules.travel", expected)
-        else:
-            yield Fault(("rules", "travel"), shown("map"), expected)
     for k, task in enumerate(mission.tasks):
         if task.action is not None and task.action.has_geometry:
             expected = "go-to-goal or sensor-activation; actions with geometry are not supported yet"

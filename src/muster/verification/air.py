@@ -9,7 +9,9 @@ has run into count: what is shortest without the others, and meets none of them,
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,12 +39,12 @@ class AirWays:
         import shapely
 
         self._lowest = space.lowest_m
-        self._region = space.region
         west, south, east, north = (0.0, 0.0, 1.0, 1.0) if space.region.is_empty else space.region.bounds
         extent = max(east - west, north - south)
         around = shapely.box(west - extent, south - extent, east + extent, north + extent)
         outside = Prism(shapely.difference(around, space.region), -math.inf, math.inf)
-        self._obstacles = [_Obstacle.of(prism, _HAIR * extent) for prism in (outside, *space.prisms)]
+        prisms, hair = (outside, *space.prisms), _HAIR * extent
+        self._obstacles = [_Obstacle.of(prism, hair) for prism in (*prisms, *_joints(prisms, hair))]
         self._known: dict[tuple[Point, Point], float | None] = {}
 
     def metres(self, start: Point, end: Point) -> float | None:
@@ -71,13 +73,16 @@ class AirWays:
                 return None
 
     def _best(self, ends: Floats, met: list[_Obstacle]) -> Floats | None:
-        """The shortest way (k, 3) among some obstacles; None if there is none over their coarse outlines."""
+        """The shortest way (k, 3) among some obstacles; None if there is none."""
         heights = [float(z) for o in met for z in (o.floor, o.ceiling) if math.isfinite(z)]
         low, high = min(*ends[:, 2], *heights), max(*ends[:, 2], *heights)
         low = max(low, min(self._lowest, *ends[:, 2]))
         levels = np.unique(np.concatenate([np.linspace(low, high, _LEVELS), ends[:, 2]]))
         spread = max((high - low) / (_LEVELS - 1), 0.02 * float(np.linalg.norm(ends[1] - ends[0])))
-        way = self._through(ends, [o.coarse_points(levels) for o in met], met)
+        coarse = [o.coarse_points(levels) for o in met]
+        way = self._through(ends, coarse, met)
+        if way is None:  # a gap may be too narrow for coarse outlines
+            way = self._through(ends, [*coarse, *(_raised(o.corners, levels) for o in met)], met)
         along = 0.25 * max(o.width for o in met[-1:])
         for _ in range(_ROUNDS if way is not None else 0):
             way = self._through(ends, [way[1:-1], *(o.points_near(way, spread, along) for o in met)], met)
@@ -100,6 +105,22 @@ class AirWays:
         return None if way is None else nodes[way]
 
 
+def _joints(prisms: Sequence[Prism], hair: float) -> Iterator[Prism]:
+    """Prisms that close the slits without width between prisms that touch, beside each other or one upon the other."""
+    import shapely
+
+    for one, other in permutations(prisms, 2):
+        floor, ceiling = max(one.floor_m, other.floor_m), min(one.ceiling_m, other.ceiling_m)
+        if not shapely.dwithin(one.polygon, other.polygon, 2 * hair):
+            continue
+        if ceiling - floor > 2 * hair and prisms.index(one) < prisms.index(other):
+            yield Prism(shapely.union(one.polygon, other.polygon), floor, ceiling)
+        if abs(one.ceiling_m - other.floor_m) <= 2 * hair:
+            shared = shapely.intersection(one.polygon, other.polygon)
+            if shared.area > 0:
+                yield Prism(shared, one.floor_m, other.ceiling_m)
+
+
 @dataclass(frozen=True, eq=False)
 class _Obstacle:
     """A prism with its inside, smaller by a hair, and an outline of few corners around it."""
@@ -108,6 +129,7 @@ class _Obstacle:
     ceiling: float
     outline: shapely.Polygon
     inside: shapely.Polygon
+    corners: Floats
     coarse: Floats
     width: float
     hair: float
@@ -122,8 +144,8 @@ class _Obstacle:
         coarse = shapely.buffer(shapely.simplify(prism.polygon, off), 1.01 * off, join_style="mitre")
         inside = shapely.buffer(prism.polygon, -hair, join_style="mitre")
         shapely.prepare(inside)
-        corners = np.unique(shapely.get_coordinates(coarse), axis=0)
-        return cls(prism.floor_m, prism.ceiling_m, prism.polygon, inside, corners, width, hair)
+        corners, few = (np.unique(shapely.get_coordinates(shape), axis=0) for shape in (prism.polygon, coarse))
+        return cls(prism.floor_m, prism.ceiling_m, prism.polygon, inside, corners, few, width, hair)
 
     def holds(self, points: Floats, slack: float) -> Bools:
         """Whether points (n, 3) are inside by more than the slack."""
@@ -160,12 +182,14 @@ class _Obstacle:
         return np.concatenate([_raised(self.coarse, levels), _raised(rims, self._rims())])
 
     def points_near(self, way: Floats, spread: float, along: float) -> Floats:
-        """Points (n, 3) on the outline's own edges near a way (k, 3), `spread` apart in height and `along` in the plane."""
+        """Points (n, 3) on the outline's own edges near a way (k, 3).
+
+        They are `spread` apart in height, and `along` in the plane.
+        """
         import shapely
 
-        corners = np.unique(shapely.get_coordinates(self.outline), axis=0)
         line = shapely.LineString(way[:, :2])
-        near = corners[shapely.dwithin(line, shapely.points(corners), 3 * _COARSE * self.width)]
+        near = self.corners[shapely.dwithin(line, shapely.points(self.corners), 3 * _COARSE * self.width)]
         heights = np.interp(
             shapely.line_locate_point(line, shapely.points(near)),
             np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way[:, :2], axis=0).T))]),

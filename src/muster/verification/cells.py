@@ -1,10 +1,10 @@
 """What is seen from where among free cells: the exact sight of the judge in a GridSpace.
 
 All lengths here are in cells: x grows with the column, y with the row. Free cells are closed squares, and between two
-blocked cells that touch at a corner nothing passes. A shortest way turns only at corners of the lattice with one blocked
-cell around them. What such a corner sees is found for all of them at once, row by row upwards: what a point sees of a
-row is some cones, and each is cut at the free runs of the next row. A cone without width is dropped: along it lie
-corners that see each other.
+blocked cells that touch at a corner nothing passes. A shortest way turns only at corners of the lattice with one
+blocked cell around them. What such a corner sees is found for all of them at once, row by row upwards: what a point
+sees of a row is some cones, and each is cut at the free runs of the next row. A cone without width is dropped: along
+it lie corners that see each other.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class _Rows:
         self._begun, self._ended = (np.cumsum(steps == step, dtype=np.int64) for step in (1, -1))
 
     def run_at(self, places: Floats) -> Indices:
-        """The run (n,) that each place is in, seen from below: of a place on a line the row above it counts; else -1."""
+        """The run (n,) that each place is in, or -1; of a place on a line the row above it counts."""
         x, row = places[:, 0], np.floor(places[:, 1])
         within = (row >= 0) & (row < self.height) & (x >= 0) & (x <= self.width)
         found = self._first(np.where(within, row, 0), np.where(within, x, 0) - 2 * _CLOSE)

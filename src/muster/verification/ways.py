@@ -2,6 +2,7 @@
 
 In the plane they are exact: a shortest way turns only at corners of what is blocked, so it is a shortest path in the
 graph of corners that see each other (Lozano-Perez and Wesley 1979, An algorithm for planning collision-free paths).
+In the air they are approximations, see `air`.
 """
 
 from __future__ import annotations
@@ -12,12 +13,55 @@ from typing import Protocol
 
 import numpy as np
 
-from muster.mission.model import Point
+from muster.mission.model import Mission, Point, Robot
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.spaces import GridSpace, PolygonSpace
+from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
+from muster.motion.world import World
+from muster.verification.air import AirWays
 from muster.verification.cells import Cells
 from muster.verification.regions import Regions
 from muster.verification.roads import Roads
+
+PLANE_TOLERANCE = 1e-6
+"""Relative. In the plane both planner and judge are exact, and add in different orders."""
+
+AIR_TOLERANCE = 1e-2
+"""Relative. Among prisms both are within half of it."""
+
+
+class MapWays:
+    """Shortest ways over a mission's map for its robots, made once for each radius and kind.
+
+    Parameters
+    ----------
+    mission
+        with a map.
+    points
+        every point that will be asked for, metres in the map frame.
+
+    Raises
+    ------
+    MissionError, MissingExtraError
+        as `World.of`.
+    """
+
+    def __init__(self, mission: Mission, points: Iterable[Point]) -> None:
+        self._world = World.of(mission)
+        self._points = tuple(points)
+        self._made: dict[tuple[float, str], PlaneWays | AirWays] = {}
+        in_air = any(isinstance(self._space(robot), PrismSpace) for robot in mission.robots)
+        self.tolerance = AIR_TOLERANCE if in_air else PLANE_TOLERANCE
+
+    def metres(self, robot: Robot, start: Point, end: Point) -> float | None:
+        """The length of the robot's shortest way between two of the points; None where there is none."""
+        body = (robot.radius_m, robot.kind)
+        if body not in self._made:
+            space = self._space(robot)
+            self._made[body] = AirWays(space) if isinstance(space, PrismSpace) else PlaneWays(space, self._points)
+        return self._made[body].metres(start, end)
+
+    def _space(self, robot: Robot) -> Space:
+        return self._world.free_space(robot.radius_m, robot.kind)
 
 
 class _Sight(Protocol):
