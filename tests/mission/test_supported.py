@@ -4,12 +4,10 @@ import pytest
 
 from muster.allocation.problem import Problem
 from muster.mission.errors import NotSupportedError
-from muster.mission.model import Action, Map, Mission, Robot, Rules, Task
+from muster.mission.model import Action, Mission, Robot, Task
 from muster.mission.plan import Plan
 from muster.mission.source import Source
 from muster.verification import verify
-
-FLOOR = Map(boundary=((0, 0), (9, 0), (9, 9)))
 
 
 def refusal(function, *arguments):
@@ -30,8 +28,6 @@ def refused(mission):
 @pytest.mark.parametrize(
     ("mission", "field", "value"),
     [
-        ({"map": FLOOR}, "map", "no rules.travel"),
-        ({"map": FLOOR, "rules": Rules(travel="map")}, "rules.travel", "map"),
         (
             {"tasks": (Task(id="a", position=(0, 0), action=Action(name="ground-patrol", side_m=3)),)},
             "tasks[0].action.name",

@@ -42,8 +42,13 @@ def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], l
     return routes, violations
 
 
-def broken_rules(mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], unit: str) -> Iterator[Violation]:
-    """Find every broken rule, robot by robot in the order of the routes; deadlocks are for the schedule to find."""
+def broken_rules(
+    mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], unit: str, tolerance: float
+) -> Iterator[Violation]:
+    """Find every broken rule, robot by robot in the order of the routes; deadlocks are for the schedule to find.
+
+    `tolerance` is that of travel, relative.
+    """
     done = {step.task.id for route in routes for step in route.steps}
     for route in routes:
         for step in route.steps:
@@ -51,7 +56,7 @@ def broken_rules(mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], 
             if "prerequisites" not in plan.ignored:
                 yield from _missing_prerequisites(route.robot, step.task, done)
         yield from _unreachable(route)
-        yield from _above_capacity(mission, plan, route, unit)
+        yield from _above_capacity(mission, plan, route, unit, max(CAPACITY_TOLERANCE, tolerance))
 
 
 def _pair(mission: Mission, plan: Plan, robot: Robot, task: Task) -> Iterator[Violation]:
@@ -95,9 +100,11 @@ def capacity_of(mission: Mission, plan: Plan, robot: Robot) -> float | None:
     return (1 - mission.rules.capacity_reserve) * robot.work_capacity
 
 
-def _above_capacity(mission: Mission, plan: Plan, route: MeasuredRoute, unit: str) -> Iterator[Violation]:
+def _above_capacity(
+    mission: Mission, plan: Plan, route: MeasuredRoute, unit: str, tolerance: float
+) -> Iterator[Violation]:
     """Check thesis equation (3.14)."""
     capacity = capacity_of(mission, plan, route.robot)
-    if capacity is not None and route.usage > capacity * (1 + CAPACITY_TOLERANCE):
+    if capacity is not None and route.usage > capacity * (1 + tolerance):
         detail = f"usage {route.usage:.10g} {unit}, at most {capacity:.10g} {unit}"
         yield Violation("capacity", route.robot.id, None, detail)

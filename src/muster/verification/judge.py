@@ -27,6 +27,8 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
     ------
     NotSupportedError
         if the mission asks for what is not supported yet (see `require_supported`).
+    MissionError, MissingExtraError
+        for travel over a map: if the map is wrong, or the extra that reads maps is absent.
     PlanError
         if the plan, built in Python, names an objective or an ignored rule that does not exist.
     """
@@ -36,12 +38,12 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
     travel = Travel(mission)
     routes = [measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots]
     unit = "s" if mission.rules.usage == "time" else "m"
-    violations += broken_rules(mission, plan, routes, unit)
+    violations += broken_rules(mission, plan, routes, unit, travel.tolerance)
     times = schedule(routes, awaited_in(routes, ignored="prerequisites" in plan.ignored))
     if isinstance(times, Deadlock):
         violations.append(Violation("deadlock", None, None, times.detail))
     verdict = _verdict(mission, plan, routes, None if isinstance(times, Deadlock) else times, unit)
-    return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict)))
+    return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict, travel.tolerance)))
 
 
 def _verdict(

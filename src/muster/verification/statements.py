@@ -15,11 +15,14 @@ RELATIVE_TOLERANCE = 1e-6
 ABSOLUTE_TOLERANCE = 1e-9
 
 
-def false_statements(mission: Mission, plan: Plan, verdict: Verdict) -> Iterator[Violation]:
-    """Find everything that the plan states and that is not so. A plan that states only routes states nothing false."""
+def false_statements(mission: Mission, plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
+    """Find everything that the plan states and that is not so. A plan that states only routes states nothing false.
+
+    `tolerance` is that of travel, relative.
+    """
     yield from _left_out(mission, plan)
-    yield from _figures(plan, verdict)
-    yield from _usages(plan, verdict)
+    yield from _figures(plan, verdict, tolerance)
+    yield from _usages(plan, verdict, max(RELATIVE_TOLERANCE, tolerance))
     if plan.book is not None:
         yield from _book(mission, plan, plan.book)
 
@@ -45,43 +48,52 @@ def _book(mission: Mission, plan: Plan, book: Book) -> Iterator[Violation]:
                 yield Violation("book", award.robot, award.task, detail)
 
 
-def _figures(plan: Plan, verdict: Verdict) -> Iterator[Violation]:
+def _figures(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
     value = verdict.value()
+    relative = max(RELATIVE_TOLERANCE, tolerance)
     figures = (
         (f"objective {verdict.objective_name}", plan.objective_value, value),
         ("usage_unit", plan.usage_unit, verdict.usage_unit),
         ("total_cost", plan.total_cost, verdict.total_cost),
         ("max_usage", plan.max_usage, verdict.max_usage),
         ("makespan_s", plan.makespan_s, verdict.makespan_s),
-        ("equality_index", plan.equality_index, verdict.equality_index),
         ("tasks_completed", plan.tasks_completed, verdict.tasks_completed),
         ("tasks_total", plan.tasks_total, verdict.tasks_total),
         ("weight_completed", plan.weight_completed, verdict.weight_completed),
     )
     for name, stated, found in figures:
-        if not _agrees(stated, found):
+        if not _agrees(stated, found, relative):
             yield Violation("figure", None, None, f"{name}: the plan says {stated}, it is {found}")
+    index = verdict.equality_index
+    # With travel that is off by up to t the index is off by up to 2 t, however small it is.
+    if not _agrees(plan.equality_index, index, absolute=max(ABSOLUTE_TOLERANCE, 2 * tolerance)):
+        yield Violation("figure", None, None, f"equality_index: the plan says {plan.equality_index}, it is {index}")
     bound = plan.lower_bound
-    if bound is not None and value is not None and not bound <= value and not _agrees(bound, value):
+    if bound is not None and value is not None and not bound <= value and not _agrees(bound, value, relative):
         yield Violation("figure", None, None, f"lower_bound: the plan says {bound}, above its objective {value}")
 
 
-def _usages(plan: Plan, verdict: Verdict) -> Iterator[Violation]:
+def _usages(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
     stated: dict[str, float | None] = {}
     for route in plan.routes:
         stated.setdefault(route.robot, route.usage)  # of two routes of one robot the first was judged
     for figures in verdict.routes:
         usage = stated.get(figures.robot)
-        if not _agrees(usage, figures.usage):
+        if not _agrees(usage, figures.usage, tolerance):
             yield Violation("figure", figures.robot, None, f"usage: the plan says {usage}, it is {figures.usage}")
 
 
-def _agrees(stated: float | str | None, found: float | str | None) -> bool:
-    """Return whether a figure, if stated, is right: numbers to 1e-6 relative, counts and words exactly."""
+def _agrees(
+    stated: float | str | None,
+    found: float | str | None,
+    relative: float = RELATIVE_TOLERANCE,
+    absolute: float = ABSOLUTE_TOLERANCE,
+) -> bool:
+    """Return whether a figure, if stated, is right: numbers to the tolerances, counts and words exactly."""
     if stated is None:
         return True
     if isinstance(stated, float | int) and isinstance(found, float):
-        return math.isclose(stated, found, rel_tol=RELATIVE_TOLERANCE, abs_tol=ABSOLUTE_TOLERANCE)
+        return math.isclose(stated, found, rel_tol=relative, abs_tol=absolute)
     return stated == found
 
 
