@@ -54,6 +54,30 @@ def test_init_from_a_shipped_mission(muster):
     assert muster("check", "other.yaml")[0] == 0
 
 
+def test_init_from_a_shipped_mission_with_a_map_copies_the_map_too(muster):
+    """The copy needs nothing of what the package ships."""
+    written = "hall.yaml\nfloor-plan.png\nfloor-plan.yaml\n"
+    assert muster("init", "hall", "--from", "floor")[:2] == (0, written)
+    pytest.importorskip("shapely")
+    from muster import load
+    from muster.motion.world import World
+
+    mission = load("hall.yaml")
+    assert mission.map.ros_yaml == "floor-plan.yaml"
+    assert World.of(mission).image.shape == World.of(load("floor")).image.shape
+    assert muster("init", "again", "--from", "floor") == (
+        2,
+        "",
+        "floor-plan.png: exists; expected the name of a new file\n",
+    )
+    assert not Path("again.yaml").exists()
+    assert muster("init", "--from", "floor", "-o", "floor-plan.yaml") == (
+        2,
+        "",
+        "floor-plan.yaml: the name of the mission's map; expected another one\n",
+    )
+
+
 def test_init_from_what_cannot_be_copied(muster):
     assert muster("init", "--from", "31T-6R5") == (
         2,

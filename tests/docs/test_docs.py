@@ -109,3 +109,22 @@ def test_links_lead_somewhere(name):
 def test_pictures_of_the_readme_are_there():
     for name in re.findall(r"!\[[^]]*\]\(([^)]+)\)", README):
         assert (ROOT / name).stat().st_size > 0
+
+
+def test_the_examples_of_maps():
+    pytest.importorskip("shapely")
+    import numpy as np
+
+    from muster.motion.world import World
+
+    text = (ROOT / "docs" / "maps.md").read_text(encoding="utf-8")
+    rest = "\nschema: muster/1\nrobots: [{id: r_0, position: [1, 1]}]\ntasks: []\n"
+    *images, polygons = [parse_yaml(block + rest, Path("m.yaml")) for block in blocks(text, "yaml")]
+    assert [(m.map.ros_yaml, m.map.image) for m in images] == [("floor.yaml", None), (None, "floor.png")]
+    assert World.of(polygons).clearance(np.array([[1.0, 1.0]]), "ground") == 1
+    (example,) = blocks(text, "python")
+    names = {}
+    exec(compile(example, "maps.md", "exec"), names)
+    points = np.array([[3.0, 3.0, 0.0], [14.2, 20.0, 0.0], [10.0, 20.0, 0.0]])
+    assert names["free"](names["space"], points).tolist() == [True, False, True]
+    assert names["world"].clearance(points, "ground")[2] == 4

@@ -44,8 +44,10 @@ COUNTS = {  # robots, tasks
     "eil51-7-thesis": (7, 57),
     "eil76-7": (7, 75),
     "eil76-7-thesis": (7, 82),
+    "floor": (5, 23),
     "market-rescue": (3, 5),
     "market-rescue-20": (5, 20),
+    "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]
 SALESMEN = [("berlin52-5", "berlin52", 5), ("eil76-7", "eil76", 7), *((f"eil51-{k}", "eil51", k) for k in (3, 5, 7))]

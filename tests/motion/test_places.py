@@ -93,7 +93,7 @@ def test_a_task_that_one_kind_of_robot_can_do_is_no_fault(tmp_path):
         f"{start}9: tasks[1].position: [5.0, 5.0], inside zone 0; expected a place that is free for its robot "
         "(ground, radius 0.2 m)",
         f"{start}10: tasks[2].position: [-1.0, 5.0], outside the boundary; expected a place that is free for its robot "
-        "(ground, radius 0.2 m, air, radius 0.3 m)",
+        "(ground, radius 0.2 m; air, radius 0.3 m)",
     ]
 
 

@@ -9,7 +9,7 @@ from muster.mission.plan import Plan, Route
 from muster.verification import Verdict, verify
 
 if find_spec("matplotlib") is None:
-    collect_ignore = ["test_files.py", "test_fonts.py", "test_gantt.py", "test_routes.py"]
+    collect_ignore = ["test_files.py", "test_floor.py", "test_fonts.py", "test_gantt.py", "test_routes.py"]
 
 
 @pytest.fixture

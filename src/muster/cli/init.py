@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import click
@@ -41,17 +42,17 @@ def command(name: str, shipped: str | None, output: Path | None, quiet: bool, ve
     """
     stem = name.removesuffix(".yaml").removesuffix(".yml")
     path = output or Path(f"{stem}.yaml")
-    text = (
-        _TEMPLATE.format(name=json.dumps(path.stem, ensure_ascii=False), file=path)
-        if shipped is None
-        else _shipped_text(shipped)
-    )
-    try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
-    except FileExistsError:
-        raise ParameterError(f"{path}: exists; expected the name of a new file") from None
-    click.echo(str(path))
+    text, beside = _template(path) if shipped is None else _shipped(shipped)
+    files = {path: text.encode(), **{path.with_name(file.name): file.read_bytes() for file in beside}}
+    if len(files) <= len(beside):
+        raise ParameterError(f"{path}: the name of the mission's map; expected another one")
+    for new in files:
+        if new.exists() or new.is_symlink():
+            raise ParameterError(f"{new}: exists; expected the name of a new file")
+    for new, content in files.items():
+        with new.open("xb") as stream:
+            stream.write(content)
+        click.echo(str(new))
     if verbose:
         origin = "a template" if shipped is None else f"a copy of {shipped}"
         click.echo(f"wrote {path}: {origin}, {len(text.splitlines())} lines", err=True)
@@ -59,7 +60,12 @@ def command(name: str, shipped: str | None, output: Path | None, quiet: bool, ve
         click.echo(f"next: muster check {path}; muster solve {path}", err=True)
 
 
-def _shipped_text(shipped: str) -> str:
+def _template(path: Path) -> tuple[str, list[Path]]:
+    return _TEMPLATE.format(name=json.dumps(path.stem, ensure_ascii=False), file=path), []
+
+
+def _shipped(shipped: str) -> tuple[str, list[Path]]:
+    """The text of a shipped mission, and the files of its map, which go beside it."""
     from muster.library import mission_names, mission_path
     from muster.mission.hints import did_you_mean
 
@@ -69,4 +75,9 @@ def _shipped_text(shipped: str) -> str:
         raise ParameterError(f"--from: no shipped mission {shipped}; expected one of `muster missions`{hint}")
     if path.suffix != ".yaml":
         raise ParameterError(f"--from: {shipped} is no YAML; use it as it is: muster solve {shipped} --salesmen 3")
-    return path.read_text(encoding="utf-8")
+    text = path.read_text(encoding="utf-8")
+    named = re.search(r"ros_yaml: (\S+)", text)
+    if named is None:
+        return text, []
+    ros_map = path.parent / named[1]
+    return text.replace(named[1], ros_map.name), sorted(ros_map.parent.glob(f"{ros_map.stem}.*"))

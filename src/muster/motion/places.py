@@ -90,7 +90,7 @@ def checked_world(mission: Mission) -> World:
 
 
 def _expected(same: list[BlockedPlace]) -> str:
-    bodies = ", ".join(f"{place.body.kind}, radius {place.body.radius_m:g} m" for place in same)
+    bodies = "; ".join(f"{place.body.kind}, radius {place.body.radius_m:g} m" for place in same)
     return f"a place that is free for its robot ({bodies})"
 
 

@@ -85,6 +85,10 @@ class World:
     areas: tuple[Area, ...]
     _made: dict[object, object] = field(default_factory=dict, init=False, repr=False)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: the map, and nothing of what can be made again."""
+        return {**self.__dict__, "_made": {}}
+
     @classmethod
     def of(cls, mission: Mission) -> World:
         """The world of a mission with a map; files are found from the folder of the mission's file.
@@ -175,11 +179,9 @@ class World:
         assert self.boundary is not None
         areas = self.stopping(body, three_d)
         if three_d and body.kind == "air":
-            prisms = tuple(
-                Prism(grown(a.polygon, body.radius_m), a.floor_m - body.radius_m, a.ceiling_m + body.radius_m)
-                for a in areas
-            )
-            return PrismSpace(free_region(self.boundary, (), body.radius_m), prisms, self.lowest_m)
+            region = free_region(self.boundary, (), body.radius_m)
+            prisms = () if region.is_empty else tuple(_prism(area, body.radius_m) for area in areas)
+            return PrismSpace(region, prisms, self.lowest_m)
         return PolygonSpace(free_region(self.boundary, (a.polygon for a in areas), body.radius_m))
 
     def _clearance_in_polygons(self, places: Floats, body: Body, in_space: bool) -> Floats:
@@ -201,6 +203,10 @@ class World:
         if key not in self._made:
             self._made[key] = make()
         return self._made[key]
+
+
+def _prism(area: Area, radius_m: float) -> Prism:
+    return Prism(grown(area.polygon, radius_m), area.floor_m - radius_m, area.ceiling_m + radius_m)
 
 
 def _areas(chart: Map, faults: list[Fault]) -> tuple[Area, ...]:

@@ -1,4 +1,4 @@
-"""What lies beneath the routes: the map's polygons and the arrows of prerequisites."""
+"""What lies beneath the routes: the stems of places in the air, and the arrows of prerequisites."""
 
 from __future__ import annotations
 
@@ -6,46 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.model import Map, Mission, Point, Zone
-from muster.report.styles import FAINT, FRAME, MOST_ARROWS, PREREQUISITE
+from muster.mission.model import Mission
+from muster.report.styles import FRAME, MOST_ARROWS, PREREQUISITE
 from muster.report.traces import Places
-
-_HATCH = {"ground": "///", "air": "\\\\\\"}
-
-
-def draw_map(ax: Any, chart: Map, *, spatial: bool) -> list[tuple[Any, str]]:
-    """Draw boundary and zones, lightly; returns the zones' entries for the legend. Images are not drawn."""
-    from matplotlib.patches import Patch
-
-    if chart.boundary is not None:
-        _polygon(ax, chart.boundary, 0.0, spatial, facecolor="none", edgecolor=FRAME, linewidth=1.2, gid="boundary")
-    entries: dict[str, Patch] = {}
-    for k, zone in enumerate(chart.zones):
-        look: dict[str, Any] = {"facecolor": FAINT, "edgecolor": FRAME, "linewidth": 0.8}
-        look["hatch"] = "".join(_HATCH[kind] for kind in zone.forbidden_to)
-        for level in _levels(zone) if spatial else (0.0,):
-            _polygon(ax, zone.polygon, level, spatial, gid=f"zone-{k}-at-{level:g}", **look)
-        entries[f"no entry: {', '.join(sorted(zone.forbidden_to))}"] = Patch(**look)
-    return [(patch, label) for label, patch in entries.items()]
-
-
-def _levels(zone: Zone) -> list[float]:
-    """Find the heights at which a zone's outline is drawn in 3-D: its floor and its ceiling."""
-    levels = [zone.floor_m or 0.0]
-    return levels if zone.ceiling_m is None else [*levels, zone.ceiling_m]
-
-
-def _polygon(ax: Any, corners: tuple[Point, ...], level: float, spatial: bool, **look: Any) -> None:
-    if spatial:
-        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
-        faces = [[(*corner[:2], level) for corner in corners]]
-        look["facecolor"] = (1.0, 1.0, 1.0, 0.0)  # "none" is too little for matplotlib 3.8
-        ax.add_collection3d(Poly3DCollection(faces, zorder=0.7, **look))
-    else:
-        from matplotlib.patches import Polygon
-
-        ax.add_patch(Polygon([corner[:2] for corner in corners], closed=True, zorder=0.7, **look))
 
 
 def draw_stems(ax: Any, tops: Places, floor: float) -> None:

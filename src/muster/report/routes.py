@@ -10,6 +10,7 @@ import numpy as np
 
 from muster.mission.model import Mission, Point, Task
 from muster.mission.plan import Plan
+from muster.motion.grid import Grid
 from muster.report.canvas import (
     add_legend,
     add_title,
@@ -25,8 +26,9 @@ from muster.report.canvas import (
     to_points,
     write,
 )
+from muster.report.floor import draw_map, map_corners
 from muster.report.fonts import Names
-from muster.report.ground import draw_map, draw_prerequisites, draw_stems, drawn_prerequisites
+from muster.report.ground import draw_prerequisites, draw_stems, drawn_prerequisites
 from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
 from muster.report.traces import Places, Trace, left_out, places, traces
@@ -67,11 +69,14 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
     Raises
     ------
     MissingExtraError
-        if matplotlib is not installed.
+        if matplotlib is not installed, or what reads the image of a map.
+    MissionError
+        if the map is an image that cannot be read.
     """
+    image = _image(mission)
     if ax is None:
-        ax = _own_axes(mission)
-    scene = _scene(mission, verdict, is_spatial(ax))
+        ax = _own_axes(mission, image)
+    scene = _scene(mission, verdict, is_spatial(ax), image)
     with scene.names.fonts():
         _draw(ax, scene, plan, verdict)
     return ax
@@ -113,12 +118,14 @@ class _Scene:
     names: Names
     idle: frozenset[str]
     """Robots that are not named, as many have nothing to do."""
+    image: Grid | None
+    """The cells of a map that is an image."""
 
     def places(self, points: Sequence[Point]) -> Places:
         return places(points, self.dimensions)
 
 
-def _scene(mission: Mission, verdict: Verdict, spatial: bool) -> _Scene:
+def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None) -> _Scene:
     dimensions = 3 if spatial else 2
     drawn = traces(mission, verdict, dimensions)
     idle = [trace.robot.id for trace in drawn if not trace.tasks]
@@ -130,7 +137,15 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool) -> _Scene:
         detail=_detail(len(mission.tasks)),
         names=Names(mission),
         idle=frozenset(idle if len(idle) > MOST_IDLE else ()),
+        image=image,
     )
+
+
+def _image(mission: Mission) -> Grid | None:
+    """Read the image of the mission's map, where it is one."""
+    from muster.motion.world import World
+
+    return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 
 
 def _detail(tasks: int) -> _Detail:
@@ -144,21 +159,20 @@ def _detail(tasks: int) -> _Detail:
     )
 
 
-def _all_points(mission: Mission) -> list[Point]:
+def _all_points(mission: Mission, image: Grid | None) -> list[Point]:
     """List every place that the picture must hold."""
     points = [robot.position for robot in mission.robots]
     points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
     for task in mission.tasks:
         points += [task.position, task.entry or task.position, task.exit or task.position]
     if mission.map is not None:
-        points += mission.map.boundary or ()
-        points += [corner for zone in mission.map.zones for corner in zone.polygon]
+        points += map_corners(mission.map, image)
     return points
 
 
-def _limits(mission: Mission, dimensions: int) -> tuple[Places, Places]:
+def _limits(mission: Mission, dimensions: int, image: Grid | None) -> tuple[Places, Places]:
     """Find lower and upper corner of the picture, metres: all places and a margin; no side is very short."""
-    points = places(_all_points(mission), dimensions)
+    points = places(_all_points(mission, image), dimensions)
     low, high = points.min(axis=0), points.max(axis=0)
     longest = float((high - low).max()) or 1.0
     missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2
@@ -166,18 +180,18 @@ def _limits(mission: Mission, dimensions: int) -> tuple[Places, Places]:
     return low - missing - margin, high + missing + margin
 
 
-def _own_axes(mission: Mission) -> Axes:
+def _own_axes(mission: Mission, image: Grid | None) -> Axes:
     rows = named_rows(len(mission.robots)) + 6
     legend_height = 0.19 * rows + 0.6
     if mission.dimensions == 3:
         return new_axes(8.8, max(6.8, legend_height), spatial=True)
-    low, high = _limits(mission, 2)
+    low, high = _limits(mission, 2, image)
     width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
     return new_axes(width + 2.6, max(height + 1.0, legend_height))
 
 
 def _frame(ax: Any, scene: _Scene) -> None:
-    low, high = _limits(scene.mission, scene.dimensions)
+    low, high = _limits(scene.mission, scene.dimensions, scene.image)
     for axis, start, end in zip("xyz", low, high, strict=False):
         getattr(ax, f"set_{axis}lim")(start, end)
         getattr(ax, f"set_{axis}label")(f"{axis} [m]")
@@ -192,7 +206,7 @@ def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:
         draw_stems(ax, tops, float(ax.get_zlim()[0]))
     place_of = {task.id: scene.places([task.position])[0] for task in mission.tasks}
     entries = draw_prerequisites(ax, mission, place_of, scene.detail.mark / 2 + 1)
-    return [*entries, *(draw_map(ax, mission.map, spatial=spatial) if mission.map is not None else ())]
+    return [*entries, *(draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else ())]
 
 
 def _stroke(style: Style, width: float) -> dict[str, Any]:

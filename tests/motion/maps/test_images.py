@@ -22,7 +22,9 @@ def test_every_kind_of_image_has_the_same_shades(tmp_path):
     Image.fromarray(GREY).convert("RGBA").save(tmp_path / "opaque.png")
     Image.fromarray(GREY.astype(np.uint16) * 257).save(tmp_path / "deep.png")
     (tmp_path / "p5.pgm").write_bytes(b"P5\n# by hand\n3 2\n255\n" + GREY.tobytes())
-    (tmp_path / "p2.pgm").write_text("P2 3 2 255\n" + " ".join(map(str, GREY.ravel())) + "\n", encoding="ascii")
+    (tmp_path / "p2.pgm").write_text(
+        "P2 # by hand\n3 2 255\n" + " ".join(map(str, GREY.ravel())) + "\n", encoding="ascii"
+    )
     deep = (GREY.astype(np.uint16) * 257).astype(">u2").tobytes()
     (tmp_path / "deep.pgm").write_bytes(b"P5 3 2 65535\n" + deep)
     for path in sorted(tmp_path.iterdir()):
@@ -137,8 +139,13 @@ def png_bytes(width=2, height=2, data=b"\0\0\0\0\0\0"):
         (png_bytes()[:20], "a broken PNG ("),
         (png_bytes().replace(b"IDAT", b"IDAX"), "a broken PNG ("),
         (b"P5 4 4 255\nabc", "a broken PGM ("),
-        (b"P2 2 2 255\n1 2 3", "a broken PGM ("),
-        (b"P2 2 2 255\n1 2 3 x", "a broken PGM ("),
+        (b"P2 2 2 255\n1 2 3", "a broken plain PGM (3 pixels of 2 x 2); expected"),
+        (b"P2 2 2 255\n1 2 3 x", "a broken plain PGM ("),
+        (b"P2 2 2 255\n1 2 3 256", "a broken plain PGM (a pixel beyond 0 to 255); expected"),
+        (b"P2 2 2 255\n1 2 3 -4", "a broken plain PGM (a pixel beyond 0 to 255); expected"),
+        (b"P2 2 0 255\n1", "a broken plain PGM (2 x 0 pixels up to 255); expected"),
+        (b"P2 2 2", "a broken plain PGM ("),
+        (b"P2 90000 90000 255\n1", "too many pixels; expected an image of at most 89 million pixels"),
         (b"P5 0 4 255\n", "a broken PGM ("),
         (b"P5", "a broken PGM ("),
         (png_bytes(width=100000, height=100000), "too many pixels; expected an image of at most 89 million pixels"),

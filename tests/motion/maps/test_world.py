@@ -1,5 +1,7 @@
 """A mission's map: what is free for whom."""
 
+import pickle
+
 import numpy as np
 import pytest
 import shapely
@@ -113,6 +115,35 @@ def test_an_image_is_a_grid_with_its_zones(mission_with, tmp_path):
         for row, column in np.ndindex(20, 30):
             cell = shapely.box(column / 2, row / 2, column / 2 + 0.5, row / 2 + 0.5)
             assert air.grid.blocked[row, column] == (cell.intersection(zone).area > 1e-9)
+
+
+def test_zones_are_cells_of_a_turned_image_too(mission_with, tmp_path):
+    image(tmp_path, np.zeros((20, 30), dtype=bool))
+    zones = "zones: [{polygon: [[1, 3], [6, 4], [3, 8]]}]"
+    world = World.of(mission_with(f"{{image: floor.png, resolution_m: 0.5, origin: [2, -1, 0.6], {zones}}}"))
+    grid, zone = world.free_space(0.0, "air").grid, shapely.Polygon([(1, 3), (6, 4), (3, 8)])
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
+    for row, column in np.ndindex(20, 30):
+        cell = shapely.Polygon(grid.to_map(corners + np.array((column, row))))
+        assert grid.blocked[row, column] == (cell.intersection(zone).area > 1e-9)
+
+
+@pytest.mark.parametrize("kind", ["ground", "air"])
+@pytest.mark.parametrize("radius", [5.1, 1e9, 1e300])
+def test_a_body_larger_than_the_map_is_nowhere(mission_with, tmp_path, kind, radius):
+    image(tmp_path, np.zeros((100, 100), dtype=bool))
+    for chart in (f"{{{SQUARE}, zones: [{{{ZONE}}}]}}", "{image: floor.png, resolution_m: 0.1}"):
+        for robots in (FLAT, TALL):
+            space = World.of(mission_with(chart, robots)).free_space(radius, kind)
+            assert not free(space, at((5, 5, 5), (1, 1, 0))).any()
+
+
+def test_a_world_that_was_used_can_be_sent_to_another_process(mission_with, tmp_path):
+    image(tmp_path, np.eye(20, dtype=bool))
+    world = World.of(mission_with("{image: floor.png, resolution_m: 0.5}"))
+    points = at((1, 5), (5, 1))
+    metres = world.clearance(points, "ground")
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(world)).clearance(points, "ground"), metres)
 
 
 def test_free_space_and_clearance_of_an_image_agree(mission_with, tmp_path):

@@ -14,6 +14,7 @@ import numpy as np
 
 from muster.core import squared_distances
 from muster.motion.grid import Bools, Floats, Grid
+from muster.motion.maps.inside import blocked_at
 
 _SLACK = 1e-9  # of a radius: 3 cells of 0.05 m are 0.15 m, whatever float64 says
 
@@ -26,7 +27,8 @@ def inflated(grid: Grid, radius_m: float) -> Grid:
     if radius_m <= 0:
         return grid
     gaps = _squared_gaps(grid.blocked, 1.0)
-    near = gaps < (radius_m / grid.resolution_m * (1 - _SLACK)) ** 2
+    reach = min(radius_m / grid.resolution_m, float(sum(grid.shape)))  # beyond the grid all is blocked
+    near = gaps < (reach * (1 - _SLACK)) ** 2
     return Grid(grid.blocked | near, grid.resolution_m, grid.origin)
 
 
@@ -47,9 +49,9 @@ def clearance_to_blocked(grid: Grid) -> Callable[[Floats], Floats]:
     def clearance(points: Floats) -> Floats:
         cells = grid.to_grid(np.asarray(points, dtype=np.float64)[:, :2])
         metres = np.zeros(len(cells))
-        open_ = ~_in_blocked(grid, cells)
-        if tree is not None and open_.any():
-            metres[open_] = _gaps_to_squares(tree, centres, cells[open_]) * grid.resolution_m
+        clear = ~blocked_at(grid, cells)
+        if tree is not None and clear.any():
+            metres[clear] = _gaps_to_squares(tree, centres, cells[clear]) * grid.resolution_m
         return metres
 
     return clearance
@@ -68,16 +70,6 @@ def _beside_free(fenced: Bools) -> Bools:
     rows: Bools = free[:-2] | free[1:-1] | free[2:]
     beside: Bools = rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
     return beside
-
-
-def _in_blocked(grid: Grid, cells: Floats) -> Bools:
-    """Whether a place in cells (n, 2) is blocked itself."""
-    rows, columns = grid.shape
-    column, row = np.floor(cells).T
-    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-    blocked: Bools = ~inside
-    blocked[inside] = grid.blocked[row[inside].astype(np.int64), column[inside].astype(np.int64)]
-    return blocked
 
 
 def _gaps_to_squares(tree: Any, centres: Floats, places: Floats) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from muster.mission.errors import Finding, MissionError
 Floats = npt.NDArray[np.float64]
 
 _EXPECTED = "an image in PNG or PGM (P2 or P5)"
-_READ = {b"\x89PNG\r\n\x1a\n": "PNG", b"P2": "PGM", b"P5": "PGM"}
+_READ = {b"\x89PNG\r\n\x1a\n": "PNG", b"P2": "plain PGM", b"P5": "PGM"}
 _KNOWN = {
     b"\xff\xd8\xff": "a JPEG image",
     b"GIF8": "a GIF image",
@@ -28,6 +29,10 @@ _KNOWN = {
     b"P3": "a PPM image",
     b"P6": "a PPM image",
 }
+
+
+class _TooLargeError(Exception):
+    """A plain PGM of too many pixels."""
 
 
 def read_shades(path: Path) -> Floats:
@@ -44,12 +49,14 @@ def read_shades(path: Path) -> Floats:
     from PIL import Image
 
     try:
+        if form == "plain PGM":
+            return _plain_pgm(path.read_bytes(), Image.MAX_IMAGE_PIXELS or 0)
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(path, formats=("PNG", "PPM")) as image:
                 image.load()
                 return _shades(image)
-    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+    except (_TooLargeError, Image.DecompressionBombWarning, Image.DecompressionBombError):
         limit = (Image.MAX_IMAGE_PIXELS or 0) // 10**6
         raise _refusal(path, "too many pixels", f"an image of at most {limit} million pixels") from None
     except Exception as error:  # Pillow's decoders raise whatever a broken file leads them to
@@ -89,6 +96,24 @@ def _shades(image: Any) -> Floats:
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L"), dtype=np.float64) / 255
     return _mean(np.asarray(image.convert("RGB")))
+
+
+def _plain_pgm(data: bytes, most_pixels: int) -> Floats:
+    """A PGM written in decimals (P2), which Pillow reads a pixel at a time; ValueError where it is broken."""
+    _, width, height, greatest, raster = re.sub(rb"#[^\r\n]*", b" ", data).split(None, 4)
+    columns, rows, white = int(width), int(height), int(greatest)
+    if rows * columns > most_pixels:
+        raise _TooLargeError
+    if not (rows > 0 and columns > 0 and 0 < white < 65536):
+        raise ValueError(f"{columns} x {rows} pixels up to {white}")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)  # what NumPy says of text that is no number
+        values = np.fromstring(raster, dtype=np.int64, sep=" ")
+    if len(values) != rows * columns:
+        raise ValueError(f"{len(values)} pixels of {columns} x {rows}")
+    if values.min() < 0 or values.max() > white:
+        raise ValueError(f"a pixel beyond 0 to {white}")
+    return values.reshape(rows, columns) / white
 
 
 def _mean(channels: npt.NDArray[np.uint8]) -> Floats:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.motion.grid import Bools, Floats
+from muster.motion.grid import Bools, Floats, Grid
 from muster.motion.spaces import GridSpace, Prism, PrismSpace, Space
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def free(space: Space, points: Floats) -> Bools:
     places = np.asarray(points, dtype=np.float64)
     slack = _SLACK * max(1.0, float(np.abs(places).max(initial=0.0)))
     if isinstance(space, GridSpace):
-        return _in_free_cells(space, places, slack)
+        return _in_free_cells(space.grid, places, slack)
     within = _within(space.region, places, slack)
     if isinstance(space, PrismSpace):
         within &= places[:, 2] >= space.lowest_m - slack
@@ -35,18 +35,23 @@ def free(space: Space, points: Floats) -> Bools:
     return within
 
 
-def _in_free_cells(space: GridSpace, places: Floats, slack: float) -> Bools:
-    """Whether one of the cells is free that a place lies in or on the border of."""
-    grid = space.grid
-    cells, reach = grid.to_grid(places[:, :2]), slack / grid.resolution_m
-    fenced = np.pad(grid.blocked, 1, constant_values=True)
+def blocked_at(grid: Grid, cells: Floats) -> Bools:
+    """Whether places (n, 2), in cells as (column, row), lie in a blocked cell or outside the grid: (n,)."""
     rows, columns = grid.shape
+    column, row = np.floor(cells).T
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    blocked: Bools = ~inside
+    blocked[inside] = grid.blocked[row[inside].astype(np.int64), column[inside].astype(np.int64)]
+    return blocked
+
+
+def _in_free_cells(grid: Grid, places: Floats, slack: float) -> Bools:
+    """Whether one of the cells is free that a place lies in or on the border of."""
+    cells, reach = grid.to_grid(places[:, :2]), slack / grid.resolution_m
     found = np.zeros(len(places), dtype=np.bool_)
     for across in (-reach, reach):
         for up in (-reach, reach):
-            column = np.clip(np.floor(cells[:, 0] + across), -1, columns).astype(np.int64)
-            row = np.clip(np.floor(cells[:, 1] + up), -1, rows).astype(np.int64)
-            found |= ~fenced[row + 1, column + 1]
+            found |= ~blocked_at(grid, cells + np.array([across, up]))
     return found
 
 

@@ -72,6 +72,9 @@ def free_region(boundary: shapely.Polygon, obstacles: Iterable[shapely.Polygon],
     """
     import shapely
 
+    west, south, east, north = boundary.bounds
+    if 2 * radius_m > min(east - west, north - south):
+        return shapely.MultiPolygon()
     taken = _band(boundary, radius_m)
     for obstacle in obstacles:
         taken += [obstacle, *_band(obstacle, radius_m)]
