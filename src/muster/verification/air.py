@@ -11,23 +11,24 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import permutations
-from typing import TYPE_CHECKING
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from muster.mission.model import Point
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.spaces import Prism, PrismSpace
+from muster.motion.spaces import PrismSpace
 from muster.verification.roads import Roads
 
 if TYPE_CHECKING:
-    import shapely
+    from shapely.geometry.base import BaseGeometry
 
 _HAIR = 1e-9  # of the extent: so thin a layer of a prism may be touched
 _SLACK = 1e-9  # relative: so far beyond a border a place is still free
 _COARSE = 0.02  # of a prism's width: how far coarse outlines may be off
 _LEVELS = 5  # heights on an upright edge, at first
+_FIRST_REACH = 0.1  # of the straight line: how far apart points on rims are, when they are first taken near a way
 _ROUNDS = 7  # of taking points closer
 _CLOSER = 0.4  # how much closer each time
 
@@ -41,10 +42,12 @@ class AirWays:
         self._lowest = space.lowest_m
         west, south, east, north = (0.0, 0.0, 1.0, 1.0) if space.region.is_empty else space.region.bounds
         extent = max(east - west, north - south)
-        around = shapely.box(west - extent, south - extent, east + extent, north + extent)
-        outside = Prism(shapely.difference(around, space.region), -math.inf, math.inf)
-        prisms, hair = (outside, *space.prisms), _HAIR * extent
-        self._obstacles = [_Obstacle.of(prism, hair) for prism in (*prisms, *_joints(prisms, hair))]
+        margin = 0.05 * extent
+        around = shapely.box(west - margin, south - margin, east + margin, north + margin)
+        blocks = [_Block(shapely.difference(around, space.region), -math.inf, math.inf)]
+        blocks += [_Block(prism.polygon, prism.floor_m, prism.ceiling_m) for prism in space.prisms]
+        hair = _HAIR * extent
+        self._obstacles = [_Obstacle.of(block, hair) for block in (*blocks, *_joints(blocks, hair))]
         self._known: dict[tuple[Point, Point], float | None] = {}
 
     def metres(self, start: Point, end: Point) -> float | None:
@@ -62,15 +65,16 @@ class AirWays:
 
     def _length(self, ends: Floats) -> float | None:
         met: list[_Obstacle] = []
-        way: Floats | None = ends
+        way = ends
         while True:
             new = [o for o in self._obstacles if o not in met and not o.clear(way[:-1], way[1:]).all()]
             if not new:
                 return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
             met += new
-            way = self._best(ends, met)
-            if way is None:
+            best = self._best(ends, met)
+            if best is None:
                 return None
+            way = best
 
     def _best(self, ends: Floats, met: list[_Obstacle]) -> Floats | None:
         """The shortest way (k, 3) among some obstacles; None if there is none."""
@@ -78,15 +82,16 @@ class AirWays:
         low, high = min(*ends[:, 2], *heights), max(*ends[:, 2], *heights)
         low = max(low, min(self._lowest, *ends[:, 2]))
         levels = np.unique(np.concatenate([np.linspace(low, high, _LEVELS), ends[:, 2]]))
-        spread = max((high - low) / (_LEVELS - 1), 0.02 * float(np.linalg.norm(ends[1] - ends[0])))
+        along = _FIRST_REACH * float(np.linalg.norm(ends[1] - ends[0]))
+        spread = max((high - low) / (_LEVELS - 1), 0.2 * along)
         coarse = [o.coarse_points(levels) for o in met]
         way = self._through(ends, coarse, met)
         if way is None:  # a gap may be too narrow for coarse outlines
             way = self._through(ends, [*coarse, *(_raised(o.corners, levels) for o in met)], met)
-        along = 0.25 * max(o.width for o in met[-1:])
-        for _ in range(_ROUNDS if way is not None else 0):
+        for _ in range(_ROUNDS):
+            if way is None:
+                break
             way = self._through(ends, [way[1:-1], *(o.points_near(way, spread, along) for o in met)], met)
-            assert way is not None  # the way before is one
             spread, along = _CLOSER * spread, _CLOSER * along
         return way
 
@@ -105,47 +110,55 @@ class AirWays:
         return None if way is None else nodes[way]
 
 
-def _joints(prisms: Sequence[Prism], hair: float) -> Iterator[Prism]:
-    """Prisms that close the slits without width between prisms that touch, beside each other or one upon the other."""
+class _Block(NamedTuple):
+    """An upright body: its shape in the plane and its height range, metres."""
+
+    shape: BaseGeometry
+    floor: float
+    ceiling: float
+
+
+def _joints(blocks: Sequence[_Block], hair: float) -> Iterator[_Block]:
+    """Blocks that close the slits without width between those that touch, beside each other or one upon the other."""
     import shapely
 
-    for one, other in permutations(prisms, 2):
-        floor, ceiling = max(one.floor_m, other.floor_m), min(one.ceiling_m, other.ceiling_m)
-        if not shapely.dwithin(one.polygon, other.polygon, 2 * hair):
+    for one, other in combinations(sorted(blocks, key=lambda block: block.floor), 2):
+        if not shapely.dwithin(one.shape, other.shape, 2 * hair):
             continue
-        if ceiling - floor > 2 * hair and prisms.index(one) < prisms.index(other):
-            yield Prism(shapely.union(one.polygon, other.polygon), floor, ceiling)
-        if abs(one.ceiling_m - other.floor_m) <= 2 * hair:
-            shared = shapely.intersection(one.polygon, other.polygon)
-            if shared.area > 0:
-                yield Prism(shared, one.floor_m, other.ceiling_m)
+        shared = min(one.ceiling, other.ceiling)
+        if shared - other.floor > 2 * hair:
+            yield _Block(shapely.union(one.shape, other.shape), other.floor, shared)
+        elif other.floor - one.ceiling <= 2 * hair:
+            both = shapely.intersection(one.shape, other.shape)
+            if both.area > 0:
+                yield _Block(both, one.floor, other.ceiling)
 
 
 @dataclass(frozen=True, eq=False)
 class _Obstacle:
-    """A prism with its inside, smaller by a hair, and an outline of few corners around it."""
+    """A block with its inside, smaller by a hair, and an outline of few corners around it."""
 
     floor: float
     ceiling: float
-    outline: shapely.Polygon
-    inside: shapely.Polygon
+    outline: BaseGeometry
+    inside: BaseGeometry
     corners: Floats
     coarse: Floats
     width: float
     hair: float
 
     @classmethod
-    def of(cls, prism: Prism, hair: float) -> _Obstacle:
+    def of(cls, block: _Block, hair: float) -> _Obstacle:
         import shapely
 
-        west, south, east, north = prism.polygon.bounds
+        west, south, east, north = block.shape.bounds
         width = max(east - west, north - south)
         off = _COARSE * width
-        coarse = shapely.buffer(shapely.simplify(prism.polygon, off), 1.01 * off, join_style="mitre")
-        inside = shapely.buffer(prism.polygon, -hair, join_style="mitre")
+        coarse = shapely.buffer(shapely.simplify(block.shape, off), 1.01 * off, join_style="mitre")
+        inside = shapely.buffer(block.shape, -hair, join_style="mitre")
         shapely.prepare(inside)
-        corners, few = (np.unique(shapely.get_coordinates(shape), axis=0) for shape in (prism.polygon, coarse))
-        return cls(prism.floor_m, prism.ceiling_m, prism.polygon, inside, corners, few, width, hair)
+        corners, few = (np.unique(shapely.get_coordinates(shape), axis=0) for shape in (block.shape, coarse))
+        return cls(block.floor, block.ceiling, block.shape, inside, corners, few, width, hair)
 
     def holds(self, points: Floats, slack: float) -> Bools:
         """Whether points (n, 3) are inside by more than the slack."""

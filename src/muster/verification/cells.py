@@ -56,7 +56,7 @@ class Cells:
         below[:, 1] = self._turned[0][below[:, 1]]
         pairs = np.concatenate([pairs, below])
         steps = self.corners[pairs[:, 0]] - self.corners[pairs[:, 1]]
-        return pairs[(pairs[:, 0] != pairs[:, 1]) & self._taut(pairs[:, 1], steps)]
+        return np.asarray(pairs[(pairs[:, 0] != pairs[:, 1]) & self._taut(pairs[:, 1], steps)])
 
     def from_places(self, places: Floats) -> Indices:
         """Pairs (k, 2) of a place, in cells, and a corner it sees, where a way may turn at the corner."""
@@ -91,7 +91,8 @@ class _Rows:
         steps = np.diff(np.pad(~blocked, ((0, 0), (1, 1))).astype(np.int8), axis=1)
         self.row, left = np.nonzero(steps == 1)
         self.left, self.right = left.astype(np.float64), np.nonzero(steps == -1)[1].astype(np.float64)
-        self._begun, self._ended = (np.cumsum(steps == step, dtype=np.int64) for step in (1, -1))
+        self._begun = np.cumsum(steps == 1, dtype=np.int64)
+        self._ended = np.cumsum(steps == -1, dtype=np.int64)
 
     def run_at(self, places: Floats) -> Indices:
         """The run (n,) that each place is in, or -1; of a place on a line the row above it counts."""
@@ -107,12 +108,12 @@ class _Rows:
     def _first(self, row: Floats, x: Floats) -> Indices:
         """The first run that ends to the right of x by more than `_CLOSE`, in the row or else in a later one."""
         column = np.clip(np.floor(x + _CLOSE), 0, self.width).astype(np.int64)
-        return self._ended[row.astype(np.int64) * (self.width + 1) + column]
+        return np.asarray(self._ended[row.astype(np.int64) * (self.width + 1) + column])
 
     def _beyond(self, row: Floats, x: Floats) -> Indices:
         """The first run that does not begin to the left of x by more than `_CLOSE`."""
         column = np.clip(np.ceil(x - _CLOSE) - 1, 0, self.width).astype(np.int64)
-        return self._begun[row.astype(np.int64) * (self.width + 1) + column]
+        return np.asarray(self._begun[row.astype(np.int64) * (self.width + 1) + column])
 
     def beside(self, numbers: _Numbers, places: Floats) -> Indices:
         """Pairs (k, 2) of a place on a line and a corner it sees along it, over the run above it."""
@@ -193,7 +194,7 @@ def _corners(blocked: Bools) -> tuple[Floats, Floats]:
     """The lattice points with one blocked cell around them, (c, 2) of x and y; and where that is: each -1 or 1."""
     fenced = np.pad(blocked, 1, constant_values=True)
     around = {(dx, dy): _quarter(fenced, dx, dy) for dx in (-1, 1) for dy in (-1, 1)}
-    y, x = np.nonzero(sum(quarter.astype(np.int8) for quarter in around.values()) == 1)
+    y, x = np.nonzero(np.sum([*around.values()], axis=0) == 1)
     sides = sum(quarter[y, x, None] * np.array(side, dtype=np.float64) for side, quarter in around.items())
     return np.stack([x, y], axis=1).astype(np.float64), np.asarray(sides, dtype=np.float64).reshape(-1, 2)
 
