@@ -1,7 +1,7 @@
 """The hot loops of Muster."""
 
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, overload
 
 import numpy
 from numpy.typing import NDArray
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
-    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
         """
-        Robots (m), tasks (n) and travel: `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
+        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
         """
 
     @property
@@ -295,6 +295,122 @@ class Team:
 
     @property
     def routes(self) -> list[list[int]]: ...
+
+def squared_distances(blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], trim: float, squared: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Write for each cell (rows, columns) the squared distance, in cells, to the nearest blocked cell: between centres with trim 0, from centre to square with 1/2, between squares with 1; inf where no cell is blocked.
+    """
+
+class GridMap:
+    """
+    Cells that are free or blocked; points are (column, row), cell (0, 0) from 0 to 1.
+    """
+
+    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
+        """
+        `blocked` is (rows, columns). Raises ValueError if a side has more than 16384 cells.
+        """
+
+    def free(self, point: tuple[float, float]) -> bool: ...
+
+    def sees(self, a: tuple[float, float], b: tuple[float, float]) -> bool:
+        """Whether the straight piece between two points is free, exactly."""
+
+    def cells_at(self, point: tuple[float, float]) -> list[int]:
+        """
+        The free cells that have a point inside or on their border, as row * columns + column.
+        """
+
+    def search(self, start: tuple[float, float], goal: tuple[float, float], *, heuristic: bool, any_angle: bool) -> list[int]:
+        """
+        The cells of the shortest way between cell centres, as row * columns + column; empty if there is none.
+        """
+
+class Ways:
+    """Shortest ways in a plane with obstacles: taut pieces between corners."""
+
+    @staticmethod
+    def on_grid(map: GridMap) -> Ways:
+        """In the unit of cells."""
+
+    @staticmethod
+    def on_region(rings: Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]]) -> Ways:
+        """
+        Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.
+        """
+
+    def build(self, threads: int) -> None:
+        """
+        Find what every corner sees, once; without it each search looks for itself, where it comes by.
+        """
+
+    @property
+    def built(self) -> bool: ...
+
+    @property
+    def corners(self) -> int: ...
+
+    @property
+    def pieces(self) -> int:
+        """Straight pieces between corners, each counted from both ends."""
+
+    def free(self, point: tuple[float, float]) -> bool: ...
+
+    def sees(self, a: tuple[float, float], b: tuple[float, float]) -> bool: ...
+
+    def way(self, start: tuple[float, float], goal: tuple[float, float]) -> NDArray[numpy.float64]:
+        """The shortest way with its ends, (k, 2); empty if there is none."""
+
+    def lengths(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
+        """
+        Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, the entries are the exits, and row i holds what comes after column i alone, and 0 there.
+        """
+
+class AirWays:
+    """Short ways through the air over and around upright prisms, in metres."""
+
+    def __init__(self, region: Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]], prisms: Sequence[tuple[Sequence[Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]], float, float]], *, lowest: float, top: float, rise: float, run: float) -> None:
+        """
+        `region` is rings (k, 2) with the inside on their left, a prism (rings, floor, ceiling). Upright edges are sampled every `rise` metres up to `top`, level ones every `run`.
+        """
+
+    def build(self, threads: int) -> None:
+        """
+        Find which samples see each other; before it there are no ways but straight ones.
+        """
+
+    @property
+    def samples(self) -> int: ...
+
+    def free(self, point: Sequence[float]) -> bool: ...
+
+    def sees(self, a: Sequence[float], b: Sequence[float]) -> bool: ...
+
+    def way(self, start: Sequence[float], goal: Sequence[float]) -> NDArray[numpy.float64]:
+        """A way with its ends, (k, 3); empty if there is none."""
+
+    def lengths(self, places: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
+        """
+        Rows `first` to before `last` of the lengths between places: what comes after column i, and 0 there; inf where there is no way.
+        """
+
+class Tree:
+    """
+    RRT*: a tree of random points that keeps shortening itself; start and goal are free.
+    """
+
+    @overload
+    def __init__(self, where: Ways, *, low: Sequence[float], high: Sequence[float], start: Sequence[float], goal: Sequence[float], seed: int, step: float, goal_share: float, reach: float) -> None: ...
+
+    @overload
+    def __init__(self, where: AirWays, *, low: Sequence[float], high: Sequence[float], start: Sequence[float], goal: Sequence[float], seed: int, step: float, goal_share: float, reach: float) -> None: ...
+
+    def grow(self, samples: int) -> None: ...
+
+    def way(self) -> NDArray[numpy.float64]:
+        """
+        The shortest way found so far with its ends, (k, 3); empty if there is none.
+        """
 
 class PlaneAgents:
     """Robots that share the plane."""

@@ -1,7 +1,7 @@
-"""Distances on a grid: inflation by a body's radius, the field of distances, and the clearance of points.
+"""Distances on a grid: inflation by a body's radius, and the clearance of points.
 
-All are exact: an obstacle is the whole square of a blocked cell, and what lies outside the grid is blocked. The two
-fields are distance transforms (Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012).
+Both are exact: an obstacle is the whole square of a blocked cell, and what lies outside the grid is blocked. The judge
+uses them, so the core has no part in them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from muster.core import squared_distances
 from muster.motion.grid import Bools, Floats, Grid
 from muster.motion.maps.inside import blocked_at
 
@@ -26,16 +25,9 @@ def inflated(grid: Grid, radius_m: float) -> Grid:
     """
     if radius_m <= 0:
         return grid
-    gaps = _squared_gaps(grid.blocked, 1.0)
     reach = min(radius_m / grid.resolution_m, float(sum(grid.shape)))  # beyond the grid all is blocked
-    near = gaps < (reach * (1 - _SLACK)) ** 2
+    near = _gaps(grid.blocked) < reach * (1 - _SLACK)
     return Grid(grid.blocked | near, grid.resolution_m, grid.origin)
-
-
-def distance_field(grid: Grid) -> Floats:
-    """(rows, columns): metres from each cell's centre to the nearest blocked square; 0 in blocked cells."""
-    gaps = _squared_gaps(grid.blocked, 0.5)
-    return np.sqrt(gaps, out=gaps) * grid.resolution_m
 
 
 def clearance_to_blocked(grid: Grid) -> Callable[[Floats], Floats]:
@@ -43,7 +35,8 @@ def clearance_to_blocked(grid: Grid) -> Callable[[Floats], Floats]:
     from scipy.spatial import KDTree
 
     fenced = np.pad(grid.blocked, 1, constant_values=True)
-    centres = np.argwhere(fenced & _beside_free(fenced))[:, ::-1].astype(np.float64) - 0.5
+    # A blocked cell without a free neighbour is nearest to no free place.
+    centres = np.argwhere(fenced & _with_neighbours(~fenced))[:, ::-1].astype(np.float64) - 0.5
     tree = KDTree(centres) if len(centres) else None
 
     def clearance(points: Floats) -> Floats:
@@ -57,19 +50,24 @@ def clearance_to_blocked(grid: Grid) -> Callable[[Floats], Floats]:
     return clearance
 
 
-def _squared_gaps(blocked: Bools, trim: float) -> Floats:
+def _gaps(blocked: Bools) -> Floats:
+    """From the square of each cell to the nearest blocked square, in cells; 0 where they touch.
+
+    Two squares are as far apart as the centre of one is from the centres of the other and its eight neighbours.
+    """
+    from scipy.ndimage import distance_transform_edt
+
     fenced = np.pad(blocked, 1, constant_values=True)
-    gaps = np.empty(fenced.shape)
-    squared_distances(fenced, trim, gaps)
+    gaps: Floats = distance_transform_edt(~_with_neighbours(fenced))
     return gaps[1:-1, 1:-1]
 
 
-def _beside_free(fenced: Bools) -> Bools:
-    """Cells with a free one among their eight neighbours; no other can be the nearest to a free place."""
-    free = np.pad(~fenced, 1)
-    rows: Bools = free[:-2] | free[1:-1] | free[2:]
-    beside: Bools = rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
-    return beside
+def _with_neighbours(cells: Bools) -> Bools:
+    """These cells and their eight neighbours."""
+    padded = np.pad(cells, 1)
+    rows: Bools = padded[:-2] | padded[1:-1] | padded[2:]
+    both: Bools = rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
+    return both
 
 
 def _gaps_to_squares(tree: Any, centres: Floats, places: Floats) -> Floats:
