@@ -24,7 +24,7 @@ class Parameters:
     """How the tree grows.
 
     `iterations`: samples. `step_m`: the longest branch; a tenth of the space's diagonal by default. `goal_share`: of
-    the samples, those that are the goal. `reach`: the radius of rewiring over the least one that converges to the shortest.
+    the samples, those that are the goal. `reach`: the radius of rewiring over the least one that converges.
     """
 
     iterations: int = 5000
