@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import blocked, disconnected
-from muster.motion.paths.raster import grid_of
+from muster.motion.maps.raster import grid_of
 from muster.motion.spaces import GridSpace, PolygonSpace
 
 Floats = npt.NDArray[np.float64]
