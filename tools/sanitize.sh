@@ -18,4 +18,5 @@ fi
 LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.so) $(g++ -print-file-name=libstdc++.so)" \
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
-    "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance
+    "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance \
+    tests/motion

@@ -77,7 +77,9 @@ def test_on_an_image(tmp_path):
 
 def test_a_start_that_is_blocked_is_a_fault_and_a_task_is_none(tmp_path):
     """A task that no robot can come to is left out, and the others can be planned."""
-    robots = "  - {id: r_0, position: [0.1, 1], radius_m: 0.2}\n  - {id: uav, position: [2, 2], kind: air, radius_m: 0.3}"
+    robots = (
+        "  - {id: r_0, position: [0.1, 1], radius_m: 0.2}\n  - {id: uav, position: [2, 2], kind: air, radius_m: 0.3}"
+    )
     tasks = "  - {id: 0, position: [5, 5]}\n  - {id: 1, position: [5, 5], only_robots: [r_0]}\n"
     tasks += "  - {id: 2, position: [-1, 5]}"
     question = mission(tmp_path, robots, tasks)

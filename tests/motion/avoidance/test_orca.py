@@ -24,7 +24,7 @@ def pair(start_a, start_b, goal_a, goal_b, **kwargs):
 @pytest.mark.parametrize("seed", range(6))
 def test_agrees_with_rvo2(seed):
     """RVO2 computes in single precision."""
-    import pyrvo
+    pyrvo = pytest.importorskip("pyrvo", reason="needs the extra bench")
 
     agents = random_agents(seed, 100, spacing=5.0)
     simulator = pyrvo.RVOSimulator(0.25, 15.0, 10, 5.0, 5.0, 1.5, 2.0)
