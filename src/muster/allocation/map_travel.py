@@ -69,5 +69,6 @@ class MapTravel:
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
         body = self.bodies[self.classes[i]]
-        found = self.roads.path(body, self.exits[start].tolist(), self.entries[end].tolist())
+        d = self.roads.world.dimensions
+        found = self.roads.path(body, self.exits[start, :d].tolist(), self.entries[end, :d].tolist())
         return f"{found.reason}: {found.detail}" if isinstance(found, NoPath) else "there is no way to it"
