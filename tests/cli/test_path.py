@@ -4,6 +4,7 @@ import json
 import math
 
 import pytest
+import shapely
 
 WALLED = """
 schema: muster/1
@@ -80,6 +81,21 @@ def test_for_people(muster, walled):
     code, out, err = muster("path", walled, "--from", "1,1", "--to", "9,1")
     assert (code, err) == (0, "")
     assert out.splitlines()[-1] == "walled: 17.232 m in 3 straight pieces; shortest, ground, radius 0 m"
+
+
+def test_smooth(muster, walled):
+    """Longer than the path it rounds, through its points, and as far from walls."""
+    straight = answer(muster, walled, "--from", "1,1", "--to", "9,1", "--radius", "0.5")
+    found = answer(muster, walled, "--from", "1,1", "--to", "9,1", "--radius", "0.5", "--smooth")
+    assert straight["length_m"] < found["length_m"] < 1.1 * straight["length_m"]
+    assert all(point in found["points"] for point in straight["points"])
+    assert found["max_curvature_per_m"] > 0
+    wall = shapely.box(4, 0, 6, 8)
+    assert shapely.LineString(found["points"]).distance(wall) >= 0.5 - 1e-9
+    code, out, _ = muster("path", walled, "--from", "1,1", "--to", "9,1", "--smooth")
+    assert code == 0
+    assert out.startswith("walled: 17.")
+    assert "greatest curvature" in out
 
 
 def test_in_the_air_over_a_wall(muster):

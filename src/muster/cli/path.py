@@ -15,12 +15,13 @@ from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import json_text
+from muster.motion.path import NoPath, Path
 
 if TYPE_CHECKING:
-    from muster.motion.path import NoPath, Path
     from muster.motion.world import Body, World
 
 _PLANNERS = ("shortest", "theta-star", "a-star", "dijkstra", "rrt-star")
+_STEP_M = 0.1
 _FILE = click.Path(path_type=File)
 
 
@@ -32,6 +33,7 @@ _FILE = click.Path(path_type=File)
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
+@click.option("--smooth", is_flag=True, help="Round the corners where the map leaves room.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of rrt-star.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
@@ -48,6 +50,7 @@ def command(
     robot: str | None,
     radius: float | None,
     kind: str | None,
+    smooth: bool,
     seed: int,
     form: str,
     plot: File | None,
@@ -66,12 +69,15 @@ def command(
     body = _body(loaded, robot, radius, kind)
     world = _world(loaded)
     found = _found(world, body, planner, ends, seed)
+    bend = None
+    if smooth and isinstance(found, Path):
+        found, bend = _smoothed(world, body, found)
     if plot is not None:
         _draw(loaded, world, body, found, ends, planner, plot)
     if form == "json":
-        click.echo(json_text(_answer(found)), nl=False)
+        click.echo(json_text(_answer(found) | ({} if bend is None else {"max_curvature_per_m": bend})), nl=False)
     else:
-        _print(found, loaded, body, planner)
+        _print(found, loaded, body, planner, bend)
     return DONE
 
 
@@ -86,7 +92,6 @@ def _found(
 ) -> Path | NoPath:
     import numpy as np
 
-    from muster.motion.path import Path
     from muster.motion.paths import planner_named
     from muster.motion.roads import Roads
 
@@ -96,6 +101,15 @@ def _found(
     if planner == "shortest":
         return Roads(world).path(body, start, goal)
     return planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+
+
+def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
+    """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
+    from muster.motion.curve import Curve
+    from muster.motion.roads import Roads
+
+    curve = Curve.along(path) if world is None else Roads(world).curve(body, path)
+    return Path(curve.sample(_STEP_M)), curve.max_curvature
 
 
 def _point(mission: Mission, option: str, text: str) -> list[float]:
@@ -128,8 +142,6 @@ def _robot(mission: Mission, name: str) -> Robot:
 
 
 def _answer(found: Path | NoPath) -> dict[str, Any]:
-    from muster.motion.path import NoPath
-
     if isinstance(found, NoPath):
         return {"no_path": _reason(found)}
     return {"length_m": found.length_m, "points": found.points.tolist()}
@@ -139,14 +151,17 @@ def _reason(found: NoPath) -> str:
     return f"{found.reason}: {found.detail}" if found.detail else found.reason
 
 
-def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str) -> None:
+def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, bend: float | None) -> None:
     import numpy as np
 
     from muster.cli.tables import counted, print_table
-    from muster.motion.path import NoPath
 
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")
+        return
+    if bend is not None:
+        how = f"{_facts(body, planner)}, smooth"
+        click.echo(f"{mission.name}: {found.length_m:.3f} m, greatest curvature {bend:.3f} per metre; {how}")
         return
     legs = np.linalg.norm(np.diff(found.points, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])

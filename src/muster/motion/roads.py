@@ -9,9 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Mission, Point, Robot
+from muster.motion.curve import Curve
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import WayFinder
 from muster.motion.places import checked_world, why_blocked
+from muster.motion.smoothing import smoothed
 from muster.motion.spaces import PrismSpace, Space
 from muster.motion.world import Body, World
 
@@ -56,6 +58,11 @@ class Roads:
         if len(share) == 1 and start[2] != goal[2]:  # straight up
             return Path(np.array([start, goal], dtype=np.float64))
         return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
+
+    def curve(self, body: Body, path: Path) -> Curve:
+        """A path with its corners rounded where the map leaves room."""
+        finder = self._finder(body)
+        return smoothed(path, finder.clear)
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
         """With what is in the way of a body that cannot stand where it is to."""

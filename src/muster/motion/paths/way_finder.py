@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -24,6 +25,7 @@ class _Ways(Protocol):
     """Shortest ways in metres of the map frame."""
 
     def free(self, point: Floats) -> bool: ...
+    def sees(self, a: Floats, b: Floats) -> bool: ...
     def way(self, start: Floats, goal: Floats) -> Floats: ...
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats: ...
 
@@ -49,6 +51,11 @@ class WayFinder:
             return reason
         points = self._ways.way(a, b)
         return Path(without_repetitions(points)) if len(points) else disconnected(a, b)
+
+    def clear(self, points: Floats) -> bool:
+        """Whether straight pieces through points (k, d) are free from end to end; what smoothing asks (see `Clear`)."""
+        places = points_of(self._space, points, "points")
+        return all(self._ways.sees(a, b) for a, b in pairwise(places))
 
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
         """Metres of the shortest paths from each exit (n, d) to each entry (m, d): (n, m).
@@ -86,6 +93,9 @@ class _Nowhere:
     def free(self, point: Floats) -> bool:
         return False
 
+    def sees(self, a: Floats, b: Floats) -> bool:
+        return False
+
     def way(self, start: Floats, goal: Floats) -> Floats:
         return np.empty((0, 2))
 
@@ -99,6 +109,9 @@ class _InRegion:
 
     def free(self, point: Floats) -> bool:
         return self._ways.free(_pair(point))
+
+    def sees(self, a: Floats, b: Floats) -> bool:
+        return self._ways.sees(_pair(a), _pair(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
         return self._ways.way(_pair(start), _pair(goal))
@@ -116,6 +129,9 @@ class _OnGrid:
 
     def free(self, point: Floats) -> bool:
         return self._ways.free(self._cell(point))
+
+    def sees(self, a: Floats, b: Floats) -> bool:
+        return self._ways.sees(self._cell(a), self._cell(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
         way = self._grid.to_map(self._ways.way(self._cell(start), self._cell(goal)))
@@ -176,6 +192,9 @@ class _InAir:
 
     def free(self, point: Floats) -> bool:
         return self._ways.free(_triple(point))
+
+    def sees(self, a: Floats, b: Floats) -> bool:
+        return self._ways.sees(_triple(a), _triple(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
         """Found from the lesser point, so that there and back are equally long."""
