@@ -14,7 +14,7 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
 
 
 def pytest_configure():
-    """Hear Ctrl-C: a shell that runs this in the background has it ignored, and programs that tests start inherit that."""
+    """Hear Ctrl-C: a shell that runs this in the background ignores it, and programs that tests start inherit that."""
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
