@@ -6,6 +6,7 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -95,12 +96,17 @@ def rvo2(scene: Scene) -> Any:
 
 
 def compared(count: int, runs: int) -> dict[str, list[float]]:
-    """By program milliseconds of processor time of a step, for scenes with the seeds 0 to runs - 1."""
+    """By program milliseconds of processor time of a step, for scenes with the seeds 0 to runs - 1.
+
+    RVO2 is left out where pyrvo is not installed.
+    """
     programs: dict[str, Callable[[Scene], float]] = {
         "Muster": muster_ms,
         "Muster, without keep_apart": lambda scene: muster_ms(scene, keep_apart=False),
         "RVO2": rvo2_ms,
     }
+    if find_spec("pyrvo") is None:
+        del programs["RVO2"]
     scenes = [Scene.random(count, seed) for seed in range(runs)]
     times: dict[str, list[float]] = {name: [] for name in programs}
     for scene in scenes:
