@@ -140,3 +140,15 @@ def test_the_picture(muster, walled, tmp_path, ends, joined):
     assert ('id="path"' in drawn) == joined
     assert 'id="start"' in drawn
     assert 'id="goal"' in drawn
+
+
+def test_check_tells_of_a_robot_in_a_wall_in_both_forms(muster, tmp_path):
+    file = tmp_path / "stuck.yaml"
+    file.write_text(WALLED.replace("position: [1, 1], radius", "position: [4, 1], radius"), encoding="utf-8")
+    expected = "a place that is free for its robot (ground, radius 0.5 m)"
+    line = f"{file}:9: robots[0].position: [4.0, 1.0], inside zone 0; expected {expected}\n"
+    assert muster("check", str(file)) == (2, "", line)
+    code, out, err = muster("check", str(file), "--format", "json")
+    assert (code, err) == (2, "")
+    (error,) = json.loads(out)["errors"]
+    assert (error["line"], error["field"], error["expected"]) == (9, "robots[0].position", expected)
