@@ -16,7 +16,7 @@ map:
     - {polygon: [[0, 9], [1, 9], [1, 10], [0, 10]], forbidden_to: [air]}
 robots:
   - {id: rover, position: [1, 1], radius_m: 0.5}
-  - {id: drone, position: [2, 1], kind: air, radius_m: 1.2}
+  - {id: drone, position: [2, 2], kind: air, radius_m: 1.2}
 tasks:
   - {id: a, position: [9, 1]}
 """
@@ -146,9 +146,9 @@ def test_check_tells_of_a_robot_in_a_wall_in_both_forms(muster, tmp_path):
     file = tmp_path / "stuck.yaml"
     file.write_text(WALLED.replace("position: [1, 1], radius", "position: [4, 1], radius"), encoding="utf-8")
     expected = "a place that is free for its robot (ground, radius 0.5 m)"
-    line = f"{file}:9: robots[0].position: [4.0, 1.0], inside zone 0; expected {expected}\n"
+    line = f"{file}:10: robots[0].position: [4.0, 1.0], inside zone 0; expected {expected}\n"
     assert muster("check", str(file)) == (2, "", line)
     code, out, err = muster("check", str(file), "--format", "json")
     assert (code, err) == (2, "")
     (error,) = json.loads(out)["errors"]
-    assert (error["line"], error["field"], error["expected"]) == (9, "robots[0].position", expected)
+    assert (error["line"], error["field"], error["expected"]) == (10, "robots[0].position", expected)
