@@ -8,7 +8,7 @@ environment=build/sanitized
 [ -d "$environment" ] || "$python" -m venv "$environment"
 "$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C cmake.define.MUSTER_WERROR=ON -C build-dir=build/sanitizing \
     -C install.strip=false '.[all]' pytest hypothesis
-core=$(find "$environment" -name '_core*.so')
+core=$(find "$environment" -path '*/muster/core/_core*.so')
 if ! ldd "$core" | grep -q libasan; then
     echo "the core in $environment was built without the sanitizers" >&2
     exit 1
