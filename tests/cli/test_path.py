@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 
@@ -80,6 +81,15 @@ def test_for_people(muster, walled):
     code, out, err = muster("path", walled, "--from", "1,1", "--to", "9,1")
     assert (code, err) == (0, "")
     assert out.splitlines()[-1] == "walled: 17.232 m in 3 straight pieces; shortest, ground, radius 0 m"
+
+
+def test_people_are_told_where_a_way_turns_and_programs_each_cell(muster, walled):
+    found = answer(muster, walled, "--from", "1,1", "--to", "3,1", "--planner", "a-star")
+    _, out, _ = muster("path", walled, "--from", "1,1", "--to", "3,1", "--planner", "a-star")
+    pieces = int(re.search(r"in (\d+) straight pieces?", out)[1])
+    assert len(found["points"]) > 50
+    assert pieces < 8
+    assert len([line for line in out.splitlines() if re.match(r" +\d", line)]) == pieces + 1
 
 
 def test_in_the_air_over_a_wall(muster):

@@ -148,10 +148,11 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str) -> 
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")
         return
-    legs = np.linalg.norm(np.diff(found.points, axis=0), axis=1)
+    turns = found.turns
+    legs = np.linalg.norm(np.diff(turns, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])
-    columns = (*(f"{axis} [m]" for axis in "xyz"[: found.points.shape[1]]), "so far [m]")
-    rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(found.points, along, strict=True)]
+    columns = (*(f"{axis} [m]" for axis in "xyz"[: turns.shape[1]]), "so far [m]")
+    rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(turns, along, strict=True)]
     print_table(columns, rows, right=columns)
     pieces = counted(len(legs), "straight piece")
     click.echo(f"{mission.name}: {found.length_m:.3f} m in {pieces}; {_facts(body, planner)}")
