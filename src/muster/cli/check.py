@@ -66,7 +66,7 @@ def command(
 
     try:
         loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-        problem = Problem.compile(loaded, ignored=ignore)
+        problem = Problem.compile(loaded, ignored=ignore).ready()
     except (MissionError, NotSupportedError) as error:
         if form == "json":
             click.echo(json_text(_answer(errors=[f.as_dict() for f in error.findings])), nl=False)
