@@ -220,7 +220,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Position:
-    """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`; the third may be a `yaw` in radians."""
+    """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`. The third may be a yaw in radians."""
 
     filler: ClassVar[tuple[float, ...]] = ()  # neither flat nor spatial
     planar: bool = False

@@ -60,10 +60,10 @@ def limits(points: NDArray[np.float64], margin: float, *, on_ground: bool) -> tu
     """
     low, high = points.min(axis=0), points.max(axis=0)
     longest = float((high - low).max()) or 1.0
-    below = np.maximum(0.3 * longest - (high - low), 0.0) / 2 + margin * longest
-    above = below.copy()
+    missing, around = np.maximum(0.3 * longest - (high - low), 0.0), margin * longest
+    below, above = missing / 2 + around, missing / 2 + around
     if on_ground and len(low) == 3:
-        above[2], below[2] = above[2] + below[2], 0.0
+        below[2], above[2] = 0.0, missing[2] + around
     return low - below, high + above
 
 

@@ -64,7 +64,7 @@ def read_shades(path: Path) -> Floats:
 
 
 def image_kind(path: Path) -> str | None:
-    """`a PNG image`, `a JPEG image`, ... if a file is an image, whether or not it can be read; None for another, or none."""
+    """`a PNG image`, `a JPEG image`, ... where a file is an image, be it of a kind that is not read; else None."""
     try:
         head = _head(path)
     except (OSError, ValueError):

@@ -38,7 +38,9 @@ def read_grid(chart: Map, folder: Path, faults: list[Fault]) -> Grid | None:
     key = "image" if chart.ros_yaml is None else "ros_yaml"
     path = folder / str(getattr(chart, key))
     if key == "ros_yaml" and (kind := image_kind(path)) is not None:
-        faults.append(Fault(("map", key), f"{path}: {kind}", "a map file of ROS, in YAML; for an image the key is image"))
+        faults.append(
+            Fault(("map", key), f"{path}: {kind}", "a map file of ROS, in YAML; for an image the key is image")
+        )
         return None
     try:
         ros_map = _as_ros_map(chart) if chart.ros_yaml is None else read_ros_map(path)
