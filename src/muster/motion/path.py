@@ -37,7 +37,8 @@ class Path:
         lengths = np.linalg.norm(steps, axis=1, keepdims=True)
         directions = steps / np.where(lengths > 0, lengths, 1.0)
         bends = np.linalg.norm(np.diff(directions, axis=0), axis=1) > _STRAIGHT
-        return self.points[np.concatenate([[True], bends, [True]])]
+        turns: Floats = self.points[np.concatenate([[True], bends, [True]])]
+        return turns
 
 
 @dataclass(frozen=True)
