@@ -54,7 +54,7 @@ def test_radius_and_kind_of_a_robot(muster, walled):
     assert by_robot == answer(muster, walled, "--from", "2,2", "--to", "8,2", "--radius", "0.5")
     assert by_robot["length_m"] > answer(muster, walled, "--from", "2,2", "--to", "8,2")["length_m"]
     assert answer(muster, walled, "--from", "2,2", "--to", "8,2", "--robot", "drone") == {
-        "no_path": "disconnected: no free way leads from (2, 2) to (8, 2)"
+        "no_path": "disconnected: no free way leads from (2, 2) to (8, 2), radius 1.2 m"
     }
 
 

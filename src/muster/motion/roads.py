@@ -58,12 +58,12 @@ class Roads:
         return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
-        """With what is in the way of a body that cannot stand where it is to."""
+        """With what is in the way of a body that cannot stand where it is to, and with how wide one is that has no way."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):
             if found.reason == blocked:
                 place = ", ".join(f"{c:g}" for c in point)
                 return NoPath(blocked, f"({place}): {why_blocked(self.world, point, body)}")
-        return found
+        return NoPath(found.reason, f"{found.detail}, radius {body.radius_m:g} m") if body.radius_m else found
 
     def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
         """Metres (n, m) from exits (n, 3) to entries (m, 3), inf where there is no path."""
