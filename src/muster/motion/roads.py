@@ -58,7 +58,7 @@ class Roads:
         return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
-        """With what is in the way of a body that cannot stand where it is to, and with how wide one is that has no way."""
+        """With what is in the way of a body that cannot stand where it is to, or how wide one is that has no way."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):
             if found.reason == blocked:
                 place = ", ".join(f"{c:g}" for c in point)
