@@ -104,6 +104,15 @@ def test_the_height_of_a_ground_robot_changes_evenly(muster):
     assert found["length_m"] == pytest.approx(math.hypot(10, 2))
 
 
+@pytest.mark.parametrize("planner", ["theta-star", "a-star", "dijkstra", "rrt-star"])
+def test_so_it_does_by_other_planners(muster, planner, tmp_path):
+    ends = ("yard", "--from", "3,3,0", "--to", "3,13,2", "--planner", planner)
+    found = answer(muster, *ends, "--plot", tmp_path / "way.svg")
+    assert found["points"][0] == [3, 3, 0]
+    assert found["points"][-1] == [3, 13, 2]
+    assert math.hypot(10, 2) - 1e-9 <= found["length_m"] < 12
+
+
 def test_without_a_map_the_way_is_straight(muster):
     assert answer(muster, "31T-6R", "--from", "0,0", "--to", "3,4") == {"length_m": 5.0, "points": [[0, 0], [3, 4]]}
 

@@ -86,16 +86,17 @@ def _found(
 ) -> Path | NoPath:
     import numpy as np
 
-    from muster.motion.path import Path
+    from muster.motion.path import NoPath, Path
     from muster.motion.paths import planner_named
-    from muster.motion.roads import Roads
+    from muster.motion.roads import Roads, with_heights
 
     start, goal = ends
     if world is None:
         return Path(np.array(ends))
     if planner == "shortest":
         return Roads(world).path(body, start, goal)
-    return planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+    found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+    return found if isinstance(found, NoPath) else with_heights(found, start, goal)
 
 
 def _point(mission: Mission, option: str, text: str) -> list[float]:

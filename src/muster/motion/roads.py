@@ -49,13 +49,7 @@ class Roads:
         found = self._finder(body).path(start, goal)
         if isinstance(found, NoPath):
             return self._told(found, body, tuple(start), tuple(goal))
-        if found.points.shape[1] == len(start):
-            return found
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
-        share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
-        if len(share) == 1 and start[2] != goal[2]:  # straight up
-            return Path(np.array([start, goal], dtype=np.float64))
-        return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
+        return with_heights(found, start, goal)
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
         """With what is in the way of a body that cannot stand where it is to, or how wide one is that has no way."""
@@ -79,6 +73,17 @@ class Roads:
 
     def _space(self, body: Body) -> Space:
         return self.world.free_space(body.radius_m, body.kind)
+
+
+def with_heights(found: Path, start: Sequence[float], goal: Sequence[float]) -> Path:
+    """A path in the plane as one in space, where its ends are: its height changes evenly."""
+    if found.points.shape[1] == len(start):
+        return found
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
+    share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
+    if len(share) == 1 and start[2] != goal[2]:  # straight up
+        return Path(np.array([start, goal], dtype=np.float64))
+    return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
 
 
 def body_of(robot: Robot) -> Body:
