@@ -133,7 +133,7 @@ def test_what_no_way_leads_to_is_impossible_and_says_why():
     mission = walled_off(tasks=(Task(id="far", position=(6.0, 2.0)), Task(id="in", position=(8.0, 8.0))))
     found = {item.task: [(r.reason, r.detail) for r in item.reasons] for item in impossible(Problem.compile(mission))}
     assert found == {
-        "far": [("unreachable", "disconnected: no free way leads from (1, 1) to (6, 2)")],
+        "far": [("unreachable", "disconnected: no free way leads from (1, 1) to (6, 2), radius 0.3 m")],
         "in": [("unreachable", "goal blocked: (8, 8): inside zone 1")],
     }
     plan = muster.solve(mission, iterations=50)

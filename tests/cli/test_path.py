@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 import shapely
@@ -54,7 +55,7 @@ def test_radius_and_kind_of_a_robot(muster, walled):
     assert by_robot == answer(muster, walled, "--from", "2,2", "--to", "8,2", "--radius", "0.5")
     assert by_robot["length_m"] > answer(muster, walled, "--from", "2,2", "--to", "8,2")["length_m"]
     assert answer(muster, walled, "--from", "2,2", "--to", "8,2", "--robot", "drone") == {
-        "no_path": "disconnected: no free way leads from (2, 2) to (8, 2)"
+        "no_path": "disconnected: no free way leads from (2, 2) to (8, 2), radius 1.2 m"
     }
 
 
@@ -98,6 +99,15 @@ def test_smooth(muster, walled):
     assert "greatest curvature" in out
 
 
+def test_people_are_told_where_a_way_turns_and_programs_each_cell(muster, walled):
+    found = answer(muster, walled, "--from", "1,1", "--to", "3,1", "--planner", "a-star")
+    _, out, _ = muster("path", walled, "--from", "1,1", "--to", "3,1", "--planner", "a-star")
+    pieces = int(re.search(r"in (\d+) straight pieces?", out)[1])
+    assert len(found["points"]) > 50
+    assert pieces < 8
+    assert len([line for line in out.splitlines() if re.match(r" +\d", line)]) == pieces + 1
+
+
 def test_in_the_air_over_a_wall(muster):
     found = answer(muster, "yard", "--from", "10,20,1", "--to", "20,20,1", "--kind", "air")
     assert found["length_m"] == pytest.approx(math.hypot(4, 3) + 0.5 + math.hypot(5.5, 3), rel=1e-6)
@@ -108,6 +118,15 @@ def test_in_the_air_over_a_wall(muster):
 def test_the_height_of_a_ground_robot_changes_evenly(muster):
     found = answer(muster, "yard", "--from", "3,3,0", "--to", "3,13,2")
     assert found["length_m"] == pytest.approx(math.hypot(10, 2))
+
+
+@pytest.mark.parametrize("planner", ["theta-star", "a-star", "dijkstra", "rrt-star"])
+def test_so_it_does_by_other_planners(muster, planner, tmp_path):
+    ends = ("yard", "--from", "3,3,0", "--to", "3,13,2", "--planner", planner)
+    found = answer(muster, *ends, "--plot", tmp_path / "way.svg")
+    assert found["points"][0] == [3, 3, 0]
+    assert found["points"][-1] == [3, 13, 2]
+    assert math.hypot(10, 2) - 1e-9 <= found["length_m"] < 12
 
 
 def test_without_a_map_the_way_is_straight(muster):

@@ -12,7 +12,7 @@ from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, run
 from muster.mission.kinds import specified
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.yaml_reader import parse_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -73,10 +73,10 @@ def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):
     pytest.importorskip("ortools")
     text = (ROOT / "docs" / "what-can-be-done.md").read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    (mission,) = blocks(text, "yaml")
-    Path("quay.yaml").write_text(mission, encoding="utf-8")
+    for mission in blocks(text, "yaml"):
+        Path(f"{parse_yaml(mission, Path('example.yaml')).name}.yaml").write_text(mission, encoding="utf-8")
     shown = [part for block in blocks(text, "console") for part in block.split("$ muster ")[1:]]
-    assert len(shown) >= 6
+    assert len(shown) >= 7
     for part in shown:
         command, *output = part.splitlines()
         assert run(command.split()) == 0
@@ -135,3 +135,29 @@ def test_the_examples_of_maps():
     points = np.array([[3.0, 3.0, 0.0], [14.2, 20.0, 0.0], [10.0, 20.0, 0.0]])
     assert names["free"](names["space"], points).tolist() == [True, False, True]
     assert names["world"].clearance(points, "ground")[2] == 4
+
+
+def test_the_example_of_paths_runs():
+    pytest.importorskip("shapely")
+    (example,) = blocks((ROOT / "docs" / "paths.md").read_text(encoding="utf-8"), "python")
+    names = {}
+    exec(compile(example, "paths.md", "exec"), names)
+    assert names["answer"].length_m > names["finder"].path((2, 2), (36, 20)).length_m > 38
+
+
+def test_the_example_of_avoidance_runs(capsys):
+    (example,) = blocks((ROOT / "docs" / "avoidance.md").read_text(encoding="utf-8"), "python")
+    names = {}
+    exec(compile(example, "avoidance.md", "exec"), names)
+    assert (names["ways"].arrivals_s < 60).all()
+    assert len(names["ways"].contacts) == 0
+    assert capsys.readouterr().out
+
+
+def test_every_key_of_a_map_is_described():
+    section = MISSION_FILE.split("## Map", 1)[1].split("\n## ", 1)[0]
+    assert {f.name for model in (Map, Zone) for f in specified(model)} <= set(re.findall(r"`([a-z_0-9]+)`", section))
+
+
+def test_the_readme_links_to_every_document():
+    assert set(re.findall(r"\]\(docs/([a-z-]+\.md)", README)) == {file.name for file in (ROOT / "docs").glob("*.md")}

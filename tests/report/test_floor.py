@@ -1,14 +1,20 @@
 """The map beneath the routes."""
 
+from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from muster.mission.model import Map, Zone
+from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.plan import Plan
 from muster.motion.grid import Grid
-from muster.report.floor import draw_map, map_corners
+from muster.motion.path import NoPath
+from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
+from muster.report.routes import plot_routes
+from muster.report.way import plot_way
+from muster.verification import verify
 
 BLOCKED = np.array([[True, False, False], [False, False, True]])
 TURNED = Grid(BLOCKED, 2.0, (10.0, 20.0, np.pi / 2))
@@ -60,6 +66,48 @@ def test_corners_of_a_map():
     assert map_corners(Map(boundary=((0, 0), (9, 0), (9, 9)), zones=(zone,))) == [
         (0, 0), (9, 0), (9, 9), (1, 1), (2, 1), (2, 2)
     ]  # fmt: skip
+    high = Zone(polygon=((1, 1), (2, 1), (2, 2)), floor_m=3, ceiling_m=5)
+    assert map_corners(Map(boundary=((0, 0), (9, 0), (9, 9)), zones=(high,)))[3:] == [(1, 1, 5), (2, 1, 5), (2, 2, 5)]
+
+
+def test_outlines_are_closed():
+    zone = Zone(polygon=((1, 1), (2, 1), (2, 2)))
+    boundary, outline = map_outlines(Map(boundary=((0, 0), (9, 0), (9, 9)), zones=(zone,)))
+    assert boundary.tolist() == [[0, 0], [9, 0], [9, 9], [0, 0]]
+    assert outline.tolist() == [[1, 1], [2, 1], [2, 2], [1, 1]]
+
+
+def test_walls_are_between_free_and_blocked_cells():
+    free = Grid(np.array([[False]]), 2.0, (10.0, 20.0, 0.0))
+    assert sorted(wall_places(free).tolist()) == [[10, 21], [11, 20], [11, 22], [12, 21]]
+
+
+def test_a_picture_in_space_stands_on_the_ground_and_holds_its_zones():
+    zone = Zone(polygon=((1, 1), (2, 1), (2, 2)), ceiling_m=30)
+    chart = Map(boundary=((0, 0), (9, 0), (9, 9)), zones=(zone,))
+    mission = Mission(map=chart, robots=(Robot(id="r", position=(5, 1, 2)),), tasks=())
+    ax = plot_way(mission, NoPath("disconnected"), (5, 1, 2), (6, 1, 2), facts="")
+    low, high = ax.get_zlim()
+    assert low == 0
+    assert high > 30
+
+
+def test_names_of_places_do_not_cover_walls(drawn):
+    """The name would stand on the right of the mark, where the wall is."""
+    wall = Zone(polygon=((5.2, 0), (5.6, 0), (5.6, 9), (5.2, 9)))
+    chart = Map(boundary=((0, 0), (9, 0), (9, 9), (0, 9)), zones=(wall,))
+    for zones, left in (((), False), ((wall,), True)):
+        mission = Mission(
+            rules=Rules(travel="euclidean"),
+            map=replace(chart, zones=zones),
+            robots=(Robot(id="r", position=(1, 1)),),
+            tasks=(Task(id="here", position=(5, 5)),),
+        )
+        plan = Plan(routes=())
+        ax = plot_routes(mission, plan, verify(mission, plan))
+        ax.figure.draw_without_rendering()
+        (name,) = drawn(ax, "name-here")
+        assert (name.get_window_extent().x1 < ax.transData.transform((5, 5))[0]) == left
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Ways of robots: what is drawn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -33,3 +35,18 @@ def test_panels():
     assert {line.get_ydata()[0] for line in distances.lines[1:]} == {0.3, 0.4}
     assert x.lines[1].get_ydata().tolist() == [-2.0, -1.0]
     assert y.lines[0].get_ydata().tolist() == [1.0, -1.0]
+
+
+def test_methods_are_drawn_to_one_scale():
+    """Of two methods the second comes nearer and takes longer; its panels hold it, and the first's are like them."""
+    slow = ways("ORCA")
+    slow = replace(slow, least_distances_m=np.array([9.0, 0.1]), velocities=slow.velocities * 3, dt=2.0)
+    figure = plot_ways([ways("RVO"), slow], "a title")
+    for row in (2, 4, 6):
+        first, second = figure.axes[row : row + 2]
+        assert first.get_xlim() == second.get_xlim()
+        assert first.get_ylim() == second.get_ylim()
+        for ax in (first, second):
+            for line in ax.lines:
+                assert ax.get_ylim()[0] <= min(line.get_ydata()) <= max(line.get_ydata()) <= ax.get_ylim()[1]
+    assert figure.axes[2].get_ylim()[0] == 0

@@ -93,14 +93,15 @@ def _found(
     import numpy as np
 
     from muster.motion.paths import planner_named
-    from muster.motion.roads import Roads
+    from muster.motion.roads import Roads, with_heights
 
     start, goal = ends
     if world is None:
         return Path(np.array(ends))
     if planner == "shortest":
         return Roads(world).path(body, start, goal)
-    return planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+    found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+    return found if isinstance(found, NoPath) else with_heights(found, start, goal)
 
 
 def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
@@ -163,10 +164,11 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, ben
         how = f"{_facts(body, planner)}, smooth"
         click.echo(f"{mission.name}: {found.length_m:.3f} m, greatest curvature {bend:.3f} per metre; {how}")
         return
-    legs = np.linalg.norm(np.diff(found.points, axis=0), axis=1)
+    turns = found.turns
+    legs = np.linalg.norm(np.diff(turns, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])
-    columns = (*(f"{axis} [m]" for axis in "xyz"[: found.points.shape[1]]), "so far [m]")
-    rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(found.points, along, strict=True)]
+    columns = (*(f"{axis} [m]" for axis in "xyz"[: turns.shape[1]]), "so far [m]")
+    rows = [tuple(f"{value:.3f}" for value in (*point, far)) for point, far in zip(turns, along, strict=True)]
     print_table(columns, rows, right=columns)
     pieces = counted(len(legs), "straight piece")
     click.echo(f"{mission.name}: {found.length_m:.3f} m in {pieces}; {_facts(body, planner)}")

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "heap.hpp"
-#include "parallel.hpp"
 
 namespace muster {
 
@@ -58,9 +57,9 @@ void AirWays::sample(double rise, double run) {
   }
 }
 
-void AirWays::build(int threads) {
+void AirWays::build(int threads, const Pause& pause) {
   pieces_.assign(nodes_.size(), {});
-  for_each_parallel(static_cast<int>(nodes_.size()), threads, [&] {
+  for_each_parallel(static_cast<int>(nodes_.size()), threads, pause, [&] {
     return [&](int k) {
       const Node& node = nodes_[k];
       for (std::size_t o = 0; o < nodes_.size(); ++o) {
@@ -239,12 +238,13 @@ void AirWays::shorten(std::vector<Spot>& way, std::vector<int>& edges) const {
   }
 }
 
-std::vector<double> AirWays::lengths(const std::vector<Spot>& places, int first, int last, int threads) const {
+std::vector<double> AirWays::lengths(const std::vector<Spot>& places, int first, int last, int threads,
+                                     const Pause& pause) const {
   std::vector<Seat> seats(places.size());
-  for_each_parallel(static_cast<int>(places.size()), threads,
+  for_each_parallel(static_cast<int>(places.size()), threads, pause,
                     [&] { return [&](int k) { seats[k] = seat(places[k]); }; });
   std::vector<double> table(static_cast<std::size_t>(last - first) * places.size(), kFar);
-  for_each_parallel(last - first, threads, [&] {
+  for_each_parallel(last - first, threads, pause, [&] {
     return [&, tree = Tree{}](int k) mutable {
       const std::size_t i = static_cast<std::size_t>(first) + k;
       if (!seats[i].free) return;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "air.hpp"
+#include "parallel.hpp"
 
 namespace muster {
 
@@ -16,13 +17,14 @@ class AirWays {
   // Upright edges are sampled every `rise` metres, level ones every `run`, ends included.
   AirWays(std::shared_ptr<const Air> air, double rise, double run) : air_(std::move(air)) { sample(rise, run); }
 
-  void build(int threads);
+  void build(int threads, const Pause& pause);
   const Air& air() const { return *air_; }
   std::size_t samples() const { return nodes_.size(); }
   // A way with its ends; empty if there is none.
   std::vector<Spot> way(Spot from, Spot to) const;
   // The lengths from places[i], `first` <= i < `last`, to all places: of way(i, j). Zero on the diagonal.
-  std::vector<double> lengths(const std::vector<Spot>& places, int first, int last, int threads) const;
+  std::vector<double> lengths(const std::vector<Spot>& places, int first, int last, int threads,
+                              const Pause& pause) const;
 
  private:
   struct Node {

@@ -13,6 +13,7 @@
 #include "air_ways.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "signals.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -48,7 +49,7 @@ Table lengths(const AirWays& ways, const PointArray& places, int first, int last
   std::vector<double> values;
   {
     const nb::gil_scoped_release unlocked;
-    values = ways.lengths(spots, first, last, threads);
+    values = ways.lengths(spots, first, last, threads, hear_signals);
   }
   return table_of(std::move(values), spots.size());
 }
@@ -70,8 +71,10 @@ void bind_air(nb::module_& m) {
           "region"_a, "prisms"_a, nb::kw_only(), "lowest"_a, "top"_a, "rise"_a, "run"_a,
           "`region` is rings (k, 2) with the inside on their left, a prism (rings, floor, ceiling). Upright edges are "
           "sampled every `rise` metres up to `top`, level ones every `run`.")
-      .def("build", &AirWays::build, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
-           "Find which samples see each other; before it there are no ways but straight ones.")
+      .def(
+          "build", [](AirWays& w, int threads) { w.build(threads, hear_signals); }, "threads"_a,
+          nb::call_guard<nb::gil_scoped_release>(),
+          "Find which samples see each other; before it there are no ways but straight ones.")
       .def_prop_ro("samples", &AirWays::samples)
       .def(
           "free", [](const AirWays& w, const Triple& p) { return w.air().free(spot(p)); }, "point"_a)

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "heap.hpp"
-#include "parallel.hpp"
 
 namespace muster {
 
@@ -55,12 +54,12 @@ Ways::Ways(std::shared_ptr<const Sights> sights) : sights_(std::move(sights)) {
   }
 }
 
-void Ways::build(int threads) {
+void Ways::build(int threads, const Pause& pause) {
   const auto& corners = sights_->corners();
   const auto count = static_cast<int>(corners.size());
   std::vector<std::vector<int>> seen(corners.size());
   std::vector<std::size_t> on_right(corners.size());
-  for_each_parallel(count, threads, [&] {
+  for_each_parallel(count, threads, pause, [&] {
     return [&](int c) {
       const Corner& corner = corners[c];
       auto others = sights_->neighbours(c);
@@ -93,9 +92,10 @@ Ways::Seat Ways::seat(Point p) const {
   return {at, p, true, sights_->seen_from(at)};
 }
 
-std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first, int threads) const {
+std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first, int threads,
+                                    const Pause& pause) const {
   std::vector<Seat> all(places.size());
-  for_each_parallel(static_cast<int>(places.size()) - first, threads,
+  for_each_parallel(static_cast<int>(places.size()) - first, threads, pause,
                     [&] { return [&](int k) { all[first + k] = seat(places[first + k]); }; });
   return all;
 }
@@ -184,11 +184,11 @@ std::vector<Point> Ways::way(Point a, Point b) const {
 }
 
 std::vector<double> Ways::lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
-                                  int first, int last, int threads) const {
-  const std::vector<Seat> ends = seats(entries, mutual ? first : 0, threads);
+                                  int first, int last, int threads, const Pause& pause) const {
+  const std::vector<Seat> ends = seats(entries, mutual ? first : 0, threads, pause);
   const std::size_t columns = entries.size();
   std::vector<double> table(static_cast<std::size_t>(last - first) * columns, kFar);
-  for_each_parallel(last - first, threads, [&] {
+  for_each_parallel(last - first, threads, pause, [&] {
     return [&, tree = Tree{}](int k) mutable {
       const int i = first + k;
       const Seat from = mutual ? ends[i] : seat(exits[i]);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "parallel.hpp"
 #include "sights.hpp"
 
 namespace muster {
@@ -16,7 +17,7 @@ class Ways {
   explicit Ways(std::shared_ptr<const Sights> sights);
 
   // Finds what every corner sees, once. Without it each search looks for itself, where it comes by.
-  void build(int threads);
+  void build(int threads, const Pause& pause);
   bool built() const { return !first_.empty(); }
   std::size_t corners() const { return sights_->corners().size(); }
   std::size_t pieces() const { return pieces_.size(); }
@@ -28,7 +29,7 @@ class Ways {
   // Row after row from `first` to before `last`: the lengths from exits[i] to all entries; inf where there is no way.
   // If `mutual`, entries are the exits, and row i holds its lengths to the entries after i alone, and 0 to itself.
   std::vector<double> lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
-                              int first, int last, int threads) const;
+                              int first, int last, int threads, const Pause& pause) const;
 
  private:
   // A place and the corners that see it.
@@ -45,7 +46,7 @@ class Ways {
   };
 
   Seat seat(Point p) const;
-  std::vector<Seat> seats(const std::vector<Point>& places, int first, int threads) const;
+  std::vector<Seat> seats(const std::vector<Point>& places, int first, int threads, const Pause& pause) const;
   void grow(const Seat& from, const Seat* to, Tree& tree) const;
   void expand(int corner, const Seat& from, const Seat* to, Tree& tree) const;
   void look_around(int corner, const Seat& from, const Seat* to, Tree& tree) const;

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
 from numbers import Real
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
 from muster.mission.hints import did_you_mean
 
@@ -220,14 +220,17 @@ class Choice:
 
 @dataclass(frozen=True)
 class Position:
-    """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`."""
+    """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`. The third may be a yaw in radians."""
 
     filler: ClassVar[tuple[float, ...]] = ()  # neither flat nor spatial
     planar: bool = False
+    third: Literal["z", "yaw"] = "z"
 
     @property
     def expected(self) -> str:
-        return "[x, y] in metres" if self.planar else "[x, y] or [x, y, z] in metres"
+        if self.planar:
+            return "[x, y] in metres"
+        return f"[x, y] or [x, y, {self.third}] in metres{' and radians' if self.third == 'yaw' else ''}"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         lengths = (2,) if self.planar else (2, 3)

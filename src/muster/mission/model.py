@@ -114,7 +114,7 @@ class Map(_Checked):
     image: str | None = spec(Text(), "an image of the floor", default=None)
     resolution_m: float | None = spec(Number(above=0), "side of one pixel of the image", default=None)
     origin: Point | None = spec(
-        Position(), "[x, y, yaw] of the image's lower left pixel, metres and radians", default=None
+        Position(third="yaw"), "[x, y, yaw] of the image's lower left corner, metres and radians", default=None
     )
     boundary: tuple[Point, ...] | None = spec(
         Many(Position(planar=True), minimum=3), "corners of the arena in order", default=None
@@ -128,6 +128,10 @@ class Map(_Checked):
             yield Fault((), ", ".join(forms) or "no form", "exactly one of ros_yaml, image, boundary")
         if "image" in forms and values.get("resolution_m") is None:
             yield Fault(("resolution_m",), "missing", "a finite number above 0, beside image")
+        if forms in (["ros_yaml"], ["boundary"]):
+            for key in ("resolution_m", "origin"):
+                if values.get(key) is not None:
+                    yield Fault((key,), shown(values[key]), f"no such key beside {forms[0]}: it goes with image")
 
 
 @dataclass(frozen=True, kw_only=True)

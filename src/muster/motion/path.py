@@ -9,6 +9,8 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
+_STRAIGHT = 1e-9  # rad: what turns by less goes straight on
+
 
 @dataclass(frozen=True, eq=False)
 class Path:
@@ -25,6 +27,18 @@ class Path:
     @property
     def length_m(self) -> float:
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+    @property
+    def turns(self) -> Floats:
+        """(j, 2) or (j, 3): the points without those in the midst of a straight piece, such as each cell on a grid."""
+        if len(self.points) < 3:
+            return self.points
+        steps = np.diff(self.points, axis=0)
+        lengths = np.linalg.norm(steps, axis=1, keepdims=True)
+        directions = steps / np.where(lengths > 0, lengths, 1.0)
+        bends = np.linalg.norm(np.diff(directions, axis=0), axis=1) > _STRAIGHT
+        turns: Floats = self.points[np.concatenate([[True], bends, [True]])]
+        return turns
 
 
 @dataclass(frozen=True)

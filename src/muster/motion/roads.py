@@ -51,13 +51,7 @@ class Roads:
         found = self._finder(body).path(start, goal)
         if isinstance(found, NoPath):
             return self._told(found, body, tuple(start), tuple(goal))
-        if found.points.shape[1] == len(start):
-            return found
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
-        share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
-        if len(share) == 1 and start[2] != goal[2]:  # straight up
-            return Path(np.array([start, goal], dtype=np.float64))
-        return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
+        return with_heights(found, start, goal)
 
     def curve(self, body: Body, path: Path) -> Curve:
         """A path with its corners rounded where the map leaves room."""
@@ -65,12 +59,12 @@ class Roads:
         return smoothed(path, finder.clear)
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
-        """With what is in the way of a body that cannot stand where it is to."""
+        """With what is in the way of a body that cannot stand where it is to, or how wide one is that has no way."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):
             if found.reason == blocked:
                 place = ", ".join(f"{c:g}" for c in point)
                 return NoPath(blocked, f"({place}): {why_blocked(self.world, point, body)}")
-        return found
+        return NoPath(found.reason, f"{found.detail}, radius {body.radius_m:g} m") if body.radius_m else found
 
     def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
         """Metres (n, m) from exits (n, 3) to entries (m, 3), inf where there is no path."""
@@ -86,6 +80,17 @@ class Roads:
 
     def _space(self, body: Body) -> Space:
         return self.world.free_space(body.radius_m, body.kind)
+
+
+def with_heights(found: Path, start: Sequence[float], goal: Sequence[float]) -> Path:
+    """A path in the plane as one in space, where its ends are: its height changes evenly."""
+    if found.points.shape[1] == len(start):
+        return found
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])
+    share = along / along[-1] if along[-1] > 0 else np.linspace(0.0, 1.0, len(along))
+    if len(share) == 1 and start[2] != goal[2]:  # straight up
+        return Path(np.array([start, goal], dtype=np.float64))
+    return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
 
 
 def body_of(robot: Robot) -> Body:

@@ -46,6 +46,27 @@ def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axe
     return axes
 
 
+def limits(points: NDArray[np.float64], margin: float, *, on_ground: bool) -> tuple[Any, Any]:
+    """Find the lower and the upper corner of a picture of points `(n, 2 or 3)`; no side is very short.
+
+    Parameters
+    ----------
+    points
+        what the picture must hold.
+    margin
+        around it, as a share of the longest side.
+    on_ground
+        whether a 3-D picture stands on the lowest point: nothing is below the ground.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    longest = float((high - low).max()) or 1.0
+    missing, around = np.maximum(0.3 * longest - (high - low), 0.0), margin * longest
+    below, above = missing / 2 + around, missing / 2 + around
+    if on_ground and len(low) == 3:
+        below[2], above[2] = 0.0, missing[2] + around
+    return low - below, high + above
+
+
 def require_matplotlib() -> None:
     """Raise MissingExtraError where matplotlib is not installed."""
     try:

@@ -47,11 +47,26 @@ def draw_map(ax: Any, chart: Map, image: Grid | None = None, *, spatial: bool) -
 
 
 def map_corners(chart: Map, image: Grid | None = None) -> list[Point]:
-    """List the places (x, y) that a picture of a map must hold."""
-    corners = [*(chart.boundary or ()), *(corner for zone in chart.zones for corner in zone.polygon)]
+    """List the places that a picture of a map must hold: (x, y), and (x, y, z) where a zone ends at a height."""
+    corners = list(chart.boundary or ())
+    for zone in chart.zones:
+        top = (max(_levels(zone)),) if zone.floor_m or zone.ceiling_m else ()
+        corners += [(*corner, *top) for corner in zone.polygon]
     if image is not None:
         corners += [(float(x), float(y)) for x, y in image.to_map(_corners(image))]
     return corners
+
+
+def map_outlines(chart: Map) -> list[Any]:
+    """List the outlines of boundary and zones as closed lines (n, 2)."""
+    polygons = [*([chart.boundary] if chart.boundary is not None else []), *(zone.polygon for zone in chart.zones)]
+    return [np.array([*polygon, polygon[0]], dtype=np.float64) for polygon in polygons]
+
+
+def wall_places(image: Grid) -> Any:
+    """List the middles (n, 2) of the edges between free and blocked cells."""
+    places: Any = image.to_map(_edges(image.blocked).mean(axis=1))
+    return places
 
 
 def _corners(image: Grid) -> Any:

@@ -33,6 +33,12 @@ def line_obstacles(lines: Array, step: float = 3.0) -> Array:
     return np.column_stack([points, np.full(len(points), _LINE)])
 
 
+def dot_obstacles(places: Array, step: float = 3.0) -> Array:
+    """Turn places `(n, 2)` that lie close together, such as the cells of a wall, into obstacles `(m, 3)`."""
+    points = np.unique(np.round(places / step), axis=0) * step
+    return np.column_stack([points, np.full(len(points), _LINE)])
+
+
 def mark_obstacles(centres: Array, radius: float) -> Array:
     """Turn marks `(n, 2)` of a radius into obstacles `(9 n, 3)`: x, y, weight."""
     grid = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]) * radius * 0.75

@@ -17,6 +17,7 @@ from muster.report.canvas import (
     alarm_of,
     facts_of,
     is_spatial,
+    limits,
     named_rows,
     new_axes,
     note_entries,
@@ -26,10 +27,10 @@ from muster.report.canvas import (
     to_points,
     write,
 )
-from muster.report.floor import draw_map, map_corners
+from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
 from muster.report.fonts import Names
 from muster.report.ground import draw_prerequisites, draw_stems, drawn_prerequisites
-from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
 from muster.report.traces import Places, Trace, left_out, places, traces
 from muster.verification import Verdict
@@ -171,13 +172,8 @@ def _all_points(mission: Mission, image: Grid | None) -> list[Point]:
 
 
 def _limits(mission: Mission, dimensions: int, image: Grid | None) -> tuple[Places, Places]:
-    """Find lower and upper corner of the picture, metres: all places and a margin; no side is very short."""
-    points = places(_all_points(mission, image), dimensions)
-    low, high = points.min(axis=0), points.max(axis=0)
-    longest = float((high - low).max()) or 1.0
-    missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2
-    margin = 0.06 * longest
-    return low - missing - margin, high + missing + margin
+    """Find lower and upper corner of the picture, metres."""
+    return limits(places(_all_points(mission, image), dimensions), 0.06, on_ground=mission.map is not None)
 
 
 def _own_axes(mission: Mission, image: Grid | None) -> Axes:
@@ -364,15 +360,20 @@ def _group_name(scene: _Scene, group: list[int]) -> str:
 
 
 def _obstacles(ax: Any, scene: _Scene) -> Places:
-    """Collect what names should not cover: routes, marks of tasks, starts."""
+    """Collect what names should not cover: routes, marks of tasks, starts, the outlines of walls and zones."""
     radius = scene.detail.mark / 2
     tasks = to_points(ax, scene.places([task.position for task in scene.mission.tasks]))
     starts = to_points(ax, scene.places([robot.position for robot in scene.mission.robots]))
     lines = [line for trace in scene.traces for line in (trace.travel, trace.work, trace.end) if len(line)]
     at = {task.id: task.position for task in scene.mission.tasks}
     lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission)]
+    if scene.mission.map is not None:
+        lines += [scene.places(outline) for outline in map_outlines(scene.mission.map)]
+    walls = scene.places(() if scene.image is None else wall_places(scene.image))
     routes = [line_obstacles(to_points(ax, line)) for line in lines]
-    return np.vstack([mark_obstacles(tasks, radius), mark_obstacles(starts, radius), *routes])
+    return np.vstack(
+        [mark_obstacles(tasks, radius), mark_obstacles(starts, radius), *routes, dot_obstacles(to_points(ax, walls))]
+    )
 
 
 def _bounds(ax: Any) -> Places:

@@ -63,6 +63,10 @@ def plot_ways(ways: Sequence[Ways], title: str) -> Figure:
     figure = Figure(figsize=(_INCHES * len(ways), 3.4 * _INCHES), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     rows = figure.subplots(4, len(ways), squeeze=False, height_ratios=(1.6, 1, 0.8, 0.8))
+    for row in rows[1:]:
+        for ax in row[1:]:  # one scale, so that methods can be compared
+            ax.sharex(row[0])
+            ax.sharey(row[0])
     for column, one in enumerate(ways):
         _draw_ways(rows[0][column], one)
         _draw_distances(rows[1][column], one)
@@ -70,6 +74,7 @@ def plot_ways(ways: Sequence[Ways], title: str) -> Figure:
             _draw_velocities(rows[2 + axis][column], one, axis, name)
         for row in rows:
             quiet_frame(row[column])
+    rows[1][0].set_ylim(bottom=0.0)
     figure.suptitle(title, fontsize=11, fontweight="bold", color=TEXT)
     rows[0][0].legend(loc="best", fontsize=7, frameon=False)
     rows[1][0].legend(loc="best", fontsize=7, frameon=False)
@@ -80,8 +85,8 @@ def _draw_ways(ax: Any, ways: Ways) -> None:
     for index, robot in enumerate(ways.robots):
         color, (x, y) = robot_style(index).color, ways.positions[:, index].T
         ax.plot(x, y, color=color, linewidth=1.2, label=robot)
-        ax.plot(x[0], y[0], "o", color=color, markersize=5)
-        ax.plot(*ways.goals[index], "x", color=color, markersize=7)
+        ax.plot(x[0], y[0], "o", color=color, markersize=9, markerfacecolor="none", markeredgewidth=1.4)
+        ax.plot(*ways.goals[index], "x", color=color, markersize=6, markeredgewidth=1.4)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_title(ways.method, fontsize=10, color=TEXT)
     ax.set_xlabel("x (m); o start, x goal")
@@ -92,7 +97,6 @@ def _draw_distances(ax: Any, ways: Ways) -> None:
     ax.plot(_times(ways), ways.least_distances_m, color=TEXT, linewidth=1.2, label="least distance")
     ax.axhline(ways.inflated_m, color=QUIET_TEXT, linestyle=DASHED, linewidth=1.0, label="inflated radii")
     ax.axhline(ways.touch_m, color=ALARM, linewidth=1.0, label="contact")
-    ax.set_ylim(bottom=0.0)
     ax.set_xlabel("time (s)")
     ax.set_ylabel("least distance of centres (m)")
 

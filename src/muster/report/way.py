@@ -9,9 +9,10 @@ import numpy as np
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
-from muster.report.canvas import add_legend, add_title, is_spatial, new_axes, quiet_frame
+from muster.report.canvas import add_legend, add_title, is_spatial, limits, new_axes, quiet_frame
 from muster.report.floor import draw_map, map_corners
-from muster.report.styles import QUIET_TEXT, robot_style
+from muster.report.ground import draw_stems
+from muster.report.styles import robot_style
 from muster.report.traces import places
 
 if TYPE_CHECKING:
@@ -55,7 +56,9 @@ def plot_way(
     look = {"color": robot_style(0).color, "zorder": 3}
     if isinstance(found, Path):
         (line,) = ax.plot(*way.T, linewidth=1.8, solid_joinstyle="round", gid="path", **look)
-        ax.plot(*way[1:-1].T, linestyle="none", marker=".", markersize=4, gid="turns", **look)
+        if spatial:
+            draw_stems(ax, found.turns, float(low[2]))
+        ax.plot(*found.turns[1:-1].T, linestyle="none", marker=".", markersize=4, gid="turns", **look)
         entries = [(line, f"path, {found.length_m:.2f} m"), *entries]
     ends = {"linestyle": "none", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": look["color"]}
     for name, point, marker in (("start", start, "s"), ("goal", goal, "o")):
@@ -63,14 +66,10 @@ def plot_way(
         entries.append((mark, name))
     add_legend(ax, entries)
     add_title(ax, mission.name, [facts], "" if isinstance(found, Path) else f"no path: {found.reason}")
-    ax.title.set_color(QUIET_TEXT if isinstance(found, NoPath) else ax.title.get_color())
     return ax  # type: ignore[no-any-return]
 
 
 def _limits(mission: Mission, way: Any, image: Grid | None) -> tuple[Any, Any]:
     corners = [] if mission.map is None else map_corners(mission.map, image)
     points = np.vstack([way, places(corners, way.shape[1])])
-    low, high = points.min(axis=0), points.max(axis=0)
-    longest = float((high - low).max()) or 1.0
-    missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2 + 0.05 * longest
-    return low - missing, high + missing
+    return limits(points, 0.05, on_ground=mission.map is not None)

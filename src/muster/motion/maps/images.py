@@ -63,15 +63,30 @@ def read_shades(path: Path) -> Floats:
         raise _refusal(path, f"a broken {form} ({error})", f"{_EXPECTED} that can be read to its end") from None
 
 
+def image_kind(path: Path) -> str | None:
+    """`a PNG image`, `a JPEG image`, ... where a file is an image, be it of a kind that is not read; else None."""
+    try:
+        head = _head(path)
+    except (OSError, ValueError):
+        return None
+    known = {magic: f"a {form} image" for magic, form in _READ.items()} | _KNOWN
+    return next((kind for magic, kind in known.items() if head.startswith(magic)), None)
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(4096)
+
+
 def _form(path: Path) -> str:
     try:
-        with path.open("rb") as file:
-            head = file.read(4096)
+        head = _head(path)
     except (OSError, ValueError) as error:
         raise _refusal(path, getattr(error, "strerror", None) or str(error), _EXPECTED) from None
     form = next((form for magic, form in _READ.items() if head.startswith(magic)), None)
     if form is None:
-        raise _refusal(path, _described(head), _EXPECTED)
+        hint = "; for a map file of ROS the key is ros_yaml" if path.suffix in (".yaml", ".yml") else ""
+        raise _refusal(path, _described(head), _EXPECTED + hint)
     return form
 
 

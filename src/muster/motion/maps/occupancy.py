@@ -17,7 +17,7 @@ from muster.mission.errors import MissionError
 from muster.mission.kinds import Fault
 from muster.mission.model import Map
 from muster.motion.grid import Grid
-from muster.motion.maps.images import Floats, read_shades
+from muster.motion.maps.images import Floats, image_kind, read_shades
 from muster.motion.maps.ros_yaml import RosMap, read_ros_map
 
 _OCCUPIED, _FREE = 0.65, 0.196  # the thresholds that ROS writes where nobody says otherwise
@@ -37,6 +37,11 @@ def read_grid(chart: Map, folder: Path, faults: list[Fault]) -> Grid | None:
     """
     key = "image" if chart.ros_yaml is None else "ros_yaml"
     path = folder / str(getattr(chart, key))
+    if key == "ros_yaml" and (kind := image_kind(path)) is not None:
+        faults.append(
+            Fault(("map", key), f"{path}: {kind}", "a map file of ROS, in YAML; for an image the key is image")
+        )
+        return None
     try:
         ros_map = _as_ros_map(chart) if chart.ros_yaml is None else read_ros_map(path)
         image = path if chart.ros_yaml is None else path.parent / ros_map.image
