@@ -53,8 +53,9 @@ void bind_ways(nb::module_& m) {
             return new Ways(std::make_shared<PolygonSights>(points));
           },
           "rings"_a, "Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.")
-      .def("build", &Ways::build, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
-           "Find what every corner sees, once; without it each search looks for itself, where it comes by.")
+      .def("build", &Ways::build, "most"_a, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
+           "Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes "
+           "by.")
       .def_prop_ro("built", &Ways::built)
       .def_prop_ro("corners", &Ways::corners)
       .def_prop_ro("pieces", &Ways::pieces, "Straight pieces between corners, each counted from both ends.")
