@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -120,10 +121,8 @@ class Searcher {
 
   void expand(int cell) {
     const int column = x(cell), row = y(cell);
-    std::array<bool, 8> free;
-    for (std::size_t k = 0; k < kSteps.size(); ++k) {
-      free[k] = !map_.blocked(column + kSteps[k].dx, row + kSteps[k].dy);
-      if (!free[k] || (k >= 4 && !(free[k - 4] && free[(k - 3) % 4]))) continue;
+    for (unsigned steps = steps_from(column, row); steps != 0; steps &= steps - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(steps));
       const int next = cell + offset_[k], to_column = column + kSteps[k].dx, to_row = row + kSteps[k].dy;
       if (how_.any_angle) {
         expand_any_angle(cell, next, to_column, to_row, kSteps[k].length);
@@ -131,6 +130,16 @@ class Searcher {
         reach(next, to_column, to_row, found_[cell].g + kSteps[k].length, cell);
       }
     }
+  }
+
+  // A bit for each step that is free: a diagonal one needs the two beside it.
+  unsigned steps_from(int column, int row) const {
+    unsigned free = 0;
+    for (std::size_t k = 0; k < kSteps.size(); ++k) {
+      free |= static_cast<unsigned>(!map_.blocked(column + kSteps[k].dx, row + kSteps[k].dy)) << k;
+    }
+    const unsigned straight = free & 15U, turned = straight >> 1 | (straight & 1U) << 3;
+    return straight | (free & (straight & turned) << 4);
   }
 
   // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through it.
