@@ -7,18 +7,16 @@ import threading
 import numpy as np
 import pytest
 
-from muster import core
 from muster.motion.grid import Grid
-from muster.motion.paths.on_grid import core_grid
+from muster.motion.paths import WayFinder
+from muster.motion.spaces import GridSpace
 
 
-def test_a_graph_that_is_not_built_to_its_end_is_none():
+def test_while_a_graph_is_built():
     blocked = np.random.default_rng(1).random((1500, 1500)) < 0.02
-    ways = core.Ways.on_grid(core_grid(Grid(blocked, 1.0)))
+    finder = WayFinder(GridSpace(Grid(blocked, 1.0)))
     press = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     press.start()
     with pytest.raises(KeyboardInterrupt):
-        ways.build(2)
+        finder.lengths(np.array([[3.5, 3.5], [700.5, 700.5]]))
     press.join()
-    assert not ways.built
-    assert ways.pieces == 0

@@ -339,9 +339,9 @@ class Ways:
         Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.
         """
 
-    def build(self, threads: int) -> None:
+    def build(self, most: int, threads: int) -> None:
         """
-        Find what every corner sees, once; without it each search looks for itself, where it comes by.
+        Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes by.
         """
 
     @property

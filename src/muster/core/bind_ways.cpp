@@ -11,7 +11,6 @@
 #include "bindings.hpp"
 #include "grid_sights.hpp"
 #include "polygon_sights.hpp"
-#include "signals.hpp"
 #include "ways.hpp"
 
 namespace nb = nanobind;
@@ -34,7 +33,7 @@ Table lengths(const Ways& ways, const PointArray& exits, const PointArray& entri
   std::vector<double> values;
   {
     const nb::gil_scoped_release unlocked;
-    values = ways.lengths(from, to, mutual, first, last, threads, hear_signals);
+    values = ways.lengths(from, to, mutual, first, last, threads);
   }
   return table_of(std::move(values), to.size());
 }
@@ -54,10 +53,9 @@ void bind_ways(nb::module_& m) {
             return new Ways(std::make_shared<PolygonSights>(points));
           },
           "rings"_a, "Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.")
-      .def(
-          "build", [](Ways& w, int threads) { w.build(threads, hear_signals); }, "threads"_a,
-          nb::call_guard<nb::gil_scoped_release>(),
-          "Find what every corner sees, once; without it each search looks for itself, where it comes by.")
+      .def("build", &Ways::build, "most"_a, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
+           "Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes "
+           "by.")
       .def_prop_ro("built", &Ways::built)
       .def_prop_ro("corners", &Ways::corners)
       .def_prop_ro("pieces", &Ways::pieces, "Straight pieces between corners, each counted from both ends.")

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <new>
 #include <numbers>
 
+#include "buckets.hpp"
 #include "heap.hpp"
 
 namespace muster {
@@ -17,6 +20,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
+// Each diagonal after the two straight steps beside it.
 struct Step {
   int dx, dy;
   double length;
@@ -30,75 +34,130 @@ constexpr std::array<Step, 8> kSteps{{{1, 0, 1.0},
                                       {-1, -1, std::numbers::sqrt2},
                                       {1, -1, std::numbers::sqrt2}}};
 
-struct Open {
-  double key;  // f
-  int cell;
+// Theta* takes one cell at a time, the one with the least key.
+class OneByOne {
+ public:
+  explicit OneByOne(const GridMap&) {}
+  bool empty() const { return heap_.empty(); }
+  double least() const { return heap_.top().key; }
+  void push(double key, int cell) { heap_.push({key, cell}); }
+  void take(std::vector<int>& cells) { cells.assign(1, heap_.pop().cell); }
+
+ private:
+  struct Open {
+    double key;
+    int cell;
+  };
+  Heap<Open> heap_;
 };
 
+// The others take all cells of a bucket. It is narrower than what a step adds, if it adds anything: to the length 1, to
+// the octile estimate 2 - sqrt(2).
+class Bucketed : public Buckets {
+ public:
+  explicit Bucketed(const GridMap& map) : Buckets(0.5, map.rows() + map.columns()) {}
+};
+
+// Cells are numbered with the frame around the map, so that each has eight neighbours.
+template <class Queue>
 class Searcher {
  public:
   Searcher(const GridMap& map, Point start, Point goal, GridSearch how)
-      : map_(map), goal_(goal), how_(how), ends_(map.cells_at(GridMap::snap(goal))) {
-    const auto cells = static_cast<std::size_t>(map.rows()) * map.columns();
-    state_.assign(cells, kUnseen);
-    found_ = std::make_unique_for_overwrite<Found[]>(cells);
-    for (const int cell : map.cells_at(GridMap::snap(start)))
-      reach(cell, x(cell), y(cell), distance(start, centre(cell)), cell);
+      : map_(map), goal_(goal), how_(how), stride_(map.columns() + 2), open_(map) {
+    const auto cells = static_cast<std::size_t>(map.rows() + 2) * static_cast<std::size_t>(stride_);
+    // Zeros that cost nothing where the search does not come by.
+    found_.reset(static_cast<Found*>(std::calloc(cells, sizeof(Found))));
+    if (!found_) throw std::bad_alloc();
+    for (std::size_t k = 0; k < kSteps.size(); ++k) offset_[k] = kSteps[k].dy * stride_ + kSteps[k].dx;
+    for (const int cell : map.cells_at(GridMap::snap(goal))) {
+      const int column = cell % map.columns(), row = cell / map.columns();
+      ends_.push_back({numbered(cell), column, row, distance({column + 0.5, row + 0.5}, goal)});
+    }
+    for (const int cell : map.cells_at(GridMap::snap(start))) {
+      const int at = numbered(cell);
+      reach(at, x(at), y(at), distance(start, centre(at)), at);
+    }
   }
 
   std::vector<int> run() {
     int last = -1;
     double best = kFar;
-    while (!open_.empty() && open_.top().key < best) {
-      const int cell = open_.pop().cell;
-      if (state_[cell] == kClosed) continue;
-      state_[cell] = kClosed;
-      if (std::find(ends_.begin(), ends_.end(), cell) != ends_.end()) {
-        const double whole = found_[cell].g + distance(centre(cell), goal_);
-        if (whole < best) best = whole, last = cell;
+    std::vector<int> cells;
+    while (!open_.empty() && open_.least() < best) {
+      open_.take(cells);
+      for (const int cell : cells) {
+        if (found_[cell].state != kOpen) continue;
+        found_[cell].state = kClosed;
+        for (const End& end : ends_) {
+          if (end.cell == cell && found_[cell].g + end.rest < best) best = found_[cell].g + end.rest, last = cell;
+        }
+        expand(cell);
       }
-      expand(cell);
     }
     return last < 0 ? std::vector<int>{} : way_to(last);
   }
 
  private:
-  enum State : char { kUnseen, kOpen, kClosed };
+  enum State : std::int32_t { kUnseen, kOpen, kClosed };
   struct Found {
     double g;
-    int parent;
+    std::int32_t parent;
+    State state;
+  };
+  // A last cell, and from its centre to the goal.
+  struct End {
+    int cell, column, row;
+    double rest;
+  };
+  struct Free {
+    void operator()(void* memory) const { std::free(memory); }
   };
 
-  int x(int cell) const { return cell % map_.columns(); }
-  int y(int cell) const { return cell / map_.columns(); }
+  int numbered(int cell) const { return (cell / map_.columns() + 1) * stride_ + cell % map_.columns() + 1; }
+  int x(int cell) const { return cell % stride_ - 1; }
+  int y(int cell) const { return cell / stride_ - 1; }
   Point centre(int cell) const { return {x(cell) + 0.5, y(cell) + 0.5}; }
   Lattice lattice(int cell) const { return GridMap::centre(x(cell), y(cell)); }
 
   void expand(int cell) {
     const int column = x(cell), row = y(cell);
-    for (const Step& step : kSteps) {
-      const int to_column = column + step.dx, to_row = row + step.dy;
-      if (map_.blocked(to_column, to_row)) continue;
-      const bool diagonal = step.dx != 0 && step.dy != 0;
-      if (diagonal && (map_.blocked(to_column, row) || map_.blocked(column, to_row))) continue;
-      const int next = cell + step.dy * map_.columns() + step.dx;
-      if (state_[next] == kClosed) continue;
-      // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through
-      // it.
-      const int from = found_[cell].parent;
-      if (how_.any_angle && from != cell && map_.sees(lattice(from), lattice(next))) {
-        reach(next, to_column, to_row, found_[from].g + distance(centre(from), centre(next)), from);
+    for (unsigned steps = steps_from(column, row); steps != 0; steps &= steps - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(steps));
+      const int next = cell + offset_[k], to_column = column + kSteps[k].dx, to_row = row + kSteps[k].dy;
+      if (how_.any_angle) {
+        expand_any_angle(cell, next, to_column, to_row, kSteps[k].length);
       } else {
-        reach(next, to_column, to_row, found_[cell].g + step.length, cell);
+        reach(next, to_column, to_row, found_[cell].g + kSteps[k].length, cell);
       }
     }
   }
 
+  // A bit for each step that is free: a diagonal one needs the two beside it.
+  unsigned steps_from(int column, int row) const {
+    unsigned free = 0;
+    for (std::size_t k = 0; k < kSteps.size(); ++k) {
+      free |= static_cast<unsigned>(!map_.blocked(column + kSteps[k].dx, row + kSteps[k].dy)) << k;
+    }
+    const unsigned straight = free & 15U, turned = straight >> 1 | (straight & 1U) << 3;
+    return straight | (free & (straight & turned) << 4);
+  }
+
+  // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through it.
+  void expand_any_angle(int cell, int next, int column, int row, double length) {
+    if (found_[next].state == kClosed) return;
+    const int from = found_[cell].parent;
+    if (from != cell && map_.sees(lattice(from), lattice(next))) {
+      reach(next, column, row, found_[from].g + distance(centre(from), centre(next)), from);
+    } else {
+      reach(next, column, row, found_[cell].g + length, cell);
+    }
+  }
+
   void reach(int cell, int column, int row, double g, int from) {
-    if (state_[cell] != kUnseen && found_[cell].g <= g) return;
-    state_[cell] = kOpen;
-    found_[cell] = {g, from};
-    open_.push({g + estimate(column, row), cell});
+    Found& found = found_[cell];
+    if (found.state != kUnseen && found.g <= g) return;
+    found = {g, from, kOpen};
+    open_.push(g + estimate(column, row), cell);
   }
 
   // Theta*: the straight distance. Else the octile distance to the nearest of the last cells, and on to the goal.
@@ -106,10 +165,10 @@ class Searcher {
     if (!how_.heuristic) return 0.0;
     if (how_.any_angle) return distance({column + 0.5, row + 0.5}, goal_);
     double least = kFar;
-    for (const int end : ends_) {
-      const int dx = std::abs(column - x(end)), dy = std::abs(row - y(end));
+    for (const End& end : ends_) {
+      const int dx = std::abs(column - end.column), dy = std::abs(row - end.row);
       const double octile = std::max(dx, dy) + (std::numbers::sqrt2 - 1.0) * std::min(dx, dy);
-      least = std::min(least, octile + distance(centre(end), goal_));
+      least = std::min(least, octile + end.rest);
     }
     return least;
   }
@@ -118,22 +177,25 @@ class Searcher {
     std::vector<int> way{cell};
     while (found_[cell].parent != cell) way.push_back(cell = found_[cell].parent);
     std::reverse(way.begin(), way.end());
+    for (int& each : way) each = y(each) * map_.columns() + x(each);
     return way;
   }
 
   const GridMap& map_;
   Point goal_;
   GridSearch how_;
-  std::vector<int> ends_;
-  std::vector<char> state_;
-  std::unique_ptr<Found[]> found_;
-  Heap<Open> open_;
+  int stride_;
+  std::array<int, 8> offset_;
+  std::vector<End> ends_;
+  std::unique_ptr<Found[], Free> found_;
+  Queue open_;
 };
 
 }  // namespace
 
 std::vector<int> search_grid(const GridMap& map, Point start, Point goal, GridSearch how) {
-  return Searcher(map, start, goal, how).run();
+  if (how.any_angle) return Searcher<OneByOne>(map, start, goal, how).run();
+  return Searcher<Bucketed>(map, start, goal, how).run();
 }
 
 }  // namespace muster

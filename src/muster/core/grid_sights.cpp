@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace muster {
 
@@ -19,6 +20,7 @@ constexpr std::array<Line, 4> kLines{{{1, 0, kNorthEast | kSouthEast},
                                       {0, 1, kNorthEast | kNorthWest},
                                       {-1, 0, kNorthWest | kSouthWest},
                                       {0, -1, kSouthWest | kSouthEast}}};
+constexpr std::size_t kLinesOn = 2;  // the first, which go right and up
 
 bool north(int quarter) { return (quarter & (kNorthEast | kNorthWest)) != 0; }
 bool east(int quarter) { return (quarter & (kNorthEast | kSouthEast)) != 0; }
@@ -103,18 +105,19 @@ void GridSights::make_view(View& view, bool flips_x, bool flips_y) const {
 std::vector<int> GridSights::seen_from(Lattice p) const {
   std::vector<int> found;
   for (const View& each : views_) scan(each, p, found);
-  look_along_lines(p, found);
+  look_along_lines(p, kLines.size(), found);
   return found;
 }
 
-// Taut directions lie in the two quadrants beside the block, and along the lines.
-std::vector<int> GridSights::neighbours(int corner) const {
+// Taut directions lie in the two quadrants beside the block, and along the lines. A pair is told once from its lower
+// or left corner.
+std::vector<int> GridSights::neighbours(int corner, Pairs pairs) const {
   std::vector<int> found;
   const Lattice at = corners_[corner].at;
   const bool block_rises = rising(map_.around(static_cast<int>(at.x / kUnit), static_cast<int>(at.y / kUnit)));
   scan(view(block_rises, false), at, found);
-  scan(view(!block_rises, true), at, found);
-  look_along_lines(at, found);
+  if (pairs == Pairs::kTwice) scan(view(!block_rises, true), at, found);
+  look_along_lines(at, pairs == Pairs::kTwice ? kLines.size() : kLinesOn, found);
   return found;
 }
 
@@ -173,8 +176,8 @@ void GridSights::collect(const View& view, Lattice origin, const Cone& cone, std
 }
 
 // Along a line of the grid the way is free where a cell on either side is; the first corner on it is seen.
-void GridSights::look_along_lines(Lattice origin, std::vector<int>& found) const {
-  for (const Line& line : kLines) {
+void GridSights::look_along_lines(Lattice origin, std::size_t lines, std::vector<int>& found) const {
+  for (const Line& line : std::span(kLines).first(lines)) {
     if ((line.dx != 0 ? origin.y : origin.x) % kUnit != 0) continue;
     auto x = static_cast<int>(line.dx < 0 ? ceil_of(origin.x, kUnit) : origin.x / kUnit);
     auto y = static_cast<int>(line.dy < 0 ? ceil_of(origin.y, kUnit) : origin.y / kUnit);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -38,7 +39,8 @@ class GridSights : public Sights {
   bool free(Lattice p) const override { return map_.free(p); }
   bool sees(Lattice a, Lattice b) const override { return map_.sees(a, b); }
   std::vector<int> seen_from(Lattice p) const override;
-  std::vector<int> neighbours(int corner) const override;
+  std::vector<int> neighbours(int corner, Pairs pairs) const override;
+  double extent() const override { return std::hypot(map_.rows(), map_.columns()); }
 
  private:
   // The grid turned over so that a quadrant becomes the one up and right.
@@ -58,7 +60,7 @@ class GridSights : public Sights {
   void scan(const View& view, Lattice origin, std::vector<int>& found) const;
   void clip(const View& view, Lattice origin, const Cone& cone, std::vector<Cone>& open) const;
   void collect(const View& view, Lattice origin, const Cone& cone, std::vector<int>& found) const;
-  void look_along_lines(Lattice origin, std::vector<int>& found) const;
+  void look_along_lines(Lattice origin, std::size_t lines, std::vector<int>& found) const;
 
   GridMap map_;
   std::vector<int> numbers_;  // of grid points; -1: no corner

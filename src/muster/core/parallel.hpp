@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace muster {
@@ -57,6 +58,12 @@ void for_each_parallel(int count, int threads, const Pause& pause, Make make) {
     work([pauses = Pauses(pause)]() mutable { pauses.next(); });
   }
   if (trouble) std::rethrow_exception(trouble);
+}
+
+// The same without a pause, for work that is over soon.
+template <class Make>
+void for_each_parallel(int count, int threads, Make make) {
+  for_each_parallel(count, threads, [] {}, std::move(make));
 }
 
 // Calls work(begin, end) for parts of 0 to count - 1 that together are all of it, where a piece is small.

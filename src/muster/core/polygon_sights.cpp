@@ -53,6 +53,8 @@ Lattice PolygonSights::snap(Point p) const {
   return {near((p.x - origin_.x) * scale_), near((p.y - origin_.y) * scale_)};
 }
 
+double PolygonSights::extent() const { return std::sqrt(2.0) * static_cast<double>(kSize) / scale_; }
+
 void PolygonSights::add_ring(const std::vector<Point>& ring) {
   std::vector<Point> places;
   for (const Point p : ring) {
@@ -153,10 +155,10 @@ std::vector<int> PolygonSights::seen_from(Lattice p) const {
   return found;
 }
 
-std::vector<int> PolygonSights::neighbours(int corner) const {
+std::vector<int> PolygonSights::neighbours(int corner, Pairs pairs) const {
   const Corner& here = corners_[corner];
   std::vector<int> found;
-  for (std::size_t c = 0; c < corners_.size(); ++c) {
+  for (std::size_t c = pairs == Pairs::kOnce ? static_cast<std::size_t>(corner) + 1 : 0; c < corners_.size(); ++c) {
     const Lattice towards = corners_[c].at - here.at;
     if (towards == Lattice{} || !here.taut(towards) || !corners_[c].taut(towards)) continue;
     if (sees(here.at, corners_[c].at)) found.push_back(static_cast<int>(c));

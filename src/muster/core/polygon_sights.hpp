@@ -18,7 +18,8 @@ class PolygonSights : public Sights {
   bool free(Lattice p) const override;
   bool sees(Lattice a, Lattice b) const override;
   std::vector<int> seen_from(Lattice p) const override;
-  std::vector<int> neighbours(int corner) const override;
+  std::vector<int> neighbours(int corner, Pairs pairs) const override;
+  double extent() const override;
 
  private:
   // A side from `at` to `next`; `before` is the point before it on the ring.

@@ -25,6 +25,9 @@ struct Corner {
   bool on_left(Lattice direction) const { return cross(direction, one_wall) + cross(direction, other_wall) > 0; }
 };
 
+// Whether a pair of corners is told from each of its two corners, or from one alone.
+enum class Pairs { kTwice, kOnce };
+
 // A plane with obstacles. The corners have numbers from 0.
 class Sights {
  public:
@@ -38,7 +41,9 @@ class Sights {
   // The corners other than `p` itself that see it and are taut towards it.
   virtual std::vector<int> seen_from(Lattice p) const = 0;
   // The corners that a corner sees, taut at both ends. One corner may hide another that lies straight behind it.
-  virtual std::vector<int> neighbours(int corner) const = 0;
+  virtual std::vector<int> neighbours(int corner, Pairs pairs) const = 0;
+  // No two free points are further apart, in the places' unit.
+  virtual double extent() const = 0;
 
  protected:
   std::vector<Corner> corners_;

@@ -1,10 +1,12 @@
 #include "ways.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
-#include "heap.hpp"
+#include "buckets.hpp"
+#include "parallel.hpp"
 
 namespace muster {
 
@@ -12,10 +14,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-struct Open {
-  double key;  // length, and in A* the estimate of the rest
-  int corner;
-};
+constexpr double kBuckets = 1024.0;  // across the extent
 
 bool turns_away(bool on_left, Lattice coming, Lattice leaving) {
   const std::int64_t to_left = cross(coming, leaving);
@@ -24,17 +23,42 @@ bool turns_away(bool on_left, Lattice coming, Lattice leaving) {
 
 }  // namespace
 
+// The places that a search looks for, and the box around them: the distance to it is the estimate of A*.
+class Ways::Aims {
+ public:
+  explicit Aims(std::vector<const Seat*> seats) : seats_(std::move(seats)) {
+    for (const Seat* seat : seats_) {
+      low_ = {std::min(low_.x, seat->place.x), std::min(low_.y, seat->place.y)};
+      high_ = {std::max(high_.x, seat->place.x), std::max(high_.y, seat->place.y)};
+    }
+  }
+
+  const std::vector<const Seat*>& seats() const { return seats_; }
+  double estimate(Point p) const {
+    const double x = std::max({low_.x - p.x, p.x - high_.x, 0.0}), y = std::max({low_.y - p.y, p.y - high_.y, 0.0});
+    return std::sqrt(x * x + y * y);
+  }
+
+ private:
+  std::vector<const Seat*> seats_;
+  Point low_{kFar, kFar};
+  Point high_{-kFar, -kFar};
+};
+
 // The shortest ways from one place to corners.
 struct Ways::Tree {
   struct Node {
     double length = kFar;
     int parent = -1;       // -1: the place itself
     bool on_left = false;  // the obstacle, as one comes
-    bool closed = false;   // expanded
+    bool open = false;     // to be expanded
   };
   std::vector<Node> nodes;
-  Heap<Open> open;
+  Buckets open;
+  std::vector<int> next;  // of one bucket
 
+  // A piece makes keys rise by twice the extent at most: its length, and as much in the estimate.
+  explicit Tree(double extent) : open(extent / kBuckets, 2.0 * extent) {}
   void clear(std::size_t corners) {
     nodes.assign(corners, Node{});
     open.clear();
@@ -42,95 +66,152 @@ struct Ways::Tree {
   template <class Estimate>
   void reach(int corner, Node by, Estimate estimate) {
     Node& node = nodes[corner];
-    if (by.length >= node.length || node.closed) return;
+    if (by.length >= node.length) return;
     node = by;
-    open.push({by.length + estimate(corner), corner});
+    node.open = true;
+    open.push(by.length + estimate(), corner);
   }
 };
 
 Ways::Ways(std::shared_ptr<const Sights> sights) : sights_(std::move(sights)) {
   for (const Corner& corner : sights_->corners()) {
     at_.push_back({static_cast<std::int32_t>(corner.at.x), static_cast<std::int32_t>(corner.at.y)});
+    place_.push_back(corner.place);
   }
 }
 
-void Ways::build(int threads, const Pause& pause) {
-  const auto& corners = sights_->corners();
-  const auto count = static_cast<int>(corners.size());
-  std::vector<std::vector<int>> seen(corners.size());
-  std::vector<std::size_t> on_right(corners.size());
-  for_each_parallel(count, threads, pause, [&] {
-    return [&](int c) {
-      const Corner& corner = corners[c];
-      auto others = sights_->neighbours(c);
-      const auto direction = [&](int other) { return corners[other].at - corner.at; };
-      const auto middle =
-          std::partition(others.begin(), others.end(), [&](int o) { return !corner.on_left(direction(o)); });
-      std::sort(others.begin(), middle, [&](int a, int b) { return cross(direction(a), direction(b)) > 0; });
-      std::sort(middle, others.end(), [&](int a, int b) { return cross(direction(a), direction(b)) < 0; });
-      on_right[c] = static_cast<std::size_t>(middle - others.begin());
-      others.shrink_to_fit();
-      seen[c] = std::move(others);
-    };
+void Ways::build(int most, int threads) {
+  if (built()) return;
+  const std::size_t begin = seen_.size(), end = std::min(corners(), begin + static_cast<std::size_t>(most));
+  seen_.resize(end);
+  for_each_parallel(static_cast<int>(end - begin), threads, [&] {
+    return [&](int k) { seen_[begin + k] = sights_->neighbours(static_cast<int>(begin) + k, Pairs::kOnce); };
   });
-  first_.assign(1, 0);
-  pieces_.clear();
-  for (std::size_t c = 0; c < seen.size(); ++c) {
-    first_.push_back(pieces_.size() + on_right[c]);
-    for (const int o : seen[c]) {
-      const bool on_left = corners[o].on_left(corners[o].at - corners[c].at);
-      pieces_.push_back({distance(corners[c].place, corners[o].place), static_cast<std::uint32_t>(o), on_left});
+  if (end < corners()) return;
+  join();
+  for_each_parallel(static_cast<int>(corners()), threads, [&] { return [&](int c) { sort_by_turn(c); }; });
+  find_parts();
+}
+
+// Lays the pieces out from both their ends.
+void Ways::join() {
+  const auto& corners = sights_->corners();
+  first_.assign(2 * corners.size() + 1, 0);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    first_[2 * c + 2] += seen_[c].size();
+    for (const int o : seen_[c]) ++first_[2 * static_cast<std::size_t>(o) + 2];
+  }
+  for (std::size_t c = 0; c < corners.size(); ++c) first_[2 * c + 2] += first_[2 * c];
+  pieces_.resize(first_.back());
+  std::vector<std::size_t> next(corners.size());
+  for (std::size_t c = 0; c < corners.size(); ++c) next[c] = first_[2 * c];
+  const auto add = [&](int from, int to) {
+    const bool on_left = corners[to].on_left(corners[to].at - corners[from].at);
+    pieces_[next[from]++] = {static_cast<std::uint32_t>(to), on_left};
+  };
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    for (const int o : seen_[c]) {
+      add(static_cast<int>(c), o);
+      add(o, static_cast<int>(c));
     }
-    first_.push_back(pieces_.size());
-    seen[c] = {};
+  }
+  seen_ = {};
+}
+
+void Ways::sort_by_turn(int c) {
+  const Corner& corner = sights_->corners()[c];
+  const auto direction = [&](Piece piece) { return at_[piece.other].wide() - corner.at; };
+  const auto piece = [&](std::size_t k) { return pieces_.begin() + static_cast<std::ptrdiff_t>(k); };
+  const auto begin = piece(first_[2 * c]), end = piece(first_[2 * c + 2]);
+  const auto middle = std::partition(begin, end, [&](Piece p) { return !corner.on_left(direction(p)); });
+  std::sort(begin, middle, [&](Piece a, Piece b) { return cross(direction(a), direction(b)) > 0; });
+  std::sort(middle, end, [&](Piece a, Piece b) { return cross(direction(a), direction(b)) < 0; });
+  first_[2 * c + 1] = static_cast<std::size_t>(middle - pieces_.begin());
+}
+
+void Ways::find_parts() {
+  part_.assign(corners(), -1);
+  std::vector<int> open;
+  const auto visit = [&](int corner, int part) {
+    if (part_[corner] >= 0) return;
+    part_[corner] = part;
+    open.push_back(corner);
+  };
+  for (int c = 0; c < static_cast<int>(corners()); ++c) {
+    visit(c, c);
+    while (!open.empty()) {
+      const std::size_t here = 2 * static_cast<std::size_t>(open.back());
+      open.pop_back();
+      for (std::size_t k = first_[here]; k < first_[here + 2]; ++k) visit(static_cast<int>(pieces_[k].other), c);
+    }
   }
 }
 
 Ways::Seat Ways::seat(Point p) const {
   const Lattice at = sights_->snap(p);
-  if (!sights_->free(at)) return {at, p, false, {}};
-  return {at, p, true, sights_->seen_from(at)};
+  Seat seat{at, p, sights_->free(at), {}, {}};
+  if (!seat.free) return seat;
+  seat.corners = sights_->seen_from(at);
+  if (!built()) return seat;
+  for (const int corner : seat.corners) seat.parts.push_back(part_[corner]);
+  std::sort(seat.parts.begin(), seat.parts.end());
+  seat.parts.erase(std::unique(seat.parts.begin(), seat.parts.end()), seat.parts.end());
+  return seat;
 }
 
-std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first, int threads,
-                                    const Pause& pause) const {
+std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first, int threads) const {
   std::vector<Seat> all(places.size());
-  for_each_parallel(static_cast<int>(places.size()) - first, threads, pause,
+  for_each_parallel(static_cast<int>(places.size()) - first, threads,
                     [&] { return [&](int k) { all[first + k] = seat(places[first + k]); }; });
   return all;
 }
 
-// Dijkstra over all corners; with a place to go to A*, which ends there.
-void Ways::grow(const Seat& from, const Seat* to, Tree& tree) const {
+// Whether there may be a way that turns.
+bool Ways::may_reach(const Seat& from, const Seat& to) const {
+  if (!from.free || !to.free) return false;
+  return !built() ||
+         std::find_first_of(from.parts.begin(), from.parts.end(), to.parts.begin(), to.parts.end()) != from.parts.end();
+}
+
+// A*, as far as some way may still become shorter.
+void Ways::grow(const Seat& from, const Aims& aims, Tree& tree) const {
+  constexpr double kPatience = 1.05;
+  if (aims.seats().empty()) return;
   const auto& corners = sights_->corners();
   tree.clear(corners.size());
   for (const int c : from.corners) {
     const bool on_left = corners[c].on_left(corners[c].at - from.at);
-    tree.reach(c, {distance(from.place, corners[c].place), -1, on_left}, [&](int) { return estimate(c, to); });
+    tree.reach(c, {distance(from.place, corners[c].place), -1, on_left},
+               [&] { return aims.estimate(corners[c].place); });
   }
-  std::vector<int> ends = to ? to->corners : std::vector<int>{};
-  std::sort(ends.begin(), ends.end());
-  double best = kFar;
-  while (!tree.open.empty() && tree.open.top().key < best) {
-    const Open top = tree.open.pop();
-    if (tree.nodes[top.corner].closed) continue;
-    tree.nodes[top.corner].closed = true;
-    if (std::binary_search(ends.begin(), ends.end(), top.corner)) best = top.key;
+  double check = 0.0;
+  while (!tree.open.empty()) {
+    if (const double least = tree.open.least(); least >= check) {
+      double longest = 0.0;
+      for (const Seat* to : aims.seats()) longest = std::max(longest, last_piece(*to, tree).length);
+      if (least >= longest) return;
+      check = std::min(longest, kPatience * least);
+    }
+    tree.open.take(tree.next);
+    std::erase_if(tree.next, [&](int corner) { return !std::exchange(tree.nodes[corner].open, false); });
     if (built()) {
-      expand(top.corner, from, to, tree);
+      for (const int corner : tree.next) fetch(corner, tree);
+      for (const int corner : tree.next) expand(corner, from, aims, tree);
     } else {
-      look_around(top.corner, from, to, tree);
+      for (const int corner : tree.next) look_around(corner, from, aims, tree);
     }
   }
 }
 
-double Ways::estimate(int corner, const Seat* to) const {
-  return to ? distance(sights_->corners()[corner].place, to->place) : 0.0;
+// Has the memory bring in time what a corner sees: the search waits for little else.
+void Ways::fetch(int corner, const Tree& tree) const {
+  __builtin_prefetch(pieces_.data() + first_[2 * static_cast<std::size_t>(corner) + tree.nodes[corner].on_left]);
 }
 
 // One who comes to a corner leaves it on the same side of the obstacle, and turns towards it.
-void Ways::expand(int c, const Seat& from, const Seat* to, Tree& tree) const {
+void Ways::expand(int c, const Seat& from, const Aims& aims, Tree& tree) const {
   const Tree::Node node = tree.nodes[c];
+  const Point place = place_[c];
   const Lattice here = at_[c].wide();
   const Lattice coming = here - (node.parent < 0 ? from.at : at_[node.parent].wide());
   const std::size_t side = 2 * static_cast<std::size_t>(c) + node.on_left;
@@ -138,26 +219,26 @@ void Ways::expand(int c, const Seat& from, const Seat* to, Tree& tree) const {
     const Piece piece = pieces_[k];
     const auto other = static_cast<int>(piece.other);
     if (turns_away(node.on_left, coming, at_[other].wide() - here)) break;
-    tree.reach(other, {node.length + piece.length, c, piece.on_left != 0}, [&](int) { return estimate(other, to); });
+    const double length = node.length + distance(place, place_[other]);
+    tree.reach(other, {length, c, piece.on_left != 0, true}, [&] { return aims.estimate(place_[other]); });
   }
 }
 
 // The same where the graph is not built.
-void Ways::look_around(int c, const Seat& from, const Seat* to, Tree& tree) const {
+void Ways::look_around(int c, const Seat& from, const Aims& aims, Tree& tree) const {
   const Tree::Node node = tree.nodes[c];
   const auto& corners = sights_->corners();
   const Lattice coming = corners[c].at - (node.parent < 0 ? from.at : corners[node.parent].at);
-  for (const int o : sights_->neighbours(c)) {
+  for (const int o : sights_->neighbours(c, Pairs::kTwice)) {
     const Lattice leaving = corners[o].at - corners[c].at;
     if (corners[c].on_left(leaving) != node.on_left || turns_away(node.on_left, coming, leaving)) continue;
     const double length = node.length + distance(corners[c].place, corners[o].place);
-    tree.reach(o, {length, c, corners[o].on_left(leaving)}, [&](int) { return estimate(o, to); });
+    tree.reach(o, {length, c, corners[o].on_left(leaving)}, [&] { return aims.estimate(corners[o].place); });
   }
 }
 
-Ways::Last Ways::last_piece(const Seat& from, const Seat& to, const Tree& tree) const {
-  if (!from.free || !to.free) return {kFar, -1};
-  Last best{sights_->sees(from.at, to.at) ? distance(from.place, to.place) : kFar, -1};
+Ways::Last Ways::last_piece(const Seat& to, const Tree& tree) const {
+  Last best{kFar, -1};
   for (const int corner : to.corners) {
     const double whole = tree.nodes[corner].length + distance(sights_->corners()[corner].place, to.place);
     if (whole < best.length) best = {whole, corner};
@@ -167,12 +248,12 @@ Ways::Last Ways::last_piece(const Seat& from, const Seat& to, const Tree& tree) 
 
 std::vector<Point> Ways::way(Point a, Point b) const {
   const Seat from = seat(a), to = seat(b);
-  Tree tree;
-  if (from.free && to.free) {
-    if (sights_->sees(from.at, to.at)) return {a, b};
-    grow(from, &to, tree);
-  }
-  const Last last = last_piece(from, to, tree);
+  if (!from.free || !to.free) return {};
+  if (sights_->sees(from.at, to.at)) return {a, b};
+  if (!may_reach(from, to)) return {};
+  Tree tree(sights_->extent());
+  grow(from, Aims({&to}), tree);
+  const Last last = last_piece(to, tree);
   if (last.length == kFar) return {};
   std::vector<Point> way{b};
   for (int corner = last.corner; corner >= 0; corner = tree.nodes[corner].parent) {
@@ -184,19 +265,28 @@ std::vector<Point> Ways::way(Point a, Point b) const {
 }
 
 std::vector<double> Ways::lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
-                                  int first, int last, int threads, const Pause& pause) const {
-  const std::vector<Seat> ends = seats(entries, mutual ? first : 0, threads, pause);
+                                  int first, int last, int threads) const {
+  const std::vector<Seat> ends = seats(entries, mutual ? first : 0, threads);
   const std::size_t columns = entries.size();
   std::vector<double> table(static_cast<std::size_t>(last - first) * columns, kFar);
-  for_each_parallel(last - first, threads, pause, [&] {
-    return [&, tree = Tree{}](int k) mutable {
+  for_each_parallel(last - first, threads, [&] {
+    return [&, tree = Tree(sights_->extent())](int k) mutable {
       const int i = first + k;
       const Seat from = mutual ? ends[i] : seat(exits[i]);
       if (!from.free) return;
-      grow(from, nullptr, tree);
       double* row = &table[static_cast<std::size_t>(k) * columns];
       if (mutual) row[i] = 0.0;
-      for (std::size_t j = mutual ? i + 1 : 0; j < columns; ++j) row[j] = last_piece(from, ends[j], tree).length;
+      std::vector<const Seat*> hidden;
+      for (std::size_t j = mutual ? i + 1 : 0; j < columns; ++j) {
+        const Seat& to = ends[j];
+        if (to.free && sights_->sees(from.at, to.at)) {
+          row[j] = distance(from.place, to.place);
+        } else if (may_reach(from, to)) {
+          hidden.push_back(&to);
+        }
+      }
+      grow(from, Aims(hidden), tree);
+      for (const Seat* to : hidden) row[to - ends.data()] = last_piece(*to, tree).length;
     };
   });
   return table;

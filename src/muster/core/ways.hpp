@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "parallel.hpp"
 #include "sights.hpp"
 
 namespace muster {
@@ -16,8 +15,9 @@ class Ways {
  public:
   explicit Ways(std::shared_ptr<const Sights> sights);
 
-  // Finds what every corner sees, once. Without it each search looks for itself, where it comes by.
-  void build(int threads, const Pause& pause);
+  // Finds what corners see, once, for the next `most` of them. Until it is built, by calls enough, each search looks
+  // for itself where it comes by.
+  void build(int most, int threads);
   bool built() const { return !first_.empty(); }
   std::size_t corners() const { return sights_->corners().size(); }
   std::size_t pieces() const { return pieces_.size(); }
@@ -29,16 +29,18 @@ class Ways {
   // Row after row from `first` to before `last`: the lengths from exits[i] to all entries; inf where there is no way.
   // If `mutual`, entries are the exits, and row i holds its lengths to the entries after i alone, and 0 to itself.
   std::vector<double> lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
-                              int first, int last, int threads, const Pause& pause) const;
+                              int first, int last, int threads) const;
 
  private:
-  // A place and the corners that see it.
+  // A place and the corners that see it; once the graph is built, also the parts of it that these lie in.
   struct Seat {
     Lattice at;
     Point place;
     bool free;
     std::vector<int> corners;
+    std::vector<int> parts;
   };
+  class Aims;
   struct Tree;
   struct Last {
     double length;
@@ -46,29 +48,35 @@ class Ways {
   };
 
   Seat seat(Point p) const;
-  std::vector<Seat> seats(const std::vector<Point>& places, int first, int threads, const Pause& pause) const;
-  void grow(const Seat& from, const Seat* to, Tree& tree) const;
-  void expand(int corner, const Seat& from, const Seat* to, Tree& tree) const;
-  void look_around(int corner, const Seat& from, const Seat* to, Tree& tree) const;
-  double estimate(int corner, const Seat* to) const;
-  Last last_piece(const Seat& from, const Seat& to, const Tree& tree) const;
+  std::vector<Seat> seats(const std::vector<Point>& places, int first, int threads) const;
+  void join();
+  void sort_by_turn(int corner);
+  void find_parts();
+  bool may_reach(const Seat& from, const Seat& to) const;
+  void grow(const Seat& from, const Aims& aims, Tree& tree) const;
+  void fetch(int corner, const Tree& tree) const;
+  void expand(int corner, const Seat& from, const Aims& aims, Tree& tree) const;
+  void look_around(int corner, const Seat& from, const Aims& aims, Tree& tree) const;
+  Last last_piece(const Seat& to, const Tree& tree) const;
 
   std::shared_ptr<const Sights> sights_;
   // A straight piece to another corner, and whether the obstacle there is to the left of one who comes along it.
   struct Piece {
-    double length;
     std::uint32_t other : 31, on_left : 1;
   };
   // What corner c sees with the obstacle on the right is pieces_[first_[2c]] to before first_[2c + 1], then on the
   // left; the furthest towards the obstacle first.
   std::vector<std::size_t> first_;
   std::vector<Piece> pieces_;
+  std::vector<int> part_;               // of each corner: corners in the same part are joined by pieces
+  std::vector<std::vector<int>> seen_;  // while it is built: pieces from one of their ends
   // The corners' points once more, in little memory: the search goes to and fro among them.
   struct Small {
     std::int32_t x, y;
     Lattice wide() const { return {x, y}; }
   };
   std::vector<Small> at_;
+  std::vector<Point> place_;
 };
 
 }  // namespace muster

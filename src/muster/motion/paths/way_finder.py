@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
-from muster.motion.grid import Grid
+from muster.motion.grid import Grid, Indices
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import blocked, disconnected, point_of, points_of
@@ -19,6 +19,7 @@ from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
 Floats = npt.NDArray[np.float64]
 _ROWS_AT_A_TIME = 32  # so that Ctrl-C is heard
+_CORNERS_AT_A_TIME = 1000  # for the same
 
 
 class _Ways(Protocol):
@@ -148,14 +149,30 @@ class _OnGrid:
 
 
 def _plane_lengths(ways: core.Ways, exits: Floats, entries: Floats, threads: int) -> Floats:
-    if not ways.built:
-        ways.build(threads)
-    mutual = np.array_equal(exits, entries)
+    while not ways.built:
+        ways.build(_CORNERS_AT_A_TIME * threads, threads)
+    if not np.array_equal(exits, entries):
+        return _rows(ways, exits, entries, threads, mutual=False)
+    order = _outermost_first(exits)
+    table = np.empty((len(exits), len(exits)))
+    table[np.ix_(order, order)] = _rows(ways, exits[order], exits[order], threads, mutual=True)
+    return table
+
+
+def _rows(ways: core.Ways, exits: Floats, entries: Floats, threads: int, *, mutual: bool) -> Floats:
     rows = [
         ways.lengths(exits, entries, mutual=mutual, first=first, last=last, threads=threads)
         for first, last in _blocks(len(exits), threads)
     ]
     return _joined(rows, (len(exits), len(entries)), mutual=mutual)
+
+
+def _outermost_first(places: Floats) -> Indices:
+    """The order in which the box around the places that are left shrinks soon: each looks for those after it alone."""
+    if not len(places):
+        return np.empty(0, dtype=np.intp)
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    return np.argsort(-np.abs(places - middle).max(axis=1), kind="stable")
 
 
 class _InAir:
