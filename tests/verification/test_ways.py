@@ -236,3 +236,10 @@ def test_endless_prisms_are_as_polygons(seed):
     plane = metres(PolygonSpace(shapely.difference(ARENA, shapely.union_all(zones))), start, end)
     found = in_air([Prism(zone, -math.inf, math.inf) for zone in zones], (*start, 1.0), (*end, 6.0))
     assert found == pytest.approx(math.hypot(plane, 5), rel=5e-3)
+
+
+def test_each_part_of_a_region_has_its_corners():
+    wall = shapely.box(19, -1, 21, 41)
+    space = PolygonSpace(ARENA.difference(shapely.union_all([wall, shapely.box(5, 5, 10, 30)])))
+    assert metres(space, (4, 20), (11, 20)) == pytest.approx(5 + 2 * math.hypot(1, 10), rel=1e-8)
+    assert metres(space, (4, 20), (30, 20)) is None

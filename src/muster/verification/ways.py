@@ -94,7 +94,7 @@ class PlaneWays:
     """
 
     def __init__(self, space: GridSpace | PolygonSpace, places: Iterable[Point]) -> None:
-        sight: _Sight = Cells(space.grid) if isinstance(space, GridSpace) else Regions(space.region)
+        sight: _Sight = Cells(space) if isinstance(space, GridSpace) else Regions(space)
         feet = list(dict.fromkeys(place[:2] for place in places))
         self._number = {foot: k for k, foot in enumerate(feet)}
         self._sight = sight
