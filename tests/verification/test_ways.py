@@ -243,3 +243,11 @@ def test_each_part_of_a_region_has_its_corners():
     space = PolygonSpace(ARENA.difference(shapely.union_all([wall, shapely.box(5, 5, 10, 30)])))
     assert metres(space, (4, 20), (11, 20)) == pytest.approx(5 + 2 * math.hypot(1, 10), rel=1e-8)
     assert metres(space, (4, 20), (30, 20)) is None
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_no_way_leads_through_another_place(seed):
+    blocked = random_cells(np.random.default_rng(seed), (6, 6), 0.4)
+    space, start, end = GridSpace(Grid(blocked, 1.0)), (0.5, 0.5), (5.5, 5.5)
+    pinches_too = [(float(x), float(y)) for x in range(7) for y in range(7)]
+    assert PlaneWays(space, [start, end, *pinches_too]).metres(start, end) == metres(space, start, end)

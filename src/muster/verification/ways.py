@@ -135,4 +135,4 @@ class PlaneWays:
         seen = sight.from_places(self._places[standing])
         to_corners = np.stack([standing[seen[:, 0]], count + seen[:, 1]], axis=1)
         nodes = np.concatenate([self._places, sight.corners])
-        return Roads(nodes, np.concatenate([to_corners, count + sight.between_corners()]))
+        return Roads(nodes, np.concatenate([to_corners, count + sight.between_corners()]), ends=count)
