@@ -121,6 +121,27 @@ def test_lengths_are_those_of_the_judge_between_places_on_borders(seed, offset):
     assert_as_judged(mission, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("zones", "radius"),
+    [
+        ((box(0, 8, 8, 1), box(8, 8, 12, 1)), 0.0),  # side by side
+        ((box(0, 8, 8, 1), box(8, 7, 12, 1)), 0.0),  # corner to corner
+        ((box(0, 8, 7.5, 1), box(8, 8, 12, 1)), 0.25),  # as far apart as the drone is wide
+        ((box(1e-9, 8, 20, 1),), 0.0),  # almost at the boundary
+        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 8, 20, 1, floor_m=4)), 0.0),  # one upon the other
+        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 9, 20, 1, floor_m=4)), 0.0),  # edge to edge
+    ],
+)
+def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
+    arena = Map(boundary=((0, 0), (20, 0), (20, 16), (0, 16)), zones=zones)
+    drone = Robot(id="drone", position=(8.0, 5.0, 1.0), kind="air", radius_m=radius)
+    task = Task(id="t", position=(8.0, 12.0, 1.0))
+    mission = Mission(name="slits", robots=(drone,), tasks=(task,), map=arena)
+    assert_as_judged(mission, rel=1e-2)
+    problem = Problem.compile(mission)
+    assert np.isinf(problem.legs(0, [problem.start(0)], [0])).all()
+
+
 def test_in_two_rooms_lengths_are_those_of_the_judge():
     walls = (box(19, -1, 2, 42), box(5, 5, 5, 20), box(30, 10, 5, 25))
     arena = Map(boundary=((0, 0), (40, 0), (40, 40), (0, 40)), zones=walls)

@@ -42,9 +42,7 @@ class Cells:
         """Points (n, 2) of the map frame in cells, and whether each is free."""
         places = self._grid.to_grid(points)
         slack = slack_m(self._space, points) / self.unit_m
-        places = _on_lattice(places, _ROUNDED)
-        stands = self._stands(places)
-        places[~stands] = _on_lattice(places[~stands], slack)
+        places = _on_lattice(places, max(_ROUNDED, slack))
         return places, self._stands(places) & is_free(self._space, points)
 
     def between_corners(self) -> Indices:
