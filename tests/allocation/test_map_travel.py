@@ -2,10 +2,13 @@
 
 import math
 import pickle
+from dataclasses import replace
 from random import Random
 
 import numpy as np
 import pytest
+import shapely
+from tests.verification.brute_ways import star
 
 import muster
 from muster import Mission, Robot, Rules, Task
@@ -13,6 +16,7 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Map, Zone
+from muster.motion.world import World
 from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task
 
 
@@ -87,6 +91,67 @@ def test_lengths_are_those_of_the_judge(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_in_space_they_are_nearly(seed):
     assert_as_judged(random_mission(seed, tasks=4, spatial=True), rel=1e-2)
+
+
+def on_borders(random, world, robot, count):
+    """Corners of what is free for a robot, and points of its sides, as near as float64 comes to them."""
+    region = world.free_space(robot.radius_m, robot.kind).region
+    corners = shapely.get_coordinates(region).tolist()
+    for _ in range(count):
+        side = region.boundary.interpolate(random.random(), normalized=True)
+        yield random.choice((tuple(random.choice(corners)), (side.x, side.y)))
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (5e5, 4e6)])
+@pytest.mark.parametrize("seed", range(6))
+def test_lengths_are_those_of_the_judge_between_places_on_borders(seed, offset):
+    random = Random(seed)
+    stars = [star(np.random.default_rng(10 * seed + k), (10 + 20 * (k % 2), 5 + 9 * k), 9, 6) for k in range(4)]
+    zones = tuple(
+        Zone(polygon=tuple((x + offset[0], y + offset[1]) for x, y in ring))
+        for ring in stars
+        if shapely.is_valid(shapely.Polygon(ring)) and shapely.Polygon(ring).area > 0
+    )
+    corners = tuple((x + offset[0], y + offset[1]) for x, y in ((-9, -9), (40, 0), (37, 43), (-5, 40)))
+    rover = Robot(id="rover", position=corners[0], radius_m=random.choice((0.0, 0.3)))
+    bare = Mission(name="stars", robots=(rover,), tasks=(), map=Map(boundary=corners, zones=zones))
+    start, *places = on_borders(random, World.of(bare), rover, 9)
+    tasks = tuple(Task(id=str(k), position=place) for k, place in enumerate(places))
+    mission = replace(bare, robots=(replace(rover, position=start),), tasks=tasks)
+    assert_as_judged(mission, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("zones", "radius"),
+    [
+        ((box(0, 8, 8, 1), box(8, 8, 12, 1)), 0.0),  # side by side
+        ((box(0, 8, 8, 1), box(8, 7, 12, 1)), 0.0),  # corner to corner
+        ((box(0, 8, 7.5, 1), box(8, 8, 12, 1)), 0.25),  # as far apart as the drone is wide
+        ((box(1e-9, 8, 20, 1),), 0.0),  # almost at the boundary
+        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 8, 20, 1, floor_m=4)), 0.0),  # one upon the other
+        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 9, 20, 1, floor_m=4)), 0.0),  # edge to edge
+    ],
+)
+def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
+    arena = Map(boundary=((0, 0), (20, 0), (20, 16), (0, 16)), zones=zones)
+    drone = Robot(id="drone", position=(8.0, 5.0, 1.0), kind="air", radius_m=radius)
+    task = Task(id="t", position=(8.0, 12.0, 1.0))
+    mission = Mission(name="slits", robots=(drone,), tasks=(task,), map=arena)
+    assert_as_judged(mission, rel=1e-2)
+    problem = Problem.compile(mission)
+    assert np.isinf(problem.legs(0, [problem.start(0)], [0])).all()
+
+
+def test_in_two_rooms_lengths_are_those_of_the_judge():
+    walls = (box(19, -1, 2, 42), box(5, 5, 5, 20), box(30, 10, 5, 25))
+    arena = Map(boundary=((0, 0), (40, 0), (40, 40), (0, 40)), zones=walls)
+    robots = tuple(Robot(id=f"r_{k}", position=(x, 20.0), radius_m=0.3) for k, x in enumerate((3.0, 24.0)))
+    tasks = tuple(Task(id=str(k), position=(x, 20.0)) for k, x in enumerate((12.0, 15.0, 38.0, 23.0)))
+    mission = Mission(name="rooms", robots=robots, tasks=tasks, map=arena)
+    assert_as_judged(mission, rel=1e-6)
+    plan = muster.solve(mission, iterations=100)
+    assert plan.complete
+    assert muster.verify(mission, plan).valid
 
 
 def test_on_the_shipped_floor_plan_they_are_those_of_the_judge():

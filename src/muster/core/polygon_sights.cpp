@@ -45,7 +45,7 @@ PolygonSights::PolygonSights(const std::vector<std::vector<Point>>& rings) {
   sort_into_boxes();
 }
 
-Lattice PolygonSights::snap(Point p) const {
+Lattice PolygonSights::rounded(Point p) const {
   // What is far outside is outside; so no coordinate leaves the range in which all is exact.
   const auto near = [](double value) {
     return std::llround(std::clamp(value, -1.0, static_cast<double>(kSize) + 1.0));
@@ -55,17 +55,35 @@ Lattice PolygonSights::snap(Point p) const {
 
 double PolygonSights::extent() const { return std::sqrt(2.0) * static_cast<double>(kSize) / scale_; }
 
+// On a slanting side there is seldom a point of the lattice: the nearest beside it on the free side is as good.
+Lattice PolygonSights::snap(Point p) const {
+  constexpr std::int64_t kRounding = 2;
+  const Lattice at = rounded(p);
+  if (free(at)) return at;
+  Lattice best;
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  for (std::int64_t dx = -kRounding; dx <= kRounding; ++dx) {
+    for (std::int64_t dy = -kRounding; dy <= kRounding; ++dy) {
+      const Lattice step{dx, dy};
+      if (dot(step, step) >= least || !free(at + step)) continue;
+      best = step;
+      least = dot(step, step);
+    }
+  }
+  return at + best;
+}
+
 void PolygonSights::add_ring(const std::vector<Point>& ring) {
   std::vector<Point> places;
   for (const Point p : ring) {
-    if (places.empty() || !(snap(p) == snap(places.back()))) places.push_back(p);
+    if (places.empty() || !(rounded(p) == rounded(places.back()))) places.push_back(p);
   }
-  while (places.size() > 1 && snap(places.front()) == snap(places.back())) places.pop_back();
+  while (places.size() > 1 && rounded(places.front()) == rounded(places.back())) places.pop_back();
   const std::size_t count = places.size();
   if (count < 3) return;
   for (std::size_t k = 0; k < count; ++k) {
-    const Lattice before = snap(places[(k + count - 1) % count]), at = snap(places[k]),
-                  next = snap(places[(k + 1) % count]);
+    const Lattice before = rounded(places[(k + count - 1) % count]), at = rounded(places[k]),
+                  next = rounded(places[(k + 1) % count]);
     sides_.push_back({before, at, next});
     if (turn(before, at, next) < 0) corners_.push_back({at, places[k], before - at, next - at});
   }

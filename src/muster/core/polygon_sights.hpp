@@ -27,6 +27,7 @@ class PolygonSights : public Sights {
     Lattice before, at, next;
   };
 
+  Lattice rounded(Point p) const;
   void add_ring(const std::vector<Point>& ring);
   void sort_into_boxes();
   bool passes(const Side& side, Lattice a, Lattice b) const;

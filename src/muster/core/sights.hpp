@@ -34,6 +34,7 @@ class Sights {
   virtual ~Sights() = default;
   const std::vector<Corner>& corners() const { return corners_; }
 
+  // The point of the lattice for a place. One that is free but for rounding becomes free.
   virtual Lattice snap(Point p) const = 0;
   virtual bool free(Lattice p) const = 0;
   // Whether the straight piece between two free points is free.

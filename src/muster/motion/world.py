@@ -25,6 +25,7 @@ from muster.motion.grid import Floats, Grid
 from muster.motion.maps.distances import clearance_to_blocked, inflated
 from muster.motion.maps.extra import require_map_extra
 from muster.motion.maps.occupancy import read_grid
+from muster.motion.maps.pinches import necks
 from muster.motion.maps.polygons import free_region, grown, read_polygon
 from muster.motion.maps.raster import in_cells, touched
 from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace, Space
@@ -180,8 +181,10 @@ class World:
         areas = self.stopping(body, three_d)
         if three_d and body.kind == "air":
             region = free_region(self.boundary, (), body.radius_m)
-            prisms = () if region.is_empty else tuple(_prism(area, body.radius_m) for area in areas)
-            return PrismSpace(region, prisms, self.lowest_m)
+            if region.is_empty:
+                return PrismSpace(region, (), self.lowest_m)
+            prisms = tuple(_prism(area, body.radius_m) for area in areas)
+            return PrismSpace(region, (*prisms, *necks(region, prisms)), self.lowest_m)
         return PolygonSpace(free_region(self.boundary, (a.polygon for a in areas), body.radius_m))
 
     def _clearance_in_polygons(self, places: Floats, body: Body, in_space: bool) -> Floats:

@@ -18,6 +18,7 @@ import numpy as np
 
 from muster.mission.model import Point
 from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.maps.inside import free
 from muster.motion.spaces import PrismSpace
 from muster.verification.roads import Roads
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 _HAIR = 1e-9  # of the extent: so thin a layer of a prism may be touched
-_SLACK = 1e-9  # relative: so far beyond a border a place is still free
 _COARSE = 0.02  # of a prism's width: how far coarse outlines may be off
 _LEVELS = 5  # heights on an upright edge, at first
 _FIRST_REACH = 0.1  # of the straight line: how far apart points on rims are, when they are first taken near a way
@@ -39,6 +39,7 @@ class AirWays:
     def __init__(self, space: PrismSpace) -> None:
         import shapely
 
+        self._space = space
         self._lowest = space.lowest_m
         west, south, east, north = (0.0, 0.0, 1.0, 1.0) if space.region.is_empty else space.region.bounds
         extent = max(east - west, north - south)
@@ -55,13 +56,8 @@ class AirWays:
         pair = (min(start, end), max(start, end))
         if pair not in self._known:
             ends = np.array(pair, dtype=np.float64)
-            self._known[pair] = self._length(ends) if self._free(ends) else None
+            self._known[pair] = self._length(ends) if free(self._space, ends).all() else None
         return self._known[pair]
-
-    def _free(self, points: Floats) -> bool:
-        slack = _SLACK * max(1.0, float(np.abs(points).max()))
-        low = points[:, 2] < self._lowest - slack
-        return not low.any() and not any(obstacle.holds(points, slack).any() for obstacle in self._obstacles)
 
     def _length(self, ends: Floats) -> float | None:
         met: list[_Obstacle] = []
@@ -190,7 +186,7 @@ class _Obstacle:
         """Points (n, 3) on the coarse outline: its corners at all levels, and its rims."""
         import shapely
 
-        rings = shapely.get_rings(shapely.segmentize(self.outline, max(self.width / 6, self.hair)))
+        rings = shapely.get_rings(shapely.get_parts(shapely.segmentize(self.outline, max(self.width / 6, self.hair))))
         rims = np.unique(shapely.get_coordinates(rings), axis=0) if self._rims() else np.empty((0, 2))
         return np.concatenate([_raised(self.coarse, levels), _raised(rims, self._rims())])
 
@@ -210,7 +206,7 @@ class _Obstacle:
         )
         upright = [np.column_stack([near, heights + k * spread]) for k in (-1, 0, 1)]
         found = [np.empty((0, 2))]
-        for ring in shapely.get_rings(self.outline) if self._rims() else ():
+        for ring in shapely.get_rings(shapely.get_parts(self.outline)) if self._rims() else ():
             place = shapely.line_locate_point(ring, shapely.points(way[1:-1, :2]))
             places = (place[:, None] + along * np.arange(-2, 3)).ravel() % ring.length
             found.append(shapely.get_coordinates(shapely.line_interpolate_point(ring, places)))

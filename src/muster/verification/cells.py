@@ -12,11 +12,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from muster.motion.grid import Bools, Floats, Grid, Indices
+from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.maps.inside import free as is_free
+from muster.motion.maps.inside import slack_m
+from muster.motion.spaces import GridSpace
 
 _CLOSE = 1e-6  # of a cell: less than cones between lattice points can be apart, more than rounding
 _ROUNDED = 1e-9  # of a cell: what is this near to a lattice line is on it
-_SLACK = 1e-9  # relative: so far beyond a border a place is still free
 
 
 class Cells:
@@ -25,9 +27,10 @@ class Cells:
     `corners` (c, 2) are where ways may turn; `unit_m` is the length of 1.
     """
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self, space: GridSpace) -> None:
+        grid = space.grid
         self.unit_m = grid.resolution_m
-        self._grid = grid
+        self._space, self._grid = space, grid
         self._up, self._down = _Rows(grid.blocked), _Rows(grid.blocked[::-1])
         self.corners, self._blocked_side = _corners(grid.blocked)
         rows, columns = grid.shape
@@ -38,11 +41,9 @@ class Cells:
     def settled(self, points: Floats) -> tuple[Floats, Bools]:
         """Points (n, 2) of the map frame in cells, and whether each is free."""
         places = self._grid.to_grid(points)
-        slack = _SLACK * max(1.0, float(np.abs(points).max(initial=0.0))) / self.unit_m
-        places = _on_lattice(places, _ROUNDED)
-        stands = self._stands(places)
-        places[~stands] = _on_lattice(places[~stands], slack)
-        return places, self._stands(places)
+        slack = slack_m(self._space, points) / self.unit_m
+        places = _on_lattice(places, max(_ROUNDED, slack))
+        return places, self._stands(places) & is_free(self._space, points)
 
     def between_corners(self) -> Indices:
         """Pairs (k, 2) of corners that see each other, where a way may turn at both."""

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.maps.inside import free as is_free
+from muster.motion.spaces import PolygonSpace
 
 if TYPE_CHECKING:
     import shapely
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
     Region = shapely.Polygon | shapely.MultiPolygon
 
 _HAIR = 1e-10  # of the region's extent
-_SLACK = 1e-9  # relative: so far beyond a border a place is still free
 _TURN = 1e-5  # sine of an angle that may be rounding
 
 
@@ -29,10 +30,10 @@ class Regions:
 
     unit_m = 1.0
 
-    def __init__(self, region: Region) -> None:
+    def __init__(self, space: PolygonSpace) -> None:
         import shapely
 
-        self._region = region
+        self._space, region = space, space.region
         west, south, east, north = (0.0, 0.0, 1.0, 1.0) if region.is_empty else region.bounds
         self._origin = np.array([west, south])
         moved = shapely.transform(region, lambda points: points - self._origin)
@@ -49,11 +50,10 @@ class Regions:
         import shapely
 
         places = points - self._origin
-        slack = _SLACK * max(1.0, float(np.abs(points).max(initial=0.0)))
         if self._inner.is_empty:
             return places, np.zeros(len(places), dtype=np.bool_)
         marks = shapely.points(places)
-        free = np.asarray(shapely.dwithin(self._inner, marks, slack + 10 * self._hair))
+        free = is_free(self._space, points)
         near = shapely.get_point(shapely.shortest_line(self._inner, marks), 0)
         return np.where(free[:, None], shapely.get_coordinates(near), places), free
 
@@ -102,7 +102,7 @@ def _inward_corners(region: Region) -> tuple[Floats, Floats, Floats]:
     import shapely
 
     found: list[tuple[Floats, Floats, Floats]] = [(np.empty((0, 2)),) * 3]
-    for ring in shapely.get_rings(shapely.orient_polygons(region)):
+    for ring in shapely.get_rings(shapely.get_parts(shapely.orient_polygons(region))):
         points = shapely.get_coordinates(ring)[:-1]
         on = np.roll(points, -1, axis=0) - points
         lengths = np.hypot(*on.T)

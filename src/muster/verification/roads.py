@@ -6,7 +6,7 @@ import numpy as np
 
 from muster.motion.grid import Floats, Indices
 
-_FIRST_DETOUR = 0.02  # of the straight line
+_DETOURS = (0.02, 0.08, 0.32, 1.28, 5.12, 20.48)  # of the straight line
 
 
 class Roads:
@@ -18,13 +18,15 @@ class Roads:
         (n, 2) or (n, 3) points.
     pairs
         (k, 2) numbers of nodes that see each other, in either order, perhaps more than once.
+    ends
+        so many of the first nodes are where ways only begin or end: one may stand where nothing passes.
     """
 
-    def __init__(self, nodes: Floats, pairs: Indices) -> None:
+    def __init__(self, nodes: Floats, pairs: Indices, ends: int = 0) -> None:
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import connected_components
 
-        self._nodes = nodes
+        self._nodes, self._ends = nodes, ends
         count = len(nodes)
         edges = np.unique(np.concatenate([pairs, pairs[:, ::-1]]) @ np.array([count, 1], dtype=np.int64))
         self._from, to = np.divmod(edges, max(count, 1))
@@ -47,13 +49,14 @@ class Roads:
             return None
         left = np.linalg.norm(self._nodes - self._nodes[end], axis=1)
         excess = np.maximum(self._lengths + left[self._to] - left[self._from], 0.0)
+        excess[(self._from < self._ends) & (self._from != start)] = np.inf
         graph = csr_array((excess, self._to, self._starts), shape=(len(left), len(left)))
-        limit = _FIRST_DETOUR * left[start] or np.inf
-        while True:
+        for limit in (*(detour * left[start] for detour in _DETOURS), np.inf):
             lengths, before = dijkstra(graph, indices=start, return_predecessors=True, limit=limit)
             if np.isfinite(lengths[end]):
                 break
-            limit *= 4
+        else:
+            return None
         way = [end]
         while way[-1] != start:
             way.append(int(before[way[-1]]))

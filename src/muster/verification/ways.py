@@ -94,7 +94,7 @@ class PlaneWays:
     """
 
     def __init__(self, space: GridSpace | PolygonSpace, places: Iterable[Point]) -> None:
-        sight: _Sight = Cells(space.grid) if isinstance(space, GridSpace) else Regions(space.region)
+        sight: _Sight = Cells(space) if isinstance(space, GridSpace) else Regions(space)
         feet = list(dict.fromkeys(place[:2] for place in places))
         self._number = {foot: k for k, foot in enumerate(feet)}
         self._sight = sight
@@ -135,4 +135,4 @@ class PlaneWays:
         seen = sight.from_places(self._places[standing])
         to_corners = np.stack([standing[seen[:, 0]], count + seen[:, 1]], axis=1)
         nodes = np.concatenate([self._places, sight.corners])
-        return Roads(nodes, np.concatenate([to_corners, count + sight.between_corners()]))
+        return Roads(nodes, np.concatenate([to_corners, count + sight.between_corners()]), ends=count)

@@ -94,3 +94,26 @@ def test_either_direction_and_a_closed_ring_are_right():
     corners = ((0, 0), (4, 0), (4, 4), (0, 0))
     assert read_polygon(corners, (), faults).equals(read_polygon(corners[::-1], (), faults))
     assert not faults
+
+
+@pytest.mark.parametrize(
+    "obstacles",
+    [
+        [shapely.box(-1, -1, 5, 5), shapely.box(5, 5, 11, 11)],  # at a corner
+        [shapely.box(-1, 4, 5, 6), shapely.Polygon([(5, 5), (11, 3), (11, 7)])],  # a corner at a side
+        [shapely.Polygon([(0, 4), (10, 5), (0, 6)])],  # a corner at the boundary
+        [shapely.box(-1, 4, 5, 6), shapely.box(5 + 1e-9, 4, 11, 6)],  # a slit
+    ],
+)
+def test_nothing_passes_where_obstacles_touch(obstacles):
+    region = free_region(shapely.box(0, 0, 10, 10), obstacles, 0.0)
+    parts = shapely.get_parts(region)
+    assert len(parts) == 2
+    assert shapely.distance(*parts) > 1e-7
+    assert shapely.box(0, 0, 10, 10).difference(shapely.union_all([region, *obstacles])).area < 1e-8  # of the slit
+
+
+def test_what_has_no_room_is_no_part():
+    region = free_region(shapely.box(0, 0, 10, 10), [shapely.box(1e-8, 2, 10, 3)], 0.0)
+    assert len(shapely.get_parts(region)) == 2
+    assert free_region(shapely.box(0, 0, 10, 10), [shapely.box(1e-8, -1, 11, 11)], 0.0).is_empty

@@ -11,7 +11,7 @@ from tests.motion.paths.spaces import grids, places_in, places_on, regions
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
 from muster.motion.path import Path
-from muster.motion.paths import WayFinder, find, travel_lengths
+from muster.motion.paths import PLANNERS, WayFinder, find, travel_lengths
 from muster.motion.spaces import GridSpace, PolygonSpace
 
 
@@ -94,9 +94,10 @@ def test_a_place_on_the_border_is_free():
     assert find(space, (0, 0), (3, 3)).length_m == pytest.approx(2 * np.sqrt(5))
 
 
-def test_an_empty_space_is_blocked_everywhere():
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_an_empty_space_is_blocked_everywhere(planner):
     space = PolygonSpace(shapely.Polygon())
-    assert find(space, (0, 0), (1, 1)).reason == "start blocked"
+    assert find(space, (0, 0), (1, 1), planner=planner).reason == "start blocked"
     assert np.isinf(travel_lengths(space, [(0, 0)], [(0, 0)])).all()
 
 

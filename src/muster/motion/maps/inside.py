@@ -1,6 +1,7 @@
 """Whether points are free in a space.
 
-Borders are free, and so is what is beyond one by no more than 1e-9 of the greatest coordinate (at least 1 m).
+Borders are free, and so is what is beyond one by no more than rounding: 1e-10 of the map's extent, and what float64
+leaves uncertain in coordinates far from zero. Planners and the judge ask here, so that they agree about every place.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from muster.motion.spaces import GridSpace, Prism, PrismSpace, Space
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-_SLACK = 1e-9
+_SLACK = 1e-10  # of the extent
+_ULPS = 2e-15  # of the greatest coordinate
 
 
 def free(space: Space, points: Floats) -> Bools:
@@ -24,15 +26,27 @@ def free(space: Space, points: Floats) -> Bools:
     Heights count in a PrismSpace alone, which needs them.
     """
     places = np.asarray(points, dtype=np.float64)
-    slack = _SLACK * max(1.0, float(np.abs(places).max(initial=0.0)))
+    slack = slack_m(space, places)
     if isinstance(space, GridSpace):
         return _in_free_cells(space.grid, places, slack)
+    if space.region.is_empty:
+        return np.zeros(len(places), dtype=np.bool_)
     within = _within(space.region, places, slack)
     if isinstance(space, PrismSpace):
         within &= places[:, 2] >= space.lowest_m - slack
         for prism in space.prisms:
             within &= ~_inside_prism(prism, places, slack)
     return within
+
+
+def slack_m(space: Space, places: Floats) -> float:
+    """Metres by which places (n, d) may be beyond a border of a space and still be free."""
+    if isinstance(space, GridSpace):
+        extent = space.grid.resolution_m * max(space.grid.shape)
+    else:
+        west, south, east, north = space.region.bounds
+        extent = max(east - west, north - south)
+    return _SLACK * extent + _ULPS * float(np.abs(places).max(initial=0.0))
 
 
 def blocked_at(grid: Grid, cells: Floats) -> Bools:

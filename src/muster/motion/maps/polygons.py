@@ -17,6 +17,7 @@ from muster.mission.kinds import Fault, Path
 from muster.mission.model import Point
 from muster.motion.grid import Floats
 from muster.motion.maps.occupancy import FARTHEST_M
+from muster.motion.maps.pinches import without_pinches
 
 if TYPE_CHECKING:
     import shapely
@@ -68,7 +69,7 @@ def grown(polygon: shapely.Polygon, radius_m: float) -> shapely.Polygon:
 def free_region(boundary: shapely.Polygon, obstacles: Iterable[shapely.Polygon], radius_m: float) -> Region:
     """Where a centre may be: within a boundary, at least the radius from it and from all obstacles.
 
-    A gap that is exactly as wide as the body is closed.
+    A gap that is exactly as wide as the body is closed; where two obstacles touch, nothing passes between them.
     """
     import shapely
 
@@ -79,8 +80,7 @@ def free_region(boundary: shapely.Polygon, obstacles: Iterable[shapely.Polygon],
     for obstacle in obstacles:
         taken += [obstacle, *_band(obstacle, radius_m)]
     left = shapely.difference(boundary, shapely.union_all(taken))
-    parts = [part for part in shapely.get_parts(left) if isinstance(part, shapely.Polygon) and part.area > 0]
-    return shapely.simplify(parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts), _STRAIGHT)
+    return shapely.MultiPolygon() if left.is_empty else without_pinches(shapely.simplify(left, _STRAIGHT))
 
 
 def _band(polygon: shapely.Polygon, radius_m: float) -> list[shapely.Polygon]:

@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
 from muster.motion.path import NoPath, Path
-from muster.motion.paths.planner import blocked, disconnected
+from muster.motion.paths.planner import blocked, disconnected, not_free
 from muster.motion.spaces import GridSpace, PolygonSpace
 
 Floats = npt.NDArray[np.float64]
@@ -61,10 +61,13 @@ class Question:
 
 def question(space: GridSpace | PolygonSpace, start: Floats, goal: Floats, params: Parameters) -> Question | NoPath:
     """Start and goal on the grid, or which of them is blocked there."""
+    reason = blocked(space, start, goal)
+    if reason is not None:
+        return reason
     grid = space.grid if isinstance(space, GridSpace) else _cells_of(space, params)
     cells = core_grid(grid)
     ends = [(float(x), float(y)) for x, y in grid.to_grid(np.stack([start, goal]))]
-    reason = blocked(cells.free(ends[0]), cells.free(ends[1]), start, goal)
+    reason = not_free(cells.free(ends[0]), cells.free(ends[1]), start, goal)
     if reason is None:
         return Question(grid, cells, *ends)
     if isinstance(space, PolygonSpace):

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.motion.maps.inside import free
 from muster.motion.path import NoPath, Path
 from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
@@ -80,8 +81,14 @@ def point_of(space: Space, point: npt.ArrayLike, name: str) -> Floats:
     return found
 
 
-def blocked(start_is_free: bool, goal_is_free: bool, start: Floats, goal: Floats) -> NoPath | None:
+def blocked(space: Space, start: Floats, goal: Floats) -> NoPath | None:
     """Why there can be no path from or to places that are not free."""
+    start_is_free, goal_is_free = free(space, np.stack([start, goal])).tolist()
+    return not_free(start_is_free, goal_is_free, start, goal)
+
+
+def not_free(start_is_free: bool, goal_is_free: bool, start: Floats, goal: Floats) -> NoPath | None:
+    """Which of two places it is that is not free; None if both are."""
     if not start_is_free:
         return NoPath("start blocked", f"{shown(start)} is not free for this body")
     if not goal_is_free:

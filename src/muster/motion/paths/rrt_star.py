@@ -45,10 +45,10 @@ class Parameters:
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
     """A path that nears the shortest with the samples; `not found` if they did not reach the goal."""
-    field = _field_of(space, start, goal)
-    reason = blocked(_free(field, field.start), _free(field, field.goal), start, goal)
+    reason = blocked(space, start, goal)
     if reason is not None:
         return reason
+    field = _field_of(space, start, goal)
     if (start == goal).all():
         return Path(start[np.newaxis])
     step = float(np.linalg.norm(np.subtract(field.high, field.low))) / 10
@@ -100,11 +100,6 @@ def _field_of(space: Space, start: Floats, goal: Floats) -> _Field:
     prisms = [(rings_of(prism.polygon), prism.floor_m, prism.ceiling_m) for prism in space.prisms]
     air = core.AirWays(rings_of(space.region), prisms, lowest=space.lowest_m, top=top, rise=width, run=width)
     return _Field(air, (west, south, space.lowest_m), (east, north, top), _floats(start), _floats(goal))
-
-
-def _free(field: _Field, point: tuple[float, ...]) -> bool:
-    x, y, z = _triple(point)
-    return field.where.free((x, y)) if isinstance(field.where, core.Ways) else field.where.free((x, y, z))
 
 
 def _top(space: PrismSpace, start: Floats, goal: Floats) -> float:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from muster import core
 from muster.mission.errors import ParameterError
 from muster.motion.grid import Grid, Indices
+from muster.motion.maps.inside import free
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import blocked, disconnected, point_of, points_of
@@ -25,7 +26,6 @@ _CORNERS_AT_A_TIME = 1000  # for the same
 class _Ways(Protocol):
     """Shortest ways in metres of the map frame."""
 
-    def free(self, point: Floats) -> bool: ...
     def sees(self, a: Floats, b: Floats) -> bool: ...
     def way(self, start: Floats, goal: Floats) -> Floats: ...
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats: ...
@@ -47,7 +47,7 @@ class WayFinder:
             if one is no such point.
         """
         a, b = point_of(self._space, start, "start"), point_of(self._space, goal, "goal")
-        reason = blocked(self._ways.free(a), self._ways.free(b), a, b)
+        reason = blocked(self._space, a, b)
         if reason is not None:
             return reason
         points = self._ways.way(a, b)
@@ -72,7 +72,10 @@ class WayFinder:
             raise ParameterError(f"threads: {threads}; expected 1 at least")
         leave = points_of(self._space, exits, "exits")
         enter = leave if entries is None else points_of(self._space, entries, "entries")
-        return self._ways.lengths(leave, enter, threads)
+        metres = self._ways.lengths(leave, enter, threads)
+        metres[~free(self._space, leave)] = np.inf
+        metres[:, ~free(self._space, enter)] = np.inf
+        return metres
 
 
 def travel_lengths(space: Space, exits: npt.ArrayLike, entries: npt.ArrayLike, threads: int = 1) -> Floats:
@@ -91,9 +94,6 @@ def _ways_in(space: Space) -> _Ways:
 class _Nowhere:
     """A space without a free point."""
 
-    def free(self, point: Floats) -> bool:
-        return False
-
     def sees(self, a: Floats, b: Floats) -> bool:
         return False
 
@@ -107,9 +107,6 @@ class _Nowhere:
 class _InRegion:
     def __init__(self, space: PolygonSpace) -> None:
         self._ways = core.Ways.on_region(rings_of(space.region))
-
-    def free(self, point: Floats) -> bool:
-        return self._ways.free(_pair(point))
 
     def sees(self, a: Floats, b: Floats) -> bool:
         return self._ways.sees(_pair(a), _pair(b))
@@ -127,9 +124,6 @@ class _OnGrid:
     def __init__(self, grid: Grid) -> None:
         self._grid = grid
         self._ways = core.Ways.on_grid(core_grid(grid))
-
-    def free(self, point: Floats) -> bool:
-        return self._ways.free(self._cell(point))
 
     def sees(self, a: Floats, b: Floats) -> bool:
         return self._ways.sees(self._cell(a), self._cell(b))
@@ -206,9 +200,6 @@ class _InAir:
             self._ways.build(threads)
             self._built = True
         return self._ways
-
-    def free(self, point: Floats) -> bool:
-        return self._ways.free(_triple(point))
 
     def sees(self, a: Floats, b: Floats) -> bool:
         return self._ways.sees(_triple(a), _triple(b))
