@@ -20,6 +20,16 @@ double distance_to_side(Point p, Point a, Point b) {
   return distance(p, along(a, b, t));
 }
 
+// A ring that does not cut itself is convex then.
+bool turns_left_only(const std::vector<Point>& ring) {
+  const std::size_t count = ring.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Point at = ring[(k + 1) % count];
+    if (cross(minus(at, ring[k]), minus(ring[(k + 2) % count], at)) < 0.0) return false;
+  }
+  return true;
+}
+
 template <class Visit>
 void for_sides(const std::vector<std::vector<Point>>& rings, Visit visit) {
   for (const auto& ring : rings) {
@@ -37,6 +47,7 @@ Rings::Rings(std::vector<std::vector<Point>> rings) : rings_(std::move(rings)) {
     low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
     high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
   });
+  convex_ = rings_.size() == 1 && turns_left_only(rings_.front());
 }
 
 bool Rings::inside(Point p) const {
@@ -53,6 +64,13 @@ double Rings::distance_to_border(Point p) const {
   return least;
 }
 
+// Whether the line through a in this direction runs beside the box around all, and no nearer than `off` lengths.
+bool Rings::beside(Point a, Point d, double off) const {
+  const double middle = cross(d, minus({(low_.x + high_.x) / 2, (low_.y + high_.y) / 2}, a));
+  const double half = (std::abs(d.x) * (high_.y - low_.y) + std::abs(d.y) * (high_.x - low_.x)) / 2;
+  return std::abs(middle) > half + off;
+}
+
 // The border cuts the piece; the middle of each part says where the part is.
 bool Rings::enters(Point a, Point b, double from, double to, bool inner) const {
   const Point first = along(a, b, from), last = along(a, b, to), d = minus(b, a);
@@ -61,6 +79,10 @@ bool Rings::enters(Point a, Point b, double from, double to, bool inner) const {
     return false;
   }
   const double length = std::sqrt(dot(d, d));
+  if (inner && beside(a, d, Air::kTouch * length)) return false;
+  // What joins two points of a convex whole is in it.
+  const auto in = [&](Point p) { return inside(p) || distance_to_border(p) <= Air::kTouch; };
+  if (!inner && convex_ && in(first) && in(last)) return false;
   const auto is_there = [&](Point p) { return inside(p) == inner && distance_to_border(p) > Air::kTouch; };
   if (length * (to - from) <= Air::kTouch) return is_there(along(a, b, (from + to) / 2));
   std::vector<double> cuts{from, to};
@@ -137,19 +159,28 @@ bool Air::free(Spot p) const {
   });
 }
 
-bool Air::sees(Spot a, Spot b) const {
-  if (std::min(a.z, b.z) < lowest_ - kTouch || region_.enters(flat(a), flat(b), 0.0, 1.0, false)) return false;
-  return std::none_of(prisms_.begin(), prisms_.end(), [&](const PrismShape& prism) {
-    // The part of the piece at the height of the prism.
-    double from = 0.0, to = 1.0;
-    const double low = prism.floor + kTouch, high = prism.ceiling - kTouch, rise = b.z - a.z;
-    if (std::max(a.z, b.z) <= low || std::min(a.z, b.z) >= high) return false;
-    if (rise != 0.0) {
-      from = std::max(from, ((rise > 0.0 ? low : high) - a.z) / rise);
-      to = std::min(to, ((rise > 0.0 ? high : low) - a.z) / rise);
-    }
-    return from < to && prism.base.enters(flat(a), flat(b), from, to, true);
-  });
+bool Air::sees(Spot a, Spot b, std::size_t& blocker) const {
+  if (std::min(a.z, b.z) < lowest_ - kTouch) return false;
+  if (blocker < prisms_.size() && blocks(prisms_[blocker], a, b)) return false;
+  if (region_.enters(flat(a), flat(b), 0.0, 1.0, false)) return false;
+  for (std::size_t k = 0; k < prisms_.size(); ++k) {
+    if (k == blocker || !blocks(prisms_[k], a, b)) continue;
+    blocker = k;
+    return false;
+  }
+  return true;
+}
+
+bool Air::blocks(const PrismShape& prism, Spot a, Spot b) {
+  // The part of the piece at the height of the prism.
+  double from = 0.0, to = 1.0;
+  const double low = prism.floor + kTouch, high = prism.ceiling - kTouch, rise = b.z - a.z;
+  if (std::max(a.z, b.z) <= low || std::min(a.z, b.z) >= high) return false;
+  if (rise != 0.0) {
+    from = std::max(from, ((rise > 0.0 ? low : high) - a.z) / rise);
+    to = std::min(to, ((rise > 0.0 ? high : low) - a.z) / rise);
+  }
+  return from < to && prism.base.enters(flat(a), flat(b), from, to, true);
 }
 
 }  // namespace muster

@@ -36,7 +36,10 @@ class Rings {
 
  private:
   std::vector<std::vector<Point>> rings_;
+  bool beside(Point a, Point direction, double off) const;
+
   Point low_, high_;
+  bool convex_ = false;
 };
 
 struct PrismShape {
@@ -66,9 +69,15 @@ class Air {
 
   const std::vector<AirEdge>& edges() const { return edges_; }
   bool free(Spot p) const;
-  bool sees(Spot a, Spot b) const;
+  bool sees(Spot a, Spot b) const {
+    std::size_t none = prisms_.size();
+    return sees(a, b, none);
+  }
+  // Looks first at prism `blocker`, and leaves there which one blocks: often the same for the next pair.
+  bool sees(Spot a, Spot b, std::size_t& blocker) const;
 
  private:
+  static bool blocks(const PrismShape& prism, Spot a, Spot b);
   void add_upright(const Rings& rings, double from, double to, bool obstacle_inside);
   void add_level(const PrismShape& prism, double z, bool top);
 

@@ -60,24 +60,36 @@ void AirWays::sample(double rise, double run) {
 void AirWays::build(int threads, const Pause& pause) {
   pieces_.assign(nodes_.size(), {});
   for_each_parallel(static_cast<int>(nodes_.size()), threads, pause, [&] {
-    return [&](int k) {
+    return [&, blocker = std::size_t{0}](int k) mutable {
       const Node& node = nodes_[k];
-      for (std::size_t o = 0; o < nodes_.size(); ++o) {
+      for (std::size_t o = static_cast<std::size_t>(k) + 1; o < nodes_.size(); ++o) {
         const Node& other = nodes_[o];
         const Spot d = other.at - node.at;
-        if (static_cast<int>(o) == k || !taut(node, d) || !taut(other, d)) continue;
-        if (air_->sees(node.at, other.at)) pieces_[k].push_back({static_cast<int>(o), distance(node.at, other.at)});
+        if (!taut(node, d) || !taut(other, d)) continue;
+        if (air_->sees(node.at, other.at, blocker))
+          pieces_[k].push_back({static_cast<int>(o), distance(node.at, other.at)});
       }
     };
   });
+  // So far each piece is known at one end.
+  std::vector<std::size_t> found;
+  for (const auto& pieces : pieces_) found.push_back(pieces.size());
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    for (std::size_t p = 0; p < found[k]; ++p) {
+      const Piece piece = pieces_[k][p];
+      pieces_[piece.other].push_back({static_cast<int>(k), piece.length});
+    }
+  }
 }
 
 AirWays::Seat AirWays::seat(Spot p) const {
   Seat seat{p, air_->free(p), {}};
   if (!seat.free) return seat;
+  std::size_t blocker = 0;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Spot at = nodes_[k].at;
-    if (taut(nodes_[k], at - p) && air_->sees(p, at)) seat.nodes.push_back({static_cast<int>(k), distance(p, at)});
+    if (taut(nodes_[k], at - p) && air_->sees(p, at, blocker))
+      seat.nodes.push_back({static_cast<int>(k), distance(p, at)});
   }
   return seat;
 }

@@ -1,4 +1,4 @@
-// Shortest ways in a plane with obstacles: Dijkstra and A* over the taut pieces between corners.
+// Shortest ways in a plane with obstacles: A* over the taut pieces between corners.
 #pragma once
 
 #include <cstdint>

@@ -5,6 +5,8 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +19,7 @@ from muster.studies.measurement import Measurement
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
+Answer = TypeVar("Answer")
 
 
 def across_a_grid(runs: int) -> list[Measurement]:
@@ -24,37 +27,30 @@ def across_a_grid(runs: int) -> list[Measurement]:
     space = GridSpace(Grid(clutter(2000, 0.3), 1.0))
     found = []
     for planner, aim in (("a-star", "< 0.5"), ("dijkstra", ""), ("theta-star", "")):
-        seconds = []
-        for _ in range(runs):
-            begin = time.perf_counter()
-            answer = find(space, (0.5, 0.5), (1999.5, 1999.5), planner=planner)
-            seconds.append(time.perf_counter() - begin)
+        answer, times = _timed(partial(find, space, (0.5, 0.5), (1999.5, 1999.5), planner=planner), runs)
         assert isinstance(answer, Path)
         note = f"{answer.length_m:.0f} cells long"
-        found.append(_over_runs(f"{planner} across 2,000 x 2,000, 30 % blocked", seconds, aim, note))
+        found += _rows(f"{planner} across 2,000 x 2,000, 30 % blocked", 1, times, aim, note)
     return found
 
 
 def travel(runs: int) -> list[Measurement]:
-    """All lengths between 100 places of 500 x 500 cells, the graph included, on one core."""
+    """All lengths between 100 places of 500 x 500 cells, the graph included, on one thread and on two."""
     maps = (
+        ("1 % blocked", clutter(500, 0.01)),
         ("rooms", rooms()),
         ("10 % blocked", clutter(500, 0.1)),
         ("30 % blocked", clutter(500, 0.3)),
     )
-    return [_travel(name, blocked, runs) for name, blocked in maps]
+    return [row for name, blocked in maps for threads in (1, 2) for row in _travel(name, blocked, threads, runs)]
 
 
-def _travel(name: str, blocked: Bools, runs: int) -> Measurement:
+def _travel(name: str, blocked: Bools, threads: int, runs: int) -> list[Measurement]:
     places = free_places(blocked, 100)
     space = GridSpace(Grid(blocked, 0.1))
-    seconds = []
-    for _ in range(runs):
-        begin = time.perf_counter()
-        lengths = WayFinder(space).lengths(places * 0.1)
-        seconds.append(time.perf_counter() - begin)
+    lengths, times = _timed(lambda: WayFinder(space).lengths(places * 0.1, threads=threads), runs)
     note = f"{100 * np.isfinite(lengths).mean():.0f} % of pairs joined"
-    return _over_runs(f"travel of 100 places on 500 x 500, {name}", seconds, "< 5", note)
+    return _rows(f"travel of 100 places on 500 x 500, {name}", threads, times, "< 5", note)
 
 
 def clutter(side: int, share: float) -> Bools:
@@ -88,8 +84,24 @@ def free_places(blocked: Bools, count: int) -> Floats:
     return np.asarray(free[chosen][:, ::-1] + 0.5, dtype=np.float64)
 
 
-def _over_runs(name: str, seconds: list[float], aim: str, note: str) -> Measurement:
-    return Measurement(name, "s", statistics.median(seconds), min(seconds), max(seconds), len(seconds), aim, note)
+def _timed(call: Callable[[], Answer], runs: int) -> tuple[Answer, dict[str, list[float]]]:
+    """What the last call returns, and the seconds of each by both clocks."""
+    times: dict[str, list[float]] = {"CPU s": [], "s": []}
+    for _ in range(runs):
+        cpu, wall = time.process_time(), time.perf_counter()
+        answer = call()
+        times["CPU s"].append(time.process_time() - cpu)
+        times["s"].append(time.perf_counter() - wall)
+    return answer, times
+
+
+def _rows(name: str, threads: int, times: dict[str, list[float]], aim: str, note: str) -> list[Measurement]:
+    """A row a clock: the processor's, all threads together, and the one on the wall."""
+    name = f"{name}, {threads} thread{'s' if threads > 1 else ''}"
+    return [
+        Measurement(name, unit, statistics.median(t), min(t), max(t), len(t), aim if unit == "CPU s" else "", note)
+        for unit, t in times.items()
+    ]
 
 
 MOTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"path": across_a_grid, "travel": travel}

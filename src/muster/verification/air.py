@@ -25,6 +25,7 @@ from muster.verification.roads import Roads
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
+_ROUNDING = 1e-9  # relative: what float64 may make of two equal lengths
 _HAIR = 1e-9  # of the extent: so thin a layer of a prism may be touched
 _COARSE = 0.02  # of a prism's width: how far coarse outlines may be off
 _LEVELS = 5  # heights on an upright edge, at first
@@ -178,9 +179,21 @@ class _Obstacle:
         clear = np.ones(len(starts), dtype=np.bool_)
         within = np.flatnonzero(first < last)
         step = ends[within, :2] - starts[within, :2]
-        pieces = [starts[within, :2] + share[within, None] * step for share in (first, last)]
-        clear[within] = ~shapely.intersects(self.inside, shapely.linestrings(np.stack(pieces, axis=1)))
+        pieces = np.stack([starts[within, :2] + share[within, None] * step for share in (first, last)], axis=1)
+        near = self._near(pieces)
+        clear[within[near]] = ~shapely.intersects(self.inside, shapely.linestrings(pieces[near]))
         return clear
+
+    def _near(self, pieces: Floats) -> Bools:
+        """Which straight pieces (n, 2, 2) meet the box around the inside: neither axis nor the piece parts them."""
+        box = np.array(self.inside.bounds).reshape(2, 2)
+        middle, half = box.mean(axis=0), (box[1] - box[0]) / 2
+        aside = (pieces.min(axis=1) > box[1]) | (pieces.max(axis=1) < box[0])
+        along, off = pieces[:, 1] - pieces[:, 0], middle - pieces[:, 0]
+        beside = np.abs(along[:, 0] * off[:, 1] - along[:, 1] * off[:, 0]) > np.abs(along) @ half[::-1] * (
+            1 + _ROUNDING
+        )
+        return np.asarray(~aside.any(axis=1) & ~beside)
 
     def coarse_points(self, levels: Floats) -> Floats:
         """Points (n, 3) on the coarse outline: its corners at all levels, and its rims."""
