@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
+from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.consistency import inconsistencies
 from muster.mission.errors import Finding, MissionError
 from muster.mission.kinds import (
@@ -172,22 +173,11 @@ class Robot(_Checked):
         return self.position if returns else None
 
 
-_ACTIONS: dict[str, tuple[str, ...]] = {
-    "go-to-goal": (),
-    "stationary-observation": ("width_m",),
-    "raster-search": ("side_m", "height_m", "spacing_m"),
-    "ground-patrol": ("side_m",),
-    "delivery": ("pickup",),
-    "sensor-activation": ("duration_s",),
-}
-"""The actions and the keys each needs."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Action(_Checked):
     """What a robot does at a task."""
 
-    name: str = spec(Choice(tuple(_ACTIONS)), "which action")
+    name: str = spec(Choice(ACTION_KEYS.keys()), "which action")
     width_m: float | None = spec(Number(above=0), "stationary-observation: width in view", default=None)
     heading_deg: float | None = spec(Number(), "stationary-observation: direction of view, 0 if absent", default=None)
     side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
@@ -196,17 +186,15 @@ class Action(_Checked):
     pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
     duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
 
-    OPTIONAL: ClassVar[dict[str, tuple[str, ...]]] = {"stationary-observation": ("heading_deg",)}
-
     @property
     def has_geometry(self) -> bool:
         """Whether the action's cost follows from way points, not from a typed number."""
-        return self.name not in ("go-to-goal", "sensor-activation")
+        return ACTION_KEYS[self.name].has_geometry
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         name = values["name"]
-        needed, optional = _ACTIONS[name], cls.OPTIONAL.get(name, ())
+        needed, optional = ACTION_KEYS[name].needed, ACTION_KEYS[name].optional
         given = {key for key, value in values.items() if value is not None and key != "name"}
         for key in needed:
             if key not in given:
@@ -240,11 +228,18 @@ class Task(_Checked):
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         action = values.get("action")
-        if action is not None and action.has_geometry and values.get("actuation_cost"):
-            cost = shown(values["actuation_cost"])
-            yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
+        if action is not None and action.has_geometry:
+            yield from _typed_beside(action, values)
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+def _typed_beside(action: Action, values: Mapping[str, Any]) -> Iterable[Fault]:
+    """What a task types in, though it follows from its action's way points."""
+    for key, word in (("actuation_cost", "cost"), ("entry", "entry"), ("exit", "exit")):
+        if values.get(key):
+            value = values[key] if key == "actuation_cost" else list(values[key])
+            yield Fault((key,), shown(value), f"no typed {word} beside {action.name}, whose {word} is computed")
 
 
 @dataclass(frozen=True, kw_only=True)
