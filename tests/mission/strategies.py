@@ -210,11 +210,11 @@ def some_of(draw, items) -> tuple[str, ...]:
 
 
 def consistent(values):
-    """Without the costs, places and durations that an action excludes."""
+    """Without the costs and durations that an action excludes."""
     action = values.get("action")
     excluded = set()
     if action is not None and action.has_geometry:
-        excluded |= {"actuation_cost", "entry", "exit"}
+        excluded.add("actuation_cost")
     if action is not None and action.duration_s is not None:
         excluded.add("duration_s")
     return {key: value for key, value in values.items() if key not in excluded}

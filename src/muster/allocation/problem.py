@@ -195,9 +195,9 @@ class Problem:
         lacking = [skill for skill in task.requires if skill not in robot.skills]
         if self.holds("skills") and lacking:
             return "skill", f"lacks {', '.join(lacking)}"
-        why = self._doings.why_impossible(i, j)
-        if why is not None:
-            return "skill", f"no {task.action.name if task.action else 'work'}: {why}"
+        unable = self.why_impossible(i, j)
+        if unable is not None:
+            return "skill", unable
         least = self.mission.rules.min_suitability
         if self.holds("suitability") and self.mission.suitability is not None:
             score = self.mission.suitability[robot.type or ""].get(task.type or "", 0.0)
@@ -206,6 +206,10 @@ class Problem:
         if task.only_robots is not None and robot.id not in task.only_robots:
             return "lock", f"only {', '.join(task.only_robots)} may do it"
         return None
+
+    def why_impossible(self, i: int, j: int) -> str | None:
+        """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
+        return self._doings.why_impossible(i, j)
 
     @cached_property
     def allowed(self) -> Bools:

@@ -14,7 +14,7 @@ class ActionKeys:
     needed, optional
         names of fields of `model.Action`.
     has_geometry
-        whether its cost, entry and exit follow from way points, so that a mission must not type them.
+        whether its cost follows from way points, so that a mission must not type it.
     """
 
     needed: tuple[str, ...] = ()

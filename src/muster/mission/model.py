@@ -228,18 +228,11 @@ class Task(_Checked):
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         action = values.get("action")
-        if action is not None and action.has_geometry:
-            yield from _typed_beside(action, values)
+        if action is not None and action.has_geometry and values.get("actuation_cost"):
+            cost = shown(values["actuation_cost"])
+            yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
-
-
-def _typed_beside(action: Action, values: Mapping[str, Any]) -> Iterable[Fault]:
-    """What a task types in, though it follows from its action's way points."""
-    for key, word in (("actuation_cost", "cost"), ("entry", "entry"), ("exit", "exit")):
-        if values.get(key):
-            value = values[key] if key == "actuation_cost" else list(values[key])
-            yield Fault((key,), shown(value), f"no typed {word} beside {action.name}, whose {word} is computed")
 
 
 @dataclass(frozen=True, kw_only=True)

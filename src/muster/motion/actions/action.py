@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
 
@@ -26,7 +26,7 @@ class Doing:
     Parameters
     ----------
     waypoints
-        at least one, from the entry to the exit; where it holds, it does so in the last but for typed costs.
+        at least one, from the entry to the exit.
     dimensions
         2 or 3: how many coordinates the mission's positions have.
     typed_cost
@@ -63,7 +63,7 @@ class Doing:
         """
         if self.typed_cost is not None:
             return self.typed_cost
-        return sum(math.dist(start, end) for start, end in self.legs)
+        return _length(self.points)
 
     @property
     def hold_s(self) -> float:
@@ -108,25 +108,25 @@ def along(task: Task, robot: Robot, points: Sequence[Point], heading: float | No
     """Pass points in order, and wait in the last for what is left of the task's duration.
 
     Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `heading` is
-    that in which the robot waits, radians; None: as it arrives.
+    that in which the robot waits, radians; None: as it arrives. An entry and an exit that the mission gives are passed
+    before and after.
     """
     dimensions = len(task.position)
-    waypoints = [Waypoint(_place(point[:dimensions])) for point in points]
-    doing = Doing(tuple(waypoints), dimensions)
-    waypoints[-1] = replace(waypoints[-1], heading=heading, hold_s=_rest_s(task, robot, doing.cost_m))
-    return replace(doing, waypoints=tuple(waypoints))
+    own = [point[:dimensions] for point in points]
+    before = [task.entry] if task.entry is not None and task.entry != own[0] else []
+    after = [task.exit] if task.exit is not None and task.exit != own[-1] else []
+    rest = _rest_s(task, robot, _length([*before, *own, *after]))
+    last = Waypoint(_place(own[-1]), heading, rest)
+    return Doing((*_passed([*before, *own[:-1]]), last, *_passed(after)), dimensions)
 
 
 def staying(task: Task, robot: Robot) -> Doing:
     """Be at the task's position for as long as it takes; arrive and leave where the mission says."""
-    entry, leaving = task.entry or task.position, task.exit or task.position
-    before = [entry] if entry != task.position else []
-    after = [leaving] if leaving != task.position else []
-    way = [*before, task.position, *after]
-    length = sum(math.dist(start, end) for start, end in pairwise(way))
-    at_work = Waypoint(_place(task.position), hold_s=_rest_s(task, robot, length))
-    waypoints = (*(Waypoint(_place(p)) for p in before), at_work, *(Waypoint(_place(p)) for p in after))
-    return Doing(waypoints, len(task.position), typed_cost=task.actuation_cost)
+    before = [task.entry] if task.entry is not None and task.entry != task.position else []
+    after = [task.exit] if task.exit is not None and task.exit != task.position else []
+    rest = _rest_s(task, robot, _length([*before, task.position, *after]))
+    at_work = Waypoint(_place(task.position), hold_s=rest)
+    return Doing((*_passed(before), at_work, *_passed(after)), len(task.position), typed_cost=task.actuation_cost)
 
 
 def given(task: Task, *keys: str) -> tuple[float, ...]:
@@ -151,6 +151,14 @@ def _rest_s(task: Task, robot: Robot, metres: float) -> float:
     duration = duration_of(task)
     whole = task.actuation_cost / robot.speed_mps if duration is None else duration / robot.efficiency
     return max(0.0, whole - metres / robot.speed_mps)
+
+
+def _length(points: Sequence[Point]) -> float:
+    return sum(math.dist(start, end) for start, end in pairwise(points))
+
+
+def _passed(points: Sequence[Point]) -> list[Waypoint]:
+    return [Waypoint(_place(point)) for point in points]
 
 
 def _place(point: Point) -> tuple[float, float, float]:
