@@ -47,6 +47,17 @@ class Measured:
     costs: Floats
     work_classes: npt.NDArray[np.int32]
 
+    def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
+        """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
+        of_table, classes = np.unique(self.classes[list(robots)], return_inverse=True)
+        of_costs, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
+        return Measured(
+            self.table[np.ix_(of_table, places, places)],
+            classes.astype(np.int32),
+            self.costs[np.ix_(of_costs, tasks)],
+            work_classes.astype(np.int32),
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -115,13 +126,7 @@ class Problem:
         if self.mission.travel_rule == "map":
             n, m = len(self.tasks), len(self.robots)
             places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
-            whole = self._measured
-            known = Measured(
-                whole.table[:, places][:, :, places],
-                whole.classes[list(robots)],
-                whole.costs[:, tasks],
-                whole.work_classes[list(robots)],
-            )
+            known = self._measured.part(robots, places, tasks)
         return replace(
             self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, known=known
         )
