@@ -49,12 +49,12 @@ class Measured:
 
     def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
         """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
-        of_table, classes = np.unique(self.classes[list(robots)], return_inverse=True)
-        of_costs, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
+        tables, classes = np.unique(self.classes[list(robots)], return_inverse=True)
+        rows, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
         return Measured(
-            self.table[np.ix_(of_table, places, places)],
+            self.table[tables][:, places][:, :, places],
             classes.astype(np.int32),
-            self.costs[np.ix_(of_costs, tasks)],
+            self.costs[rows][:, tasks],
             work_classes.astype(np.int32),
         )
 
