@@ -27,7 +27,7 @@ def test_the_mission_can_be_done():
 
 
 def test_the_table_has_every_action_with_its_keys():
-    rows = re.findall(r"^\| `([a-z-]+)`[^|]*\| ([^|]*) \|", TEXT, flags=re.MULTILINE)
+    rows = re.findall(r"^\| `([a-z-]+)`[^|]*\|([^|]*)\|", TEXT, flags=re.MULTILINE)
     table = {name: set(re.findall(r"`([a-z_]+)`", keys)) for name, keys in rows}
     assert table == {name: {*keys.needed, *keys.optional} for name, keys in ACTION_KEYS.items()}
 
