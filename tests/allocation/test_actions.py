@@ -29,7 +29,7 @@ def assert_as_judged(mission, problem, rel):
     travel, in_time = Travel(mission), mission.rules.usage == "time"
     for i, robot in enumerate(problem.robots):
         own = [j for j in range(len(problem.tasks)) if problem.may(i, j)]
-        places = [(j, place_of_task(robot, problem.tasks[j])) for j in own]
+        places = [(j, place_of_task(problem.tasks[j], robot)) for j in own]
         costs = {j: travel.work_metres(robot, problem.tasks[j]) for j in own}
         start, end = (problem.start(i), place_of_start(robot)), place_at_end(robot, mission.rules)
         legs = [(a, b) for a in [start, *places] for b in places if a is not b]

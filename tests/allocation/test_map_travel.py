@@ -69,7 +69,7 @@ def assert_as_judged(mission, rel):
     problem, travel = Problem.compile(mission), Travel(mission)
     n = len(problem.tasks)
     for i, robot in enumerate(problem.robots):
-        places = [(j, place_of_task(robot, task)) for j, task in enumerate(problem.tasks)]
+        places = [(j, place_of_task(task)) for j, task in enumerate(problem.tasks)]
         start, end = (problem.start(i), place_of_start(robot)), place_at_end(robot, mission.rules)
         legs = [(a, b) for a in [start, *places] for b in places if a is not b]
         legs += [(a, (problem.end(i), end)) for a in places] if end is not None else []

@@ -44,7 +44,7 @@ def test_a_raster_of_very_many_lanes():
     action = Action(name="raster-search", side_m=10, height_m=2, spacing_m=1e-9)
     finding = refused(mission_of((Task(id="a", position=(0, 0), action=action),)))
     assert (finding.field, finding.value) == ("tasks[0].action.spacing_m", "1e-09")
-    assert finding.expected == "at least side_m / 10000, 0.001"
+    assert finding.expected == "at least side_m / 10000: 0.001"
 
 
 @pytest.mark.parametrize(

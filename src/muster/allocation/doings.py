@@ -51,36 +51,23 @@ class Doings:
         """With `by_body` robots of different bodies are in different classes."""
         moving = [j for j, task in enumerate(tasks) if task.action is not None and task.action.has_geometry]
         first_of: dict[object, int] = {}
-        like = tuple(
-            first_of.setdefault(_shape(robot) if moving or by_body else None, i) for i, robot in enumerate(robots)
-        )
-        impossible: dict[int, dict[int, str]] = {i: {} for i in first_of.values()}
-        found: dict[int, dict[int, Doing]] = {i: {} for i in first_of.values()}
-        usual: dict[int, Doing] = {}
-        for j in moving:
-            for i in found:
-                own = plan(tasks[j], robots[i])
-                if isinstance(own, Impossible):
-                    impossible[i][j] = own.reason
-                else:
-                    found[i][j] = own
-                    usual.setdefault(j, own)
-        filled = {i: usual | own for i, own in found.items()}
-        numbers: dict[object, int] = {}
-        keys = {
-            i: ((robots[i].radius_m, robots[i].kind) if by_body else None, tuple(d.points for d in own.values()))
-            for i, own in filled.items()
-        }
-        classes = np.array([numbers.setdefault(keys[i], len(numbers)) for i in like], dtype=np.int32)
+        shapes = [_shape(robot) if moving or by_body else None for robot in robots]
+        like = tuple(first_of.setdefault(shape, i) for i, shape in enumerate(shapes))
+        found = {i: {j: plan(tasks[j], robots[i]) for j in moving} for i in first_of.values()}
+        done = _completed(found)
+        keys = {i: (_body(robots[i]) if by_body else None, tuple(d.points for d in done[i].values())) for i in done}
+        numbers = {key: k for k, key in enumerate(dict.fromkeys(keys.values()))}
+        classes = np.array([numbers[keys[i]] for i in like], dtype=np.int32)
         firsts = tuple(int(np.argmax(classes == k)) for k in range(len(numbers)))
-        entries = np.array([_coordinates([t.entry or t.position for t in tasks])] * len(firsts))
-        exits = np.array([_coordinates([t.exit or t.position for t in tasks])] * len(firsts))
-        costs = np.array([[t.actuation_cost for t in tasks]] * len(firsts), dtype=np.float64)
-        by_class = {(k, j): doing for k, i in enumerate(firsts) for j, doing in filled[i].items()}
+        count = len(firsts)
+        entries = np.array([_coordinates([t.entry or t.position for t in tasks])] * count)
+        exits = np.array([_coordinates([t.exit or t.position for t in tasks])] * count)
+        costs = np.array([[t.actuation_cost for t in tasks]] * count, dtype=np.float64)
+        by_class = {(k, j): doing for k, i in enumerate(firsts) for j, doing in done[i].items()}
         for at, doing in by_class.items():
             entries[at], exits[at] = doing.waypoints[0].position, doing.waypoints[-1].position
             costs[at] = doing.cost_m
-        return cls(classes, firsts, entries, exits, costs, by_class, like, impossible)
+        return cls(classes, firsts, entries, exits, costs, by_class, like, _reasons(found))
 
     def why_impossible(self, i: int, j: int) -> str | None:
         """Why robot i cannot do task j, whatever the plan; None if it can."""
@@ -89,6 +76,24 @@ class Doings:
     def cannot_do(self, i: int) -> frozenset[int]:
         """The tasks that robot i cannot do."""
         return frozenset(self._impossible[self._like[i]])
+
+
+def _completed(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, Doing]]:
+    """How each robot does each task that some robot can do; one that cannot is said to do it as the first that can."""
+    able = {i: {j: own for j, own in row.items() if isinstance(own, Doing)} for i, row in found.items()}
+    usual: dict[int, Doing] = {}
+    for row in able.values():
+        usual = row | usual
+    order = sorted(usual)
+    return {i: {j: row.get(j, usual[j]) for j in order} for i, row in able.items()}
+
+
+def _reasons(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, str]]:
+    return {i: {j: own.reason for j, own in row.items() if isinstance(own, Impossible)} for i, row in found.items()}
+
+
+def _body(robot: Robot) -> tuple[float, str]:
+    return robot.radius_m, robot.kind
 
 
 def _shape(robot: Robot) -> tuple[object, ...]:

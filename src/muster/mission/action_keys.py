@@ -14,7 +14,8 @@ class ActionKeys:
     needed, optional
         names of fields of `model.Action`.
     has_geometry
-        whether its cost follows from way points, so that a mission must not type it.
+        whether its cost follows from way points, so that a mission must not type it. Without geometry the robot is at
+        the task's position, as in `go-to-goal`.
     """
 
     needed: tuple[str, ...] = ()

@@ -35,7 +35,7 @@ def _unsupported(mission: Mission) -> Iterator[Fault]:
             expected = "an action without geometry: travel tables know the places of robots and tasks alone"
             yield Fault(("tasks", k, "action", "name"), shown(action.name), expected)
         if action is not None and _lanes(action) > _MOST_LANES:
-            expected = f"at least side_m / {_MOST_LANES}, {(action.side_m or 0.0) / _MOST_LANES:g}"
+            expected = f"at least side_m / {_MOST_LANES}: {(action.side_m or 0.0) / _MOST_LANES:g}"
             yield Fault(("tasks", k, "action", "spacing_m"), shown(action.spacing_m), expected)
     if not math.isfinite(_bound(mission)):
         yield Fault((), "numbers too large or too small", "numbers whose sums are below 1.8e308")
@@ -50,11 +50,11 @@ def _bound(mission: Mission) -> float:
     points += [tuple(size for size in row if size is not None) for row in sizes]
     points += [t.action.pickup for t in tasks if t.action is not None]
     far = max(abs(c) for point in points if point is not None for c in point)
-    if far > _LARGEST_COORDINATE:
+    stretch = _STRETCH if any(t.action is not None and t.action.has_geometry for t in tasks) else 1.0
+    if far > _LARGEST_COORDINATE / stretch:
         return math.inf
     tabled = [d for table in mission.travel_tables.values() for row in table.metres for d in row if math.isfinite(d)]
-    moving = any(t.action is not None and t.action.has_geometry for t in tasks)
-    metres = max([(_STRETCH if moving else 4) * far, *tabled])
+    metres = max([4 * stretch * far, *tabled])
     work = sum(t.actuation_cost + (t.duration_s or 0.0) + _action_bound(t.action, metres) for t in tasks)
     slowest = min(1.0, *(r.speed_mps for r in robots), *(r.efficiency for r in robots))
     legs = float(len(tasks) + 2 * len(robots))

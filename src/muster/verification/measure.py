@@ -55,7 +55,7 @@ def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Tas
     travelled = worked = 0.0
     here = place_of_start(robot)
     for task in tasks:
-        there = place_of_task(robot, task)
+        there = place_of_task(task, robot)
         leg = _leg(travel.metres(robot, here, there), robot, in_time)
         travelled += leg.usage
         metres = travel.work_metres(robot, task)

@@ -19,9 +19,13 @@ class Place:
     exit: Point
 
 
-def place_of_task(robot: Robot, task: Task) -> Place:
-    """Return the place of a task for a robot; of one that it cannot do, the task's position."""
-    doing = doing_at(robot, task)
+def place_of_task(task: Task, robot: Robot | None = None) -> Place:
+    """Return the place of a task for a robot, which may be left out where the task's action has no geometry.
+
+    Of one that the robot cannot do it is the task's position.
+    """
+    doing = None if robot is None else doing_at(robot, task)
+    assert robot is not None or not _has_geometry(task)
     if isinstance(doing, Doing):
         return Place(task.id, entry=doing.entry, exit=doing.exit)
     return Place(task.id, entry=task.entry or task.position, exit=task.exit or task.position)
@@ -29,7 +33,11 @@ def place_of_task(robot: Robot, task: Task) -> Place:
 
 def doing_at(robot: Robot, task: Task) -> Doing | Impossible | None:
     """Return how the robot does a task whose action has geometry; None for all other tasks, which anyone can do."""
-    return plan(task, robot) if task.action is not None and task.action.has_geometry else None
+    return plan(task, robot) if _has_geometry(task) else None
+
+
+def _has_geometry(task: Task) -> bool:
+    return task.action is not None and task.action.has_geometry
 
 
 def place_of_start(robot: Robot) -> Place:
