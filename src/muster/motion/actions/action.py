@@ -109,7 +109,7 @@ def along(task: Task, robot: Robot, points: Sequence[Point], heading: float | No
 
     Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `heading` is
     that in which the robot waits, radians; None: as it arrives. An entry and an exit that the mission gives are passed
-    before and after.
+    before and after. What is left is reckoned by straight legs: where a map makes them longer the work takes longer.
     """
     dimensions = len(task.position)
     own = [point[:dimensions] for point in points]
