@@ -4,7 +4,7 @@ import pytest
 
 from muster.allocation.problem import Problem
 from muster.mission.errors import NotSupportedError
-from muster.mission.model import Action, Mission, Robot, Task
+from muster.mission.model import Action, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan
 from muster.mission.source import Source
 from muster.verification import verify
@@ -25,22 +25,26 @@ def refused(mission):
     return finding
 
 
-@pytest.mark.parametrize(
-    ("mission", "field", "value"),
-    [
-        (
-            {"tasks": (Task(id="a", position=(0, 0), action=Action(name="ground-patrol", side_m=3)),)},
-            "tasks[0].action.name",
-            "ground-patrol",
-        ),
-    ],
-)
-def test_what_is_not_supported_yet(mission, field, value):
-    parts = {"robots": (Robot(id="r", position=(0, 0)),), "tasks": (), "source": Source("m.yaml", {(): ("m.yaml", 3)})}
-    finding = refused(Mission(**(parts | mission)))
-    assert (finding.file, finding.line, finding.field) == ("m.yaml", 3, field)
-    assert value in finding.value
-    assert finding.expected.endswith("not supported yet")
+def mission_of(tasks, **values):
+    source = Source("m.yaml", {(): ("m.yaml", 3)})
+    return Mission(robots=(Robot(id="r", position=(0, 0), type="t"),), tasks=tasks, source=source, **values)
+
+
+def test_travel_tables_do_not_know_where_actions_begin():
+    task = Task(id="a", position=(0, 0), action=Action(name="ground-patrol", side_m=3))
+    table = TravelTable(("r", "a"), ((0.0, 1.0), (1.0, 0.0)))
+    tabled = {"rules": Rules(travel="matrix"), "travel": {"t": "t.csv"}, "travel_tables": {"t": table}}
+    assert str(refused(mission_of((task,), **tabled))) == (
+        'm.yaml:3: tasks[0].action.name: "ground-patrol"; '
+        "expected an action without geometry: travel tables know the places of robots and tasks alone"
+    )
+
+
+def test_a_raster_of_very_many_lanes():
+    action = Action(name="raster-search", side_m=10, height_m=2, spacing_m=1e-9)
+    finding = refused(mission_of((Task(id="a", position=(0, 0), action=action),)))
+    assert (finding.field, finding.value) == ("tasks[0].action.spacing_m", "1e-09")
+    assert finding.expected == "at least side_m / 10000: 0.001"
 
 
 @pytest.mark.parametrize(
@@ -52,6 +56,8 @@ def test_what_is_not_supported_yet(mission, field, value):
         ({"speed_mps": 1e-300, "return_to_start": True}, [{"position": (1e10, 0)}]),
         ({"efficiency": 1e-300}, [{"action": Action(name="sensor-activation", duration_s=1e10)}]),
         ({"available_from_s": 1.7e308}, [{"duration_s": 1.7e308}]),
+        ({}, [{"action": Action(name="ground-patrol", side_m=1e151)}]),
+        ({}, [{"action": Action(name="delivery", pickup=(1.7e308, 0))}]),
         ({}, [{"priority": 1.7e308}, {"priority": 1.7e308}]),
     ],
 )

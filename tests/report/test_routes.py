@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from muster.mission.errors import MissingExtraError
-from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.model import Action, Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.report import plot_routes
 from muster.report.styles import LEFT_OUT, robot_style
@@ -53,6 +53,35 @@ def test_lines_go_to_the_entry_and_from_the_exit(mission, plan, drawn):
     np.testing.assert_array_equal(drawn(ax, "travel-ada")[0].get_xydata(), travel)
     np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 4), (3, 4), (4, 5)])
     np.testing.assert_array_equal(drawn(ax, "tasks-ada")[0].get_xydata()[0], (3, 4))
+
+
+def test_work_goes_along_the_way_points_of_an_action(mission, plan, drawn):
+    action = Action(name="raster-search", side_m=2, height_m=1, spacing_m=2)
+    tasks = (replace(mission.tasks[0], action=action, actuation_cost=0), *mission.tasks[1:])
+    mission = replace(mission, tasks=tasks)
+    ax = plot_routes(mission, plan, verify(mission, plan))
+    nan = (np.nan, np.nan)
+    travel = [(0, 0), (2, 3), nan, (2, 5), (3, 10), (11, 10)]
+    np.testing.assert_array_equal(drawn(ax, "travel-ada")[0].get_xydata(), travel)
+    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 3), (4, 3), (4, 5), (2, 5)])
+    assert "work" in legend_of(ax)
+
+
+def test_the_picture_holds_the_way_points_of_actions(mission, plan):
+    tasks = (replace(mission.tasks[0], action=Action(name="ground-patrol", side_m=80), actuation_cost=0),)
+    mission = replace(mission, tasks=(*tasks, *mission.tasks[1:]))
+    ax = plot_routes(mission, plan, verify(mission, plan))
+    assert ax.get_xlim()[0] < -37 < 43 < ax.get_xlim()[1]
+
+
+def test_a_delivery_is_drawn_around_what_is_in_the_way(drawn):
+    wall = Zone(polygon=((9, -5), (11, -5), (11, 6), (9, 6)))
+    arena = Map(boundary=((-5, -20), (30, -20), (30, 20), (-5, 20)), zones=(wall,))
+    task = Task(id="bring", position=(15, 0), action=Action(name="delivery", pickup=(5, 0)))
+    mission = Mission(robots=(Robot(id="ada", position=(0, 0)),), tasks=(task,), map=arena)
+    plan = Plan(routes=(Route("ada", ("bring",)),))
+    ax = plot_routes(mission, plan, verify(mission, plan))
+    np.testing.assert_allclose(drawn(ax, "work-ada")[0].get_xydata(), [(5, 0), (9, -5), (11, -5), (15, 0)], atol=1e-6)
 
 
 def test_tasks_bear_their_place_in_the_route(mission, plan, verdict, drawn):

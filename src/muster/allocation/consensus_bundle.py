@@ -37,7 +37,7 @@ import numpy as np
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.consensus import NO_BID, NOBODY, TOPOLOGIES, Beliefs, Ledger, diameter, neighbours
-from muster.allocation.problem import Bools, Floats, Indices, Problem, duration_s
+from muster.allocation.problem import Bools, Floats, Indices, Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError, ParameterError
 
@@ -149,25 +149,18 @@ class _Clock:
 
     def __init__(self, problem: Problem, discount: float) -> None:
         self._problem = problem
-        self._duration = np.array([math.nan if (d := duration_s(t)) is None else d for t in problem.tasks])
-        self._cost = np.array([t.actuation_cost for t in problem.tasks])
-        longest = max(float(self._work_s(i).max(initial=0.0)) for i in range(len(problem.robots)))
+        longest = max(float(problem.work_seconds(i).max(initial=0.0)) for i in range(len(problem.robots)))
         longest = max(longest, *(robot.available_from_s for robot in problem.robots))
         crossing = extent(problem) / min(robot.speed_mps for robot in problem.robots)
         # The second and third keep all sums in range where there is next to no way between the places.
         self._per_s = -math.log(discount) * _CROSSING / max(crossing, 1e-9 * longest, 1e-150)
-
-    def _work_s(self, i: int) -> Floats:
-        robot = self._problem.robots[i]
-        seconds = self._duration / robot.efficiency
-        return np.where(np.isnan(seconds), self._cost / robot.speed_mps, seconds)
 
     def start(self, i: int) -> float:
         return self._per_s * self._problem.robots[i].available_from_s
 
     def work(self, i: int) -> Floats:
         """(n,) for the work of robot i on each task."""
-        return self._per_s * self._work_s(i)
+        return self._per_s * self._problem.work_seconds(i)
 
     def travel(self, i: int) -> float:
         """For a unit of robot i's travel usage."""
@@ -179,10 +172,7 @@ def extent(problem: Problem) -> float:
     table = problem.travel[0]
     if len(table):
         return float(table[np.isfinite(table)].max(initial=0.0))
-    ends = [robot.place_at_end(problem.mission.rules) for robot in problem.robots]
-    portals = [place for task in problem.tasks for place in (task.entry, task.exit)]
-    places = [*(r.position for r in problem.robots), *(t.position for t in problem.tasks), *ends, *portals]
-    points = np.array([(*place, 0.0)[:3] for place in places if place is not None])
+    points = problem.all_places
     return float(np.ptp(points, axis=0).max())
 
 

@@ -13,12 +13,14 @@ import numpy.typing as npt
 
 from muster import core
 from muster.allocation.cut import cut_down
-from muster.allocation.travel import travel_table
+from muster.allocation.doings import Doings
+from muster.allocation.travel import straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported import require_supported
+from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
@@ -26,6 +28,35 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Lengths that a problem needs, metres; inf where there is no way.
+
+    Parameters
+    ----------
+    table, classes
+        as `Problem.travel`.
+    costs, work_classes
+        (work classes, n) what tasks cost, and (m,) each robot's class.
+    """
+
+    table: Floats
+    classes: npt.NDArray[np.int32]
+    costs: Floats
+    work_classes: npt.NDArray[np.int32]
+
+    def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
+        """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
+        tables, classes = np.unique(self.classes[list(robots)], return_inverse=True)
+        rows, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
+        return Measured(
+            self.table[tables][:, places][:, :, places],
+            classes.astype(np.int32),
+            self.costs[rows][:, tasks],
+            work_classes.astype(np.int32),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +90,7 @@ class Problem:
     robots: tuple[Robot, ...]
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
-    tabled: tuple[Floats, npt.NDArray[np.int32]] | None = None  # travel that the problem of which this is a part knew
+    known: Measured | None = None  # what the problem of which this is a part knew
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
@@ -91,14 +122,13 @@ class Problem:
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
-        tabled = None
+        known = None
         if self.mission.travel_rule == "map":
             n, m = len(self.tasks), len(self.robots)
             places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
-            table, classes = self.travel
-            tabled = table[:, places][:, :, places], classes[list(robots)]
+            known = self._measured.part(robots, places, tasks)
         return replace(
-            self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, tabled=tabled
+            self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, known=known
         )
 
     def __getstate__(self) -> dict[str, Any]:
@@ -107,9 +137,17 @@ class Problem:
 
     @property
     def places(self) -> tuple[Floats, Floats]:
-        """Where tasks are entered, (n, 3), and robots start, (m, 3), in metres of the map frame."""
+        """Where tasks are entered, (n, 3), and robots start, (m, 3), in metres of the map frame.
+
+        Where that depends on the robot, for one of them.
+        """
         n, m = len(self.tasks), len(self.robots)
-        return self._entries[:n], self._entries[n : n + m]
+        return self._entries[0, :n], self._entries[0, n : n + m]
+
+    @property
+    def all_places(self) -> Floats:
+        """(2n + 4m, 3) where tasks are entered and left, robots start and routes end; for one of the robots."""
+        return np.concatenate([self._entries[0], self._exits[0]])
 
     def holds(self, rule: str) -> bool:
         """Whether a rule of IGNORABLE holds."""
@@ -153,7 +191,7 @@ class Problem:
         return self.fixed[i] if self.fixed else ()
 
     def may(self, i: int, j: int) -> bool:
-        """Whether robot i may do task j: skills, suitability, locks."""
+        """Whether robot i may do task j: skills, suitability, locks, and what its action asks for."""
         return bool(self.allowed_by_kind[self.kinds[i], j])
 
     def refusal(self, i: int, j: int) -> tuple[str, str] | None:
@@ -162,6 +200,9 @@ class Problem:
         lacking = [skill for skill in task.requires if skill not in robot.skills]
         if self.holds("skills") and lacking:
             return "skill", f"lacks {', '.join(lacking)}"
+        unable = self.why_impossible(i, j)
+        if unable is not None:
+            return "skill", unable
         least = self.mission.rules.min_suitability
         if self.holds("suitability") and self.mission.suitability is not None:
             score = self.mission.suitability[robot.type or ""].get(task.type or "", 0.0)
@@ -170,6 +211,10 @@ class Problem:
         if task.only_robots is not None and robot.id not in task.only_robots:
             return "lock", f"only {', '.join(task.only_robots)} may do it"
         return None
+
+    def why_impossible(self, i: int, j: int) -> str | None:
+        """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
+        return self._doings.why_impossible(i, j)
 
     @cached_property
     def allowed(self) -> Bools:
@@ -199,7 +244,10 @@ class Problem:
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
         locked = {name for task in self.tasks for name in task.only_robots or ()}
-        return [(r.type, frozenset(r.skills), r.id if r.id in locked else None) for r in self.robots]
+        return [
+            (r.type, frozenset(r.skills), r.id if r.id in locked else None, self._doings.cannot_do(i))
+            for i, r in enumerate(self.robots)
+        ]
 
     def _allowed_row(self, i: int) -> Bools:
         return np.array([self.refusal(i, j) is None for j in range(len(self.tasks))], dtype=np.bool_)
@@ -216,7 +264,7 @@ class Problem:
     @cached_property
     def core(self) -> core.Problem:
         """The problem as the core holds it."""
-        table, classes = self.travel
+        measured = self._measured
         return core.Problem(
             objective=self.objective,
             usage_is_time=self.in_time,
@@ -226,16 +274,17 @@ class Problem:
             available_from=_floats(r.available_from_s for r in self.robots),
             must_end=np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_),
             fixed=np.array([len(self.beginning(i)) for i in range(len(self.robots))], dtype=np.int32),
-            actuation_cost=self._actuation_cost,
+            actuation_cost=measured.costs,
+            work_class=measured.work_classes,
             duration=self._duration,
             priority=_floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
             prerequisites=self.prerequisites,
-            entry=self._entries,
-            exit=self._exits,
-            table=table,
-            travel_class=classes,
+            entry=self._entries[0],
+            exit=self._exits[0],
+            table=measured.table,
+            travel_class=measured.classes,
         )
 
     @cached_property
@@ -245,41 +294,59 @@ class Problem:
         The table is (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no
         way.
         """
-        if self.tabled is not None:
-            return self.tabled
+        return self._measured.table, self._measured.classes
+
+    @property
+    def work_classes(self) -> npt.NDArray[np.int32]:
+        """(m,) of one class are robots for which every task costs the same metres."""
+        return self._measured.work_classes
+
+    @cached_property
+    def _measured(self) -> Measured:
+        if self.known is not None:
+            return self.known
+        doings, none = self._doings, np.empty(0, dtype=np.int32)
         if self.mission.travel_rule == "map":
-            return self._over_map.table(), self._over_map.classes
-        return travel_table(self.mission, self.robots, self.tasks)
+            table, costs = self._over_map.table(), self._over_map.costs
+            return Measured(table, doings.classes, np.where(np.isinf(costs), 0.0, costs), doings.classes)
+        if self.mission.travel_rule == "matrix":
+            return Measured(*travel_table(self.mission, self.robots, self.tasks), doings.costs, doings.classes)
+        table = straight_table(self.mission, self._exits, self._entries)
+        return Measured(table, doings.classes if len(table) else none, doings.costs, doings.classes)
+
+    @cached_property
+    def _doings(self) -> Doings:
+        return Doings.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
     def _over_map(self) -> MapTravel:
         from muster.allocation.map_travel import MapTravel
 
-        return MapTravel.of(self.mission, self.robots, self._exits, self._entries)
+        return MapTravel.of(self.mission, self.robots, self._doings, self._exits, self._entries)
 
     def why_no_way(self, i: int, j: int) -> str:
-        """Why robot i cannot come to task j, which no way leads to."""
-        if self.mission.travel_rule != "map" or self.tabled is not None:
+        """Why robot i cannot come to task j, which no way leads to, or along the way of its action."""
+        if self.mission.travel_rule != "map" or self.known is not None:
             return "there is no way to it"
         return self._over_map.why_not(i, self.start(i), j)
 
     @cached_property
-    def _actuation_cost(self) -> Floats:
-        return _floats(t.actuation_cost for t in self.tasks)
-
-    @cached_property
     def _duration(self) -> Floats:
-        return _floats(math.nan if (d := duration_s(t)) is None else d for t in self.tasks)
+        return _floats(math.nan if (d := duration_of(t)) is None else d for t in self.tasks)
 
     @cached_property
     def _entries(self) -> Floats:
-        """(n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
-        return _coordinates([*(t.entry or t.position for t in self.tasks), *self._robots_places])
+        """(classes, n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
+        return self._with_robots(self._doings.entries)
 
     @cached_property
     def _exits(self) -> Floats:
-        """(n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
-        return _coordinates([*(t.exit or t.position for t in self.tasks), *self._robots_places])
+        """(classes, n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
+        return self._with_robots(self._doings.exits)
+
+    def _with_robots(self, portals: Floats) -> Floats:
+        places = np.array([(*p, 0.0)[:3] for p in self._robots_places], dtype=np.float64)
+        return np.concatenate([portals, np.broadcast_to(places, (len(portals), *places.shape))], axis=1)
 
     @property
     def _robots_places(self) -> list[Point]:
@@ -316,33 +383,30 @@ class Problem:
         if len(table):
             metres = table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]]
         else:
-            metres = np.linalg.norm(self._exits[places][:, None] - self._entries[to][None], axis=2)
+            metres = np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2)
         return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""
+        return self.work_seconds(i) if self.in_time else self._work_metres(i)
+
+    def work_seconds(self, i: int) -> Floats:
+        """(n,) the time that robot i takes for the work of each task."""
         robot = self.robots[i]
-        if not self.in_time:
-            return self._actuation_cost
         in_time = self._duration / robot.efficiency
-        return np.where(np.isnan(in_time), self._actuation_cost / robot.speed_mps, in_time)
+        return np.where(np.isnan(in_time), self._work_metres(i) / robot.speed_mps, in_time)
+
+    def _work_metres(self, i: int) -> Floats:
+        measured = self._measured
+        return np.asarray(measured.costs[measured.work_classes[i]])
 
     def shortcuts(self) -> Indices:
         """Tasks through which a way can be shorter than the direct one."""
         if len(self.travel[0]):
             return np.arange(len(self.tasks))
         n = len(self.tasks)
-        return np.flatnonzero((self._entries[:n] != self._exits[:n]).any(axis=1))
-
-
-def duration_s(task: Task) -> float | None:
-    """Time a task takes a robot of efficiency 1, where one is given."""
-    return task.action.duration_s if task.action and task.action.duration_s is not None else task.duration_s
+        return np.flatnonzero((self._entries[0, :n] != self._exits[0, :n]).any(axis=1))
 
 
 def _floats(values: Iterable[float]) -> Floats:
     return np.array(list(values), dtype=np.float64)
-
-
-def _coordinates(points: Sequence[Point]) -> Floats:
-    return np.array([(*p, 0.0)[:3] for p in points], dtype=np.float64).reshape(len(points), 3)

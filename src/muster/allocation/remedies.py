@@ -23,9 +23,12 @@ _NEAR_ENOUGH = 1e-3  # relative
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
     """For every robot, in mission order, what it would need to do task j."""
     first = dict(_first_look(problem, routes, j))
-    searched = set(sorted(first, key=lambda i: first[i].size)[:_MOST_SEARCHED])
+    able = [i for i, remedy in first.items() if not remedy.unable]
+    searched = set(sorted(able, key=lambda i: first[i].size)[:_MOST_SEARCHED])
     found = {
-        i: _looked_into(problem, routes, i, j, remedy, judge)
+        i: _not_found(replace(remedy, impossible=True))
+        if remedy.unable
+        else _looked_into(problem, routes, i, j, remedy, judge)
         if i in searched
         else replace(_as_is(problem, routes, i, j, remedy, judge), searched=False)
         for i, remedy in first.items()
@@ -39,8 +42,8 @@ def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Re
     Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
     """
     first = dict(_first_look(problem, routes, j))
-    order = sorted(first, key=lambda i: first[i].size)
-    if first[order[0]].before:
+    order = sorted((i for i, remedy in first.items() if not remedy.unable), key=lambda i: first[i].size)
+    if order and first[order[0]].before:
         return first[order[0]]
     for i in order:
         if first[i].capacity.as_is is not None:
@@ -73,7 +76,9 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
         room = None if place is None else _work_capacity(problem, place[1])
         enough = room if room is None or now is None else max(room, now)
         capacity = Capacity(now=now, as_is=room, enough=enough)
-        yield i, _barriers(problem, robot, problem.tasks[j], Remedy(robot=robot.id, before=before, capacity=capacity))
+        unable = problem.why_impossible(i, j) or ""
+        remedy = Remedy(robot=robot.id, before=before, unable=unable, capacity=capacity)
+        yield i, _barriers(problem, robot, problem.tasks[j], remedy)
 
 
 def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:

@@ -53,8 +53,9 @@ class Remedy:
 
     Skills, score and lock are exactly what stands between the two: each is needed. `before` are the prerequisites that
     the plan leaves out. `enough` tells whether a plan with all this was found and judged; its routes are in `routes`.
-    `unreachable` tells that there is no way to the task, `impossible` that no capacity is enough beside the other
-    changes: both are proven. Of many robots only those that seem to need least are `searched` for plans in which other
+    `unable` tells why the robot cannot do the task's action, whatever changes; empty if it can. `unreachable` tells
+    that there is no way to the task, `impossible` that no capacity is enough beside the other changes: both are
+    proven. Of many robots only those that seem to need least are `searched` for plans in which other
     tasks are moved.
     """
 
@@ -63,6 +64,7 @@ class Remedy:
     suitability: Score | None = None
     lock: tuple[str, ...] | None = None
     before: tuple[Before, ...] = ()
+    unable: str = ""
     unreachable: bool = False
     impossible: bool = False
     searched: bool = True

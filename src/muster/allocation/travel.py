@@ -7,24 +7,26 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.errors import Finding, NotSupportedError
 from muster.mission.model import Mission, Robot, Task
+
+Floats = npt.NDArray[np.float64]
+
+_MOST_PLACES = 6_000  # tasks, starts and ends: 288 MB a table
 
 
 def travel_table(
     mission: Mission, robots: Sequence[Robot], tasks: Sequence[Task]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
-    """Travel tables and each robot's class.
+) -> tuple[Floats, npt.NDArray[np.int32]]:
+    """The mission's own travel tables and each robot's class.
 
     Returns
     -------
     table
-        (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no way; empty
-        where travel is straight, which the core works out itself.
+        (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no way.
     classes
-        (m,) index of each robot's table; empty where travel is straight.
+        (m,) index of each robot's table.
     """
-    if mission.travel_rule == "euclidean":
-        return np.empty(0), np.empty(0, dtype=np.int32)
     types = sorted({robot.type or "" for robot in robots})
     starts = [robot.id for robot in robots]
     names = [*(task.id for task in tasks), *starts, *starts]  # a robot ends, if anywhere, where it started
@@ -35,3 +37,27 @@ def travel_table(
         rows = [index[name] for name in names]
         tables.append(np.array(given.metres, dtype=np.float64)[np.ix_(rows, rows)])
     return np.array(tables), np.array([types.index(robot.type or "") for robot in robots], dtype=np.int32)
+
+
+def straight_table(mission: Mission, exits: Floats, entries: Floats) -> Floats:
+    """(classes, p, p) metres, straight, from exits to entries (classes, p, 3); empty where all robots have the same.
+
+    The core works those out itself.
+
+    Raises
+    ------
+    NotSupportedError
+        for more places than a table can hold.
+    """
+    if len(exits) == 1:
+        return np.empty(0)
+    require_room(mission, exits.shape[1], "actions whose places depend on the robot")
+    return np.array([np.linalg.norm(a[:, None] - b[None], axis=2) for a, b in zip(exits, entries, strict=True)])
+
+
+def require_room(mission: Mission, count: int, purpose: str) -> None:
+    """Refuse more places than a table can hold (NotSupportedError)."""
+    if count > _MOST_PLACES:
+        places = f"{count} starts, ends and tasks"
+        expected = f"at most {_MOST_PLACES} for {purpose}"
+        raise NotSupportedError([Finding(mission.source.file, None, "map", places, expected)])

@@ -132,8 +132,9 @@ class UsageBounds:
             return None
         near, known = np.full((count, count), math.inf), set[object]()
         for i, robot in enumerate(problem.robots):
-            speed = robot.speed_mps if problem.in_time else 1.0
-            kind = speed, len(problem.travel[0]) and robot.type, problem.allowed[i, problem.shortcuts()].tobytes()
+            speed, through = robot.speed_mps if problem.in_time else 1.0, problem.shortcuts()
+            table = int(problem.travel[1][i]) if len(problem.travel[0]) else 0
+            kind = speed, table, problem.allowed[i, through].tobytes(), problem.work_usage(i)[through].tobytes()
             if kind not in known:
                 known.add(kind)
                 near = np.minimum(near, _least_ways(problem, i, range(count)))

@@ -256,6 +256,8 @@ def _lines(problem: Problem, remedy: Remedy) -> list[str]:
             for before in remedy.before
             if not before.possible
         ]
+    if remedy.unable:
+        return [*lines, f"to be another robot: {remedy.unable}"]
     if remedy.unreachable:
         return [*lines, "a way to it: there is none, and no other change helps"]
     if remedy.capacity.grows:

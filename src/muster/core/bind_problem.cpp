@@ -40,12 +40,12 @@ void bind_problem(nb::module_& m) {
           "__init__",
           [](Problem* self, const std::string& objective, bool usage_is_time, Numbers capacity, Numbers speed,
              Numbers efficiency, Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost,
-             Numbers duration, Numbers priority, Indices kind, Flags allowed,
+             Indices work_class, Numbers duration, Numbers priority, Indices kind, Flags allowed,
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Numbers table,
              Indices travel_class) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
-            if (allowed.ndim() != 2 || kind.size() != capacity.size() || entry.ndim() != 2 || entry.shape(1) != 3 ||
-                exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
+            if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
+                entry.ndim() != 2 || entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
               throw std::invalid_argument("an array has the wrong shape");
             }
             ProblemData data;
@@ -58,6 +58,7 @@ void bind_problem(nb::module_& m) {
             data.must_end = flags(must_end);
             data.fixed.assign(fixed.data(), fixed.data() + fixed.size());
             data.actuation_cost = numbers(actuation_cost);
+            data.work_class.assign(work_class.data(), work_class.data() + work_class.size());
             data.duration = numbers(duration);
             data.priority = numbers(priority);
             data.kind.assign(kind.data(), kind.data() + kind.size());
@@ -73,9 +74,10 @@ void bind_problem(nb::module_& m) {
             new (self) Problem(std::move(data));
           },
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "efficiency"_a, "available_from"_a,
-          "must_end"_a, "fixed"_a, "actuation_cost"_a, "duration"_a, "priority"_a, "kind"_a, "allowed"_a,
-          "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a,
-          "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `kind` "
+          "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "duration"_a, "priority"_a, "kind"_a,
+          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a,
+          "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
+          "`actuation_cost` is (work classes, n) and `work_class` (m,); `kind` "
           "is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, "
           "3) metres in the map "
           "frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each "

@@ -34,7 +34,7 @@ void require(bool holds, const char* what) {
 
 Problem::Problem(ProblemData data)
     : data_(std::move(data)),
-      tasks_(static_cast<int>(data_.actuation_cost.size())),
+      tasks_(static_cast<int>(data_.duration.size())),
       robots_(static_cast<int>(data_.capacity.size())),
       places_(tasks_ + 2 * robots_),
       classes_(1),
@@ -47,8 +47,12 @@ Problem::Problem(ProblemData data)
           "arrays of robots differ in length");
   require(std::ranges::all_of(data_.fixed, [](int count) { return count >= 0; }),
           "a number of fixed tasks is negative");
-  require(data_.duration.size() == tasks && data_.priority.size() == tasks && data_.kind.size() == robots,
-          "arrays of tasks differ in length");
+  require(data_.priority.size() == tasks && data_.kind.size() == robots, "arrays of tasks differ in length");
+  require(data_.work_class.size() == robots, "work classes need a value for each robot");
+  require(std::ranges::all_of(data_.work_class, [](int c) { return c >= 0; }), "a work class is negative");
+  require(data_.actuation_cost.size() ==
+              (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.work_class))) * tasks,
+          "actuation costs have the wrong size");
   require(std::ranges::all_of(data_.kind, [](int k) { return k >= 0; }), "a kind is negative");
   require(data_.allowed.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.kind))) * tasks,
           "what kinds may do has the wrong size");

@@ -33,8 +33,9 @@ struct ProblemData {
   std::vector<char> must_end;  // the route goes on to the robot's end
   std::vector<int> fixed;      // tasks at the beginning of the route that stay where they are
   // Tasks.
-  std::vector<double> actuation_cost;
-  std::vector<double> duration;  // NaN: not given
+  std::vector<double> actuation_cost;  // work classes x tasks
+  std::vector<int> work_class;         // of each robot
+  std::vector<double> duration;        // NaN: not given
   std::vector<double> priority;
   std::vector<int> kind;      // of each robot
   std::vector<char> allowed;  // kinds x tasks
@@ -93,15 +94,18 @@ class Problem {
   double travel_time(int robot, int from, int to) const {
     return distance(travel_class(robot), from, to) / data_.speed[robot];
   }
+  double actuation_cost(int robot, int task) const {
+    return data_.actuation_cost[static_cast<std::size_t>(data_.work_class[robot]) * tasks_ + task];
+  }
   double work_time(int robot, int task) const {
     const double duration = data_.duration[task];
-    return std::isnan(duration) ? data_.actuation_cost[task] / data_.speed[robot] : duration / data_.efficiency[robot];
+    return std::isnan(duration) ? actuation_cost(robot, task) / data_.speed[robot] : duration / data_.efficiency[robot];
   }
   double travel_usage(int robot, int from, int to) const {
     return data_.usage_is_time ? travel_time(robot, from, to) : distance(travel_class(robot), from, to);
   }
   double work_usage(int robot, int task) const {
-    return data_.usage_is_time ? work_time(robot, task) : data_.actuation_cost[task];
+    return data_.usage_is_time ? work_time(robot, task) : actuation_cost(robot, task);
   }
   // What the way from a place to the robot's end adds; 0 where the route may end anywhere.
   double end_usage(int robot, int from) const { return must_end(robot) ? travel_usage(robot, from, end(robot)) : 0.0; }

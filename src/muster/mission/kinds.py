@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
 from numbers import Real
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
@@ -197,11 +197,11 @@ class Text:
 class Choice:
     """One of a few words."""
 
-    words: tuple[str, ...]
+    words: Collection[str]
 
     @property
     def filler(self) -> str:
-        return self.words[0]
+        return next(iter(self.words))
 
     @property
     def expected(self) -> str:

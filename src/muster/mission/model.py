@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
+from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.consistency import inconsistencies
 from muster.mission.errors import Finding, MissionError
 from muster.mission.kinds import (
@@ -176,22 +177,11 @@ class Robot(_Checked):
         return self.position if returns else None
 
 
-_ACTIONS: dict[str, tuple[str, ...]] = {
-    "go-to-goal": (),
-    "stationary-observation": ("width_m",),
-    "raster-search": ("side_m", "height_m", "spacing_m"),
-    "ground-patrol": ("side_m",),
-    "delivery": ("pickup",),
-    "sensor-activation": ("duration_s",),
-}
-"""The actions and the keys each needs."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Action(_Checked):
     """What a robot does at a task."""
 
-    name: str = spec(Choice(tuple(_ACTIONS)), "which action")
+    name: str = spec(Choice(ACTION_KEYS.keys()), "which action")
     width_m: float | None = spec(Number(above=0), "stationary-observation: width in view", default=None)
     heading_deg: float | None = spec(Number(), "stationary-observation: direction of view, 0 if absent", default=None)
     side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
@@ -200,17 +190,15 @@ class Action(_Checked):
     pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
     duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
 
-    OPTIONAL: ClassVar[dict[str, tuple[str, ...]]] = {"stationary-observation": ("heading_deg",)}
-
     @property
     def has_geometry(self) -> bool:
         """Whether the action's cost follows from way points, not from a typed number."""
-        return self.name not in ("go-to-goal", "sensor-activation")
+        return ACTION_KEYS[self.name].has_geometry
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         name = values["name"]
-        needed, optional = _ACTIONS[name], cls.OPTIONAL.get(name, ())
+        needed, optional = ACTION_KEYS[name].needed, ACTION_KEYS[name].optional
         given = {key for key, value in values.items() if value is not None and key != "name"}
         for key in needed:
             if key not in given:

@@ -75,9 +75,10 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
         if the map is an image that cannot be read.
     """
     image = _image(mission)
+    spatial = mission.dimensions == 3 if ax is None else is_spatial(ax)
+    scene = _scene(mission, verdict, spatial, image)
     if ax is None:
-        ax = _own_axes(mission, image)
-    scene = _scene(mission, verdict, is_spatial(ax), image)
+        ax = _own_axes(scene)
     with scene.names.fonts():
         _draw(ax, scene, plan, verdict)
     return ax
@@ -160,34 +161,37 @@ def _detail(tasks: int) -> _Detail:
     )
 
 
-def _all_points(mission: Mission, image: Grid | None) -> list[Point]:
+def _all_points(scene: _Scene) -> list[Point]:
     """List every place that the picture must hold."""
+    mission = scene.mission
     points = [robot.position for robot in mission.robots]
     points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
     for task in mission.tasks:
         points += [task.position, task.entry or task.position, task.exit or task.position]
+    for trace in scene.traces:
+        points += [tuple(point) for point in trace.work[~np.isnan(trace.work).any(axis=1)].tolist()]
     if mission.map is not None:
-        points += map_corners(mission.map, image)
+        points += map_corners(mission.map, scene.image)
     return points
 
 
-def _limits(mission: Mission, dimensions: int, image: Grid | None) -> tuple[Places, Places]:
+def _limits(scene: _Scene, dimensions: int) -> tuple[Places, Places]:
     """Find lower and upper corner of the picture, metres."""
-    return limits(places(_all_points(mission, image), dimensions), 0.06, on_ground=mission.map is not None)
+    return limits(places(_all_points(scene), dimensions), 0.06, on_ground=scene.mission.map is not None)
 
 
-def _own_axes(mission: Mission, image: Grid | None) -> Axes:
-    rows = named_rows(len(mission.robots)) + 6
+def _own_axes(scene: _Scene) -> Axes:
+    rows = named_rows(len(scene.mission.robots)) + 6
     legend_height = 0.19 * rows + 0.6
-    if mission.dimensions == 3:
+    if scene.dimensions == 3:
         return new_axes(8.8, max(6.8, legend_height), spatial=True)
-    low, high = _limits(mission, 2, image)
+    low, high = _limits(scene, 2)
     width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
     return new_axes(width + 2.6, max(height + 1.0, legend_height))
 
 
 def _frame(ax: Any, scene: _Scene) -> None:
-    low, high = _limits(scene.mission, scene.dimensions, scene.image)
+    low, high = _limits(scene, scene.dimensions)
     for axis, start, end in zip("xyz", low, high, strict=False):
         getattr(ax, f"set_{axis}lim")(start, end)
         getattr(ax, f"set_{axis}label")(f"{axis} [m]")

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muster.mission.model import Mission, Point, Robot, Task
+from muster.motion.actions import Impossible, plan
 from muster.motion.path import NoPath
 from muster.verification import RouteFigures, Verdict
 
@@ -23,7 +25,8 @@ class Trace:
     """One robot's way.
 
     `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven;
-    `work` from the entry of a task through its position to its exit, where these differ. Both are polylines, parted by
+    `work` along the way points of a task's action, else from its entry through its position to its exit, where these
+    differ. Both are polylines, parted by
     rows of NaN. `end` is the leg from the last task to where the route must end, no rows where it may end anywhere.
     """
 
@@ -78,13 +81,14 @@ def _trace(
 ) -> Trace:
     travel, work, here = [[robot.position]], [], robot.position
     for task in tasks:
-        entry, leaving = task.entry or task.position, task.exit or task.position
-        travel[-1] += way(robot, here, entry)[1:]
-        if entry != task.position or leaving != task.position:
-            work.append([entry, task.position, leaving])
-        if entry != leaving:
-            travel.append([leaving])
-        here = leaving
+        points = work_points(task, robot)
+        travel[-1] += way(robot, here, points[0])[1:]
+        if len(points) > 1:
+            legs = [way(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(task) else [points]
+            work.append([points[0], *(point for leg in legs for point in leg[1:])])
+        here = points[-1]
+        if points[0] != here:
+            travel.append([here])
     return Trace(
         index=index,
         robot=robot,
@@ -95,6 +99,16 @@ def _trace(
         work=_polylines(work, dimensions),
         end=places(way(robot, here, end) if end is not None and tasks else [], dimensions),
     )
+
+
+def work_points(task: Task, robot: Robot) -> Sequence[Point]:
+    """What a robot passes at a task; of one that it cannot do, the position."""
+    doing = plan(task, robot)
+    return (task.position,) if isinstance(doing, Impossible) else doing.points
+
+
+def _is_moving(task: Task) -> bool:
+    return task.action is not None and task.action.has_geometry
 
 
 def left_out(mission: Mission, verdict: Verdict) -> list[Task]:

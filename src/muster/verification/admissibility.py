@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan
+from muster.motion.actions import Impossible
 from muster.verification.measure import MeasuredRoute
+from muster.verification.travel import doing_at
 from muster.verification.verdict import Violation
 
 CAPACITY_TOLERANCE = 1e-9
@@ -65,6 +67,9 @@ def _pair(mission: Mission, plan: Plan, robot: Robot, task: Task) -> Iterator[Vi
         lacking = [skill for skill in task.requires if skill not in robot.skills]
         if lacking:
             yield Violation("skill", robot.id, task.id, f"the robot lacks {', '.join(lacking)}")
+    doing = doing_at(robot, task)
+    if isinstance(doing, Impossible):  # whatever is ignored: there is nothing that it could do
+        yield Violation("skill", robot.id, task.id, doing.reason)
     if mission.suitability is not None and "suitability" not in plan.ignored:
         assert robot.type is not None  # where there is a table, every robot and task has a type
         assert task.type is not None
@@ -88,6 +93,8 @@ def _unreachable(route: MeasuredRoute) -> Iterator[Violation]:
     for step in route.steps:
         if not step.leg.exists:
             yield Violation("unreachable", route.robot.id, step.task.id, f"no way from {here}")
+        if not step.passable:
+            yield Violation("unreachable", route.robot.id, step.task.id, "no way along the way points of its action")
         here = f"task {step.task.id}"
     if route.last_leg is not None and not route.last_leg.exists:
         yield Violation("unreachable", route.robot.id, None, f"no way from {here} to where the route must end")

@@ -20,12 +20,16 @@ class Leg:
 
 @dataclass(frozen=True)
 class Step:
-    """One task of a route: the way there, the usage on arrival, and how long the work takes."""
+    """One task of a route: the way there, the usage on arrival, and how long the work takes.
+
+    It is passable if there is a way along the way points of its action; without one the work's metres count nothing.
+    """
 
     task: Task
     leg: Leg
     arrival_usage: float
     work_s: float
+    passable: bool
 
 
 @dataclass(frozen=True)
@@ -51,12 +55,13 @@ def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Tas
     travelled = worked = 0.0
     here = place_of_start(robot)
     for task in tasks:
-        there = place_of_task(task)
+        there = place_of_task(task, robot)
         leg = _leg(travel.metres(robot, here, there), robot, in_time)
         travelled += leg.usage
-        seconds = work_seconds(robot, task)
-        steps.append(Step(task, leg, arrival_usage=travelled + worked, work_s=seconds))
-        worked += seconds if in_time else task.actuation_cost
+        metres = travel.work_metres(robot, task)
+        seconds = work_seconds(robot, task, metres or 0.0)
+        steps.append(Step(task, leg, travelled + worked, seconds, passable=metres is not None))
+        worked += seconds if in_time else metres or 0.0
         here = there
     end = place_at_end(robot, mission.rules) if steps else None
     last_leg = None if end is None else _leg(travel.metres(robot, here, end), robot, in_time)
@@ -71,12 +76,12 @@ def _leg(metres: float | None, robot: Robot, in_time: bool) -> Leg:
     return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
 
 
-def work_seconds(robot: Robot, task: Task) -> float:
+def work_seconds(robot: Robot, task: Task, metres: float) -> float:
     """Return how long the robot works on the task: duration by efficiency where one is given, else cost by speed."""
     duration = task.duration_s
     if duration is None and task.action is not None:
         duration = task.action.duration_s
-    return task.actuation_cost / robot.speed_mps if duration is None else duration / robot.efficiency
+    return metres / robot.speed_mps if duration is None else duration / robot.efficiency
 
 
 def equality_index(usages: Sequence[float]) -> float:

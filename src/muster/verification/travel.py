@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from muster.mission.model import Mission, Point, Robot, Rules, Task
+from muster.motion.actions import Doing, Impossible, plan
 from muster.verification.ways import MapWays
 
 
@@ -18,8 +19,25 @@ class Place:
     exit: Point
 
 
-def place_of_task(task: Task) -> Place:
+def place_of_task(task: Task, robot: Robot | None = None) -> Place:
+    """Return the place of a task for a robot, which may be left out where the task's action has no geometry.
+
+    Of one that the robot cannot do it is the task's position.
+    """
+    doing = None if robot is None else doing_at(robot, task)
+    assert robot is not None or not _has_geometry(task)
+    if isinstance(doing, Doing):
+        return Place(task.id, entry=doing.entry, exit=doing.exit)
     return Place(task.id, entry=task.entry or task.position, exit=task.exit or task.position)
+
+
+def doing_at(robot: Robot, task: Task) -> Doing | Impossible | None:
+    """Return how the robot does a task whose action has geometry; None for all other tasks, which anyone can do."""
+    return plan(task, robot) if _has_geometry(task) else None
+
+
+def _has_geometry(task: Task) -> bool:
+    return task.action is not None and task.action.has_geometry
 
 
 def place_of_start(robot: Robot) -> Place:
@@ -33,10 +51,14 @@ def place_at_end(robot: Robot, rules: Rules) -> Place | None:
 
 
 def _points(mission: Mission) -> list[Point]:
-    """All points where a leg of some route may begin or end."""
+    """All points where a leg of some route, or of the work on a task, may begin or end."""
     ends = [place_at_end(robot, mission.rules) for robot in mission.robots]
-    places = [*map(place_of_start, mission.robots), *map(place_of_task, mission.tasks), *filter(None, ends)]
-    return [point for place in places for point in (place.entry, place.exit)]
+    points = [place.entry for place in (*map(place_of_start, mission.robots), *filter(None, ends))]
+    for task in mission.tasks:
+        points += [task.entry or task.position, task.exit or task.position]
+        doings = (doing_at(robot, task) for robot in mission.robots)
+        points += [point for doing in doings if isinstance(doing, Doing) for point in doing.points]
+    return list(dict.fromkeys(points))
 
 
 class Travel:
@@ -65,6 +87,21 @@ class Travel:
             return self._ways.metres(robot, start.exit, end.entry)
         length = self._tabled(robot, start, end) if self._by_table else math.dist(start.exit, end.entry)
         return length if math.isfinite(length) else None
+
+    def work_metres(self, robot: Robot, task: Task) -> float | None:
+        """Return what the task costs the robot: the typed cost, or the legs between its way points; None if no way.
+
+        A task that the robot cannot do costs nothing.
+        """
+        doing = doing_at(robot, task)
+        if doing is None:
+            return task.actuation_cost
+        if isinstance(doing, Impossible):
+            return 0.0
+        if self._ways is None:
+            return doing.cost_m
+        lengths = [self._ways.metres(robot, start, end) for start, end in doing.legs]
+        return None if None in lengths else math.fsum(length for length in lengths if length is not None)
 
     def _tabled(self, robot: Robot, start: Place, end: Place) -> float:
         assert robot.type is not None  # a mission with travel tables has one for each robot's type

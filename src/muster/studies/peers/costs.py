@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.problem import Floats, Problem, duration_s
+from muster.allocation.problem import Floats, Problem
 
 Integers = npt.NDArray[np.int64]
 
@@ -76,22 +76,16 @@ def time_costs(problem: Problem, places: list[int], tasks: int) -> Costs:
     first = _first_of_each(keys)
     speeds = [1.0 if problem.in_time else problem.robots[i].speed_mps for i in first]
     legs = [problem.legs(i, places, places) / speed for i, speed in zip(first, speeds, strict=True)]
-    work = [_work_seconds(problem, i)[places[:tasks]] for i in first]
+    work = [problem.work_seconds(i)[places[:tasks]] for i in first]
     for table in legs:
         table[:, tasks:] = 0
     return _rounded(keys, legs, work)
 
 
-def _work_seconds(problem: Problem, i: int) -> Floats:
-    robot = problem.robots[i]
-    given = [(duration_s(task), task.actuation_cost) for task in problem.tasks]
-    return np.array([cost / robot.speed_mps if d is None else d / robot.efficiency for d, cost in given])
-
-
 def _keys(problem: Problem, own: Sequence[Hashable]) -> list[Hashable]:
     """What the costs of each robot depend on."""
     classes = problem.travel[1].tolist() or [0] * len(problem.robots)
-    return list(zip(classes, own, strict=True))
+    return list(zip(classes, problem.work_classes.tolist(), own, strict=True))
 
 
 def _first_of_each(keys: Sequence[Hashable]) -> list[int]:

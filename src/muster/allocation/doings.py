@@ -1,0 +1,105 @@
+"""What a problem's robots do at its tasks: entries, exits and costs, once for each class of robots that do alike.
+
+Only actions with geometry are looked at by robot; all other tasks are the same for everyone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.model import Point, Robot, Task
+from muster.motion.actions import Doing, Impossible, plan
+
+Floats = npt.NDArray[np.float64]
+Classes = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Doings:
+    """Made by `Doings.of`.
+
+    Parameters
+    ----------
+    classes
+        (m,) of one class are robots that pass the same points at all tasks that they can do.
+    firsts
+        a robot of each class, which stands for all.
+    entries, exits
+        (classes, n, 3) metres in the map frame. At a task that a robot cannot do they are those of another, or the
+        position.
+    costs
+        (classes, n) metres, straight.
+    moving
+        for each class and task with geometry that some robot can do, how it is done.
+    """
+
+    classes: Classes
+    firsts: tuple[int, ...]
+    entries: Floats
+    exits: Floats
+    costs: Floats
+    moving: Mapping[tuple[int, int], Doing]
+    _like: tuple[int, ...]  # for each robot the first of the same shape
+    _impossible: Mapping[int, Mapping[int, str]]  # for the first robot of each shape the reasons by task
+
+    @classmethod
+    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> Doings:
+        """With `by_body` robots of different bodies are in different classes."""
+        moving = [j for j, task in enumerate(tasks) if task.action is not None and task.action.has_geometry]
+        first_of: dict[object, int] = {}
+        shapes = [_shape(robot) if moving or by_body else None for robot in robots]
+        like = tuple(first_of.setdefault(shape, i) for i, shape in enumerate(shapes))
+        found = {i: {j: plan(tasks[j], robots[i]) for j in moving} for i in first_of.values()}
+        done = _completed(found)
+        keys = {i: (_body(robots[i]) if by_body else None, tuple(d.points for d in done[i].values())) for i in done}
+        numbers = {key: k for k, key in enumerate(dict.fromkeys(keys.values()))}
+        classes = np.array([numbers[keys[i]] for i in like], dtype=np.int32)
+        firsts = tuple(int(np.argmax(classes == k)) for k in range(len(numbers)))
+        count = len(firsts)
+        entries = np.array([_coordinates([t.entry or t.position for t in tasks])] * count)
+        exits = np.array([_coordinates([t.exit or t.position for t in tasks])] * count)
+        costs = np.array([[t.actuation_cost for t in tasks]] * count, dtype=np.float64)
+        by_class = {(k, j): doing for k, i in enumerate(firsts) for j, doing in done[i].items()}
+        for at, doing in by_class.items():
+            entries[at], exits[at] = doing.waypoints[0].position, doing.waypoints[-1].position
+            costs[at] = doing.cost_m
+        return cls(classes, firsts, entries, exits, costs, by_class, like, _reasons(found))
+
+    def why_impossible(self, i: int, j: int) -> str | None:
+        """Why robot i cannot do task j, whatever the plan; None if it can."""
+        return self._impossible[self._like[i]].get(j)
+
+    def cannot_do(self, i: int) -> frozenset[int]:
+        """The tasks that robot i cannot do."""
+        return frozenset(self._impossible[self._like[i]])
+
+
+def _completed(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, Doing]]:
+    """How each robot does each task that some robot can do; one that cannot is said to do it as the first that can."""
+    able = {i: {j: own for j, own in row.items() if isinstance(own, Doing)} for i, row in found.items()}
+    usual: dict[int, Doing] = {}
+    for row in able.values():
+        usual = row | usual
+    order = sorted(usual)
+    return {i: {j: row.get(j, usual[j]) for j in order} for i, row in able.items()}
+
+
+def _reasons(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, str]]:
+    return {i: {j: own.reason for j, own in row.items() if isinstance(own, Impossible)} for i, row in found.items()}
+
+
+def _body(robot: Robot) -> tuple[float, str]:
+    return robot.radius_m, robot.kind
+
+
+def _shape(robot: Robot) -> tuple[object, ...]:
+    """What the doings of a robot may depend on (see `TaskAction`)."""
+    return robot.kind, robot.radius_m, robot.kinematics, robot.camera
+
+
+def _coordinates(points: Sequence[Point]) -> Floats:
+    return np.array([(*p, 0.0)[:3] for p in points], dtype=np.float64).reshape(len(points), 3)

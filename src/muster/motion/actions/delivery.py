@@ -1,0 +1,22 @@
+"""Take a load up at `pickup` and bring it to the task's position."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.model import Robot, Task
+from muster.motion.actions.action import Doing, along
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """Enters at the pickup and leaves from the position; the way between the two is the cost."""
+
+    name: str = "delivery"
+    keys: ActionKeys = ACTION_KEYS["delivery"]
+
+    def plan(self, task: Task, robot: Robot) -> Doing:
+        assert task.action is not None
+        assert task.action.pickup is not None
+        return along(task, robot, [task.action.pickup, task.position])

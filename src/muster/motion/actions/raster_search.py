@@ -1,0 +1,40 @@
+"""Fly over a square in lanes: TCF thesis equations (4.31)-(4.34).
+
+The lanes run east and west, `spacing_m` apart, from the southern side of the square on. As in (4.32) the last has that
+distance too, so that it lies on the northern side of the square, or less than a spacing beyond.
+The cost is the length of the way; (4.35) only approximates it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.model import Robot, Task
+from muster.motion.actions.action import Doing, Impossible, along, given, raised
+
+_ROUNDING = 1e-9
+"""Of a spacing: sides that are a whole number of spacings but for rounding have no lane more."""
+
+
+@dataclass(frozen=True)
+class RasterSearch:
+    """Enters at the south-western corner, leaves from the end of the last lane."""
+
+    name: str = "raster-search"
+    keys: ActionKeys = ACTION_KEYS["raster-search"]
+
+    def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
+        side, height, spacing = given(task, "side_m", "height_m", "spacing_m")
+        if robot.kind == "ground" and len(task.position) == 3:
+            return Impossible(f"a ground robot cannot search from {height:g} m above the ground")
+        x, y, z = raised(task.position, height)
+        half = side / 2
+        lanes = 1 + math.ceil(side / spacing - _ROUNDING)
+        points = []
+        for k in range(lanes):
+            north = y - half + k * spacing
+            west_to_east = [(x - half, north, z), (x + half, north, z)]
+            points += west_to_east if k % 2 == 0 else west_to_east[::-1]
+        return along(task, robot, points)

@@ -1,0 +1,20 @@
+"""Switch a sensor on at the task's position and wait until it has measured (`duration_s`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.model import Robot, Task
+from muster.motion.actions.action import Doing, staying
+
+
+@dataclass(frozen=True)
+class SensorActivation:
+    """Takes `duration_s / efficiency` seconds; it costs what the mission types in."""
+
+    name: str = "sensor-activation"
+    keys: ActionKeys = ACTION_KEYS["sensor-activation"]
+
+    def plan(self, task: Task, robot: Robot) -> Doing:
+        return staying(task, robot)

@@ -1,0 +1,78 @@
+"""The port of a robot: the one way to reach it, be it simulated or real, whatever carries the plan out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+Place = tuple[float, float, float]
+"""Metres in the map frame; z is 0 in a mission in the plane."""
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """Where a robot goes, and what it does there.
+
+    Parameters
+    ----------
+    position
+        where it goes, straight from where it is or from the way point before.
+    heading
+        radians from east, anticlockwise, to which it turns there; None: as it arrives.
+    hold_s
+        seconds for which it stays.
+    label
+        given back by telemetry when it is passed; the sender's own affair.
+    """
+
+    position: Place
+    heading: float | None = None
+    hold_s: float = 0.0
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Telemetry:
+    """What a robot last said of itself.
+
+    Parameters
+    ----------
+    time_s
+        when, in seconds of the mission's clock.
+    position, heading, velocity
+        map frame: metres, radians, m/s, as its odometry has them.
+    odometry_m
+        metres travelled since the beginning of the mission.
+    order, passed
+        the number of the last `send` that it took, and how many of its way points it has passed, holds included.
+    """
+
+    time_s: float
+    position: Place
+    heading: float
+    velocity: Place
+    odometry_m: float
+    order: int
+    passed: int
+
+
+class RobotPort(Protocol):
+    """One robot."""
+
+    @property
+    def robot(self) -> str:
+        """Its id."""
+        ...
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """Give it way points in place of those that it still has; returns the number of this order, from 1."""
+        ...
+
+    def cancel(self) -> int:
+        """Let it stop where it is, without way points; returns the number of this order."""
+        ...
+
+    def telemetry(self) -> Telemetry | None:
+        """What it last said; None before it has said anything. Of a silent robot the times do not go on."""
+        ...

@@ -1,0 +1,1 @@
+"""Worlds in which a plan is carried out."""
