@@ -53,7 +53,7 @@ class PlainDoing:
 
 @dataclass(frozen=True)
 class Impossible:
-    """This robot cannot do the task; why."""
+    """Why a robot cannot do a task."""
 
     reason: str
 
