@@ -24,6 +24,7 @@ class Report:
     seed: int
     failures: list[str] = field(default_factory=list)
     counts: Counter = field(default_factory=Counter)
+    happened: list[str] = field(default_factory=list)
 
     def check(self, holds, what):
         self.counts["checks"] += 1
@@ -43,6 +44,7 @@ class Watcher:
 
     def on_event(self, now, kind, data):
         self.report.counts[kind] += 1
+        self.report.happened.append(f"{now:8.2f}  {kind}  {data}")
         if kind in ("robot-failed", "robot-silent", "robot-stuck"):
             self.out.add(data["subject"])
         elif kind == "robot-returns":

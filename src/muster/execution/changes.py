@@ -1,4 +1,4 @@
-"""What changes while a mission is carried out, as it reaches the ledger of tasks and the crew (DESIGN section 5)."""
+"""What changes while a mission is carried out, as it reaches the ledger of tasks and the crew."""
 
 from __future__ import annotations
 

@@ -38,6 +38,7 @@ class Dispatch:
         self._doing = doing
         self._way = way
         self._tell = tell
+        self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, hand: Hand, now: float) -> None:
         """See whether a robot has arrived, or ended its work."""
@@ -126,6 +127,7 @@ class Dispatch:
         hand.doing, hand.work_s, hand.delay_s, hand.home_usage = doing, lasts, delay, home
         hand.to_task, hand.works = len(there), self._ledger.may_begin(task)
         hand.at_home = False
+        hand.usage_to_task = hand.used - hand.used_before + self._planned_usage(hand, task)
         work = self._work_waypoints(hand, task) if hand.works else []
         hand.send(now, Activity.DRIVING, [*there, *work])
         self._tell("robot-leaves", {"robot": hand.robot.id, "task": task})
@@ -165,8 +167,10 @@ class Dispatch:
             hand.send(now, Activity.WORKING, [Waypoint(hand.doing.exit, hold_s=longer, label=task)])
             hand.begun_s = begun
             return
-        self._ledger.end(task, hand.robot.id, now)
         hand.charge_work()
+        self._ledger.end(task, hand.robot.id, now)
+        self._ledger.usage[task] = hand.usage_to_task, hand.used - hand.used_before
+        hand.used_before = hand.used
         hand.route.pop(0)
         hand.done.append(task)
         hand.turn_to(now, Activity.IDLE)
@@ -177,6 +181,12 @@ class Dispatch:
             return []
         stays = [Waypoint(hand.doing.exit, hold_s=hand.delay_s, label=task)] if hand.delay_s else []
         return [*hand.doing.waypoints, *stays]
+
+    def _planned_usage(self, hand: Hand, task: str) -> float:
+        """What a task costs by the plan in force, from the task before it or from where that plan was made."""
+        ahead = self.ahead.get(hand.robot.id, {})
+        before = hand.done[-1] if hand.done and hand.done[-1] in ahead else ""
+        return ahead.get(before, 0.0) - ahead.get(task, 0.0)
 
     def _home_usage(self, hand: Hand, doing: Doing) -> float | None:
         """Usage from the exit of a task to where the route ends; None where there is no way."""

@@ -1,6 +1,6 @@
 """What a robot does at a task, as far as carrying out needs it; and what it is for a task without an action.
 
-The time of work is DESIGN section 4: `duration_s / efficiency` where a duration is given, else
+The time of work: `duration_s / efficiency` where a duration is given, else
 `actuation_cost / speed`.
 """
 

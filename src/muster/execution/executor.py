@@ -97,12 +97,13 @@ class Executor:
         self._script = sorted(mission.events, key=lambda event: event.at_s)
         self._asked: list[Change] = []
         self._left_out = {item.task: told(item.reasons) for item in plan.unassigned if item.reasons}
-        self._now = now
-        self._begun_s = now
+        self.now_s = now
+        self.begun_s = now
         self._stood_still_at = -1
         for robot, tasks in required_routes(mission, plan).items():
             self.crew[robot].route = list(tasks)
-        self._ahead: Mapping[str, Mapping[str, float]] = usage_ahead(self._rest(), self._travel)
+        self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
+        self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
         self._observer.on_plan(now, self.plan)
 
     @property
@@ -123,23 +124,23 @@ class Executor:
         ParameterError
             if the event does not fit (see `Changes.take`).
         """
-        self._ask(self._changes.take(event, self._now))
+        self._ask(self._changes.take(event, self.now_s))
 
     def tick(self, now: float) -> Sequence[Happening]:
         """Go on to a time, not before the last, in seconds; returns what happened.
 
         To be called once after each step of the world, or whenever telemetry may have come.
         """
-        if now < self._now:
-            raise ParameterError(f"now: {now:g}; expected at least {self._now:g}: time does not go back")
-        first, self._now = len(self.happenings), now
+        if now < self.now_s:
+            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
+        first, self.now_s = len(self.happenings), now
         self._hear()
         for hand in self._present:
             self._dispatch.advance(hand, now)
         self._follow_script()
         self._notice()
-        self._notice_standstill()
         self._go_on()
+        self._notice_standstill()
         self._end_if_over()
         return self.happenings[first:]
 
@@ -149,15 +150,15 @@ class Executor:
 
     def _hear(self) -> None:
         for hand in self.crew.values():
-            said = hand.hear(self._now)
+            said = hand.hear(self.now_s)
             if said is not None:
-                self._observer.on_telemetry(self._now, hand.robot.id, said)
+                self._observer.on_telemetry(self.now_s, hand.robot.id, said)
                 if hand.out == SILENT:
-                    self._ask(self._changes.take_back(hand, self._now))
+                    self._ask(self._changes.take_back(hand, self.now_s))
 
     def _follow_script(self) -> None:
         """Let those events of the mission file happen that are due."""
-        while self._script and self._script[0].at_s <= self._now:
+        while self._script and self._script[0].at_s <= self.now_s:
             event = self._script.pop(0)
             try:
                 self.report(event)
@@ -167,9 +168,9 @@ class Executor:
     def _notice(self) -> None:
         """The monitor: missed telemetry, no progress, capacity."""
         for hand in self._present:
-            if is_silent(hand, self._now, self._limits):
-                self._ask(self._changes.put_out(hand, SILENT, self._now))
-            elif is_stuck(hand, self._now, self._limits):
+            if is_silent(hand, self.now_s, self._limits):
+                self._ask(self._changes.put_out(hand, SILENT, self.now_s))
+            elif is_stuck(hand, self.now_s, self._limits):
                 self._free_or_put_out(hand)
             elif hand.activity is Activity.DRIVING:
                 self._notice_capacity(hand)
@@ -177,18 +178,18 @@ class Executor:
     def _free_or_put_out(self, hand: Hand) -> None:
         """A robot that does not get on is sent again, and out the next time."""
         if hand.stuck_before:
-            self._ask(self._changes.put_out(hand, STUCK, self._now, "no progress"))
+            self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
         else:
             self._tell("robot-sent-again", {"robot": hand.robot.id, "reason": "no progress"})
-            self._dispatch.again(hand, self._now)
+            self._dispatch.again(hand, self.now_s)
 
     def _notice_capacity(self, hand: Hand) -> None:
         """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
-        task, capacity, after = hand.route[0], self._capacity(hand), hand.used_after(self._now)
+        task, capacity, after = hand.route[0], self._capacity(hand), hand.used_after(self.now_s)
         if exceeds(after + hand.home_usage, capacity):
             reason = f"capacity: {after + hand.home_usage:.2f} used with it, of {capacity:.2f}"
-            self._ask(self._dispatch.refuse(hand, task, reason, self._now))
-        elif hand.warned_of != task and exceeds(after + self._ahead[hand.robot.id].get(task, 0.0), capacity):
+            self._ask(self._dispatch.refuse(hand, task, reason, self.now_s))
+        elif hand.warned_of != task and exceeds(after + self._dispatch.ahead[hand.robot.id].get(task, 0.0), capacity):
             hand.warned_of = task
             self._ask([Change("robot-runs-low", hand.robot.id, f"of {capacity:.2f} for its route")])
 
@@ -197,14 +198,15 @@ class Executor:
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
-        present = self._present
-        moving = any(hand.activity not in (Activity.IDLE, Activity.WAITING) for hand in present)
-        ready = any(hand.activity is Activity.IDLE and hand.route for hand in present)
-        able = any(hand.activity is Activity.WAITING and self.ledger.may_begin(hand.route[0]) for hand in present)
-        waiting = [hand.route[0] for hand in present if hand.activity is Activity.WAITING]
-        if waiting and not (moving or ready or able) and self._stood_still_at != len(self.ledger.ends_s):
+        waiting = [hand.route[0] for hand in self._present if hand.activity is Activity.WAITING]
+        still = all(
+            hand.activity is Activity.WAITING or (hand.activity is Activity.IDLE and not hand.route)
+            for hand in self._present
+        )
+        if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
             self._stood_still_at = len(self.ledger.ends_s)
             self._ask([Change("standstill", waiting[0], f"waits for {', '.join(self.ledger.missing(waiting[0]))}")])
+            self._go_on()
 
     def _go_on(self) -> None:
         """Plan the rest again if that was asked for, and send robots on, until nobody refuses what it is to do."""
@@ -212,7 +214,7 @@ class Executor:
             if self._asked:
                 self._plan_again()
             for hand in self._present:
-                self._ask(self._dispatch.send_on(hand, self._now))
+                self._ask(self._dispatch.send_on(hand, self.now_s))
             if not self._asked:
                 return
 
@@ -223,26 +225,26 @@ class Executor:
             self._tell(change.kind, change.as_dict())
 
     def _rest(self) -> Rest:
-        return rest_of(self.mission, self.planned, self.crew, self.ledger, self._now)
+        return rest_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
 
     def _plan_again(self) -> None:
         causes, self._asked = [change.as_dict() for change in self._asked], []
         revision = self._replan(self._rest())
         for hand in self._present:
-            self._dispatch.take_route(hand, revision.routes.get(hand.robot.id, ()), self._now)
+            self._dispatch.take_route(hand, revision.routes.get(hand.robot.id, ()), self.now_s)
         for hand in self.crew.values():
             if hand.out:
                 hand.route = []
-        self._ahead, self._left_out = revision.ahead, dict(revision.left_out)
+        self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
         self.revisions.append(revision)
         self._tell("replanned", {"causes": causes, **revision.difference()})
-        self._observer.on_plan(self._now, self.plan)
+        self._observer.on_plan(self.now_s, self.plan)
 
     def _end_if_over(self) -> None:
         ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
         busy = ways or any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
         if not self.done and not busy and not any(map(self._matters, self._script)):
-            self.ended_s = max(self.ledger.ends_s.values(), default=self._begun_s)
+            self.ended_s = max(self.ledger.ends_s.values(), default=self.begun_s)
             self.ended_s = max([self.ended_s, *(hand.begun_s for hand in self._present if hand.done)])
             self._tell("mission-ended", {"lost": self.lost()})
 
@@ -261,5 +263,5 @@ class Executor:
         return {name: lost[name] for name in self.ledger.tasks if name in lost}
 
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
-        self.happenings.append(Happening(self._now, kind, data))
-        self._observer.on_event(self._now, kind, data)
+        self.happenings.append(Happening(self.now_s, kind, data))
+        self._observer.on_event(self.now_s, kind, data)

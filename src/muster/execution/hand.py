@@ -64,6 +64,8 @@ class Hand:
     begun_s: float = 0.0  # the activity
     work_s: float = 0.0  # how long the work at hand takes, delays included
     charged: float = 0.0  # usage of works that ended, as far as it was not travelled
+    used_before: float = 0.0  # usage at the end of the last task
+    usage_to_task: float = 0.0  # from then to the end of the task at hand, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
     nearest_m: float = math.inf  # least way left of this order, and when it was reached

@@ -27,6 +27,7 @@ class Ledger:
     starts_s: dict[str, float] = field(default_factory=dict)
     ends_s: dict[str, float] = field(default_factory=dict)
     done_by: dict[str, str] = field(default_factory=dict)
+    usage: dict[str, tuple[float, float]] = field(default_factory=dict)  # of tasks done: planned, flown
     cancelled: dict[str, float] = field(default_factory=dict)
     refusals: dict[str, dict[str, str]] = field(default_factory=dict)  # task, robot: why that robot cannot do it
 

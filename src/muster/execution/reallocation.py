@@ -17,6 +17,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
 from muster.execution.rest import Posed, Rest, posed
+from muster.execution.rewiring import rewired
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Reason
@@ -75,12 +76,15 @@ class Reallocation:
         of the search.
     hot
         temperature at which a search begins; low, as it begins with a good plan.
+    fill_waiting
+        whether waiting is made less afterwards, by `rewiring`.
     """
 
     travel: Travel
-    iterations: int = 1000
+    iterations: int = 3000
     seed: int = 0
     hot: float = 1.0
+    fill_waiting: bool = False
 
     def __call__(self, rest: Rest) -> Revision:
         """The rest planned again.
@@ -98,6 +102,8 @@ class Reallocation:
             routes, forced = self._searched(problem, admissible_part(problem, before)), frozenset[int]()
         else:
             routes, forced = self._stable(problem, before, robot_of, stable)
+        if self.fill_waiting:
+            routes = rewired(problem, routes)
         return _revision(rest, what, routes, {problem.tasks[j].id for j in forced})
 
     def _stable(

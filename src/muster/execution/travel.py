@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.allocation.problem import Problem
-from muster.execution.doing import place
-from muster.mission.model import Mission, TravelTable
+from muster.execution.doing import Way, place, straight
+from muster.mission.model import Mission, Robot, TravelTable
+from muster.motion.path import NoPath
 from muster.motion.port import Place
 from muster.motion.roads import Roads, body_of
 
@@ -69,6 +70,26 @@ def travel_of(mission: Mission, roads: Roads | None = None) -> Travel:
     if mission.travel_rule == "map":
         return OverMap(Roads.of(mission) if roads is None else roads)
     return ByTable(mission.travel_tables) if mission.travel_rule == "matrix" else Straight()
+
+
+def way_of(mission: Mission, roads: Roads | None = None) -> Way:
+    """The ways that robots go: the shortest over the mission's map, which `roads` may hold already, or straight.
+
+    Raises
+    ------
+    MissionError, MissingExtraError
+        as `Roads.of`.
+    """
+    if mission.travel_rule != "map":
+        return straight
+    over = Roads.of(mission) if roads is None else roads
+
+    def shortest(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
+        d = mission.dimensions
+        found = over.path(body_of(robot), start[:d], goal[:d])
+        return None if isinstance(found, NoPath) else [place(point) for point in found.points[1:].tolist()] or [goal]
+
+    return shortest
 
 
 class Straight:
