@@ -80,6 +80,7 @@ class World:
 
 def carry_out(executor, world, *, step=0.1, until=10_000.0, each=None):
     """Until the mission is over, or a time."""
+    executor.tick(world.now)
     while not executor.done and world.now < until:
         world.step(step)
         if each is not None:

@@ -129,7 +129,7 @@ class Executor:
     def tick(self, now: float) -> Sequence[Happening]:
         """Go on to a time, not before the last, in seconds; returns what happened.
 
-        To be called once after each step of the world, or whenever telemetry may have come.
+        To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
         if now < self.now_s:
             raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")

@@ -2,8 +2,8 @@
 
 TCF thesis, 6.3.1, (6.1) to (6.3): robot f waits `du = u_n(q) - u_f(p - 1)` for its p-th task, whose prerequisite
 robot n does as its q-th. A task that f would do later is put before it, if that makes f's route longer by less than
-`du`. The thesis takes usage for time; here all is time. A change is
-made only if robots wait less in all and the mission ends no later. It may cost usage: that is what it pays with.
+`du`. The thesis takes usage for time; here all is time. A change is made only if robots wait less in all or the mission
+ends earlier, and neither is more. It may cost usage: that is what it pays with.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Plan
 
-_LEAST_S = 1e-9  # by which waiting has to become less
+_LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,12 @@ class _Waiting:
     makespan: float
     at: dict[int, float]
 
+    def is_less_than(self, other: _Waiting) -> bool:
+        """Whether waiting or the makespan is less, and the other is not more."""
+        longer = max(self.total - other.total, self.makespan - other.makespan)
+        shorter = min(self.total - other.total, self.makespan - other.makespan)
+        return longer <= 0 and shorter < -_LEAST_S
+
 
 def _first_better(schedule: _Schedule, routes: Routes, now: _Waiting) -> tuple[Routes, _Waiting] | None:
     """Fill the longest waiting time that can be filled, with the task after which robots wait least."""
@@ -82,13 +88,9 @@ def _first_better(schedule: _Schedule, routes: Routes, now: _Waiting) -> tuple[R
             continue
         fitting = [other for other in tried if schedule.fits(f, routes[f], other[f], now.at[j])]
         judged = [(other, schedule.waiting(other)) for other in fitting]
-        less = [
-            (other, then)
-            for other, then in judged
-            if then.total < now.total - _LEAST_S and then.makespan <= now.makespan + _LEAST_S
-        ]
+        less = [(other, then) for other, then in judged if then.is_less_than(now)]
         if less:
-            return min(less, key=lambda pair: pair[1].total)
+            return min(less, key=lambda pair: (pair[1].total, pair[1].makespan))
     return None
 
 
@@ -123,7 +125,7 @@ class _Schedule:
             leaves = ends[routes[i][k - 1]] if k else self.problem.robots[i].available_from_s
             arrives = leaves + legs[i][k]
             starts = max([arrives, *(ends[other] for other in self.problem.prerequisites[j])])
-            ends[j], at[j] = starts + self._work_seconds[i, j], starts - arrives
+            ends[j], at[j] = starts + float(self._work_seconds[i, j]), starts - arrives
         return _Waiting(sum(at.values()), max(ends.values(), default=0.0), at)
 
     def fits(self, f: int, before: Sequence[int], after: Sequence[int], du: float) -> bool:
