@@ -136,6 +136,17 @@ def test_a_failed_robot_that_returns_goes_on():
     assert executor.crew["r_0"].used == pytest.approx(5)
 
 
+def test_a_robot_that_returns_and_did_nothing_stays_where_it_is():
+    events = [Event(at_s=1, robot_fails="r_1"), Event(at_s=2, robot_returns="r_1")]
+    mission = line(5.0, robots=2, events=events)
+    away = Mission(
+        robots=(mission.robots[0], Robot(id="r_1", position=(50, 0), end_position=(0, 90))),
+        tasks=mission.tasks,
+        events=mission.events,
+    )
+    assert carried_out(away, plan_of(r_0=["0"])).crew["r_1"].used == 0
+
+
 def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
     events = [Event(at_s=2, robot_silent="r_0"), Event(at_s=20, robot_returns="r_0")]
     mission = line(40.0, 60.0, robots=2, events=events)

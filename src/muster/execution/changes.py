@@ -87,7 +87,7 @@ class Changes:
     def take_back(self, hand: Hand, now: float) -> Iterator[Change]:
         """A robot takes part again, from where it is."""
         if hand.out:
-            hand.out, hand.heard_s, hand.stuck_before, hand.at_home = "", now, False, False
+            hand.out, hand.heard_s, hand.stuck_before = "", now, False
             hand.stop(now)
             yield Change("robot-returns", hand.robot.id)
 

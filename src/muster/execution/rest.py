@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from muster.allocation.fixed import keeping
 from muster.allocation.problem import Problem
+from muster.execution.doing import plain_work_s
 from muster.execution.travel import Spot, Travel
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
@@ -175,15 +176,15 @@ def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
 
 
 def _delayed(rest: Rest, task: Task) -> Task:
-    """A task with its delay. Without a duration it lasts as long as the slowest robot takes, and longer."""
+    """A task with its delay, as a duration that is right for the robot that has it, else for the fastest."""
     delay = rest.delays_s.get(task.id, 0.0)
     if not delay:
         return task
-    if task.action is not None and task.action.duration_s is not None:
-        return replace(task, action=replace(task.action, duration_s=task.action.duration_s + delay))
-    slowest = min(standing.robot.speed_mps for standing in rest.crew)
-    lasts = task.actuation_cost / slowest if task.duration_s is None else task.duration_s
-    return replace(task, duration_s=lasts + delay)
+    crew = {standing.robot.id: standing.robot for standing in rest.crew}
+    robot = crew.get(rest.former.get(task.id, "")) or max(crew.values(), key=lambda robot: robot.speed_mps)
+    action = None if task.action is None or task.action.duration_s is not None else task.action
+    lasts = (plain_work_s(task, robot) + delay) * robot.efficiency
+    return replace(task, duration_s=lasts, action=action)
 
 
 def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
