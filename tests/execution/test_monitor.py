@@ -66,7 +66,7 @@ def test_capacity_with_room_for_rounding():
     assert exceeds(10.001, 10.0)
 
 
-@pytest.mark.parametrize("limit", ["silent_after_s", "stuck_after_s"])
+@pytest.mark.parametrize("limit", ["silent_after_s", "stuck_after_s", "look_every_s"])
 def test_limits_are_above_0(limit):
     with pytest.raises(ParameterError, match=f"{limit}: 0; expected seconds above 0"):
         Limits(**{limit: 0})

@@ -125,6 +125,7 @@ class Dispatch:
             )
             return
         hand.doing, hand.work_s, hand.delay_s, hand.home_usage = doing, lasts, delay, home
+        hand.work_way_m = path_length(doing.entry, doing.waypoints)
         hand.to_task, hand.works = len(there), self._ledger.may_begin(task)
         hand.at_home = False
         hand.usage_to_task = hand.used - hand.used_before + self._planned_usage(hand, task)

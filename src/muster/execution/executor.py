@@ -100,6 +100,7 @@ class Executor:
         self.now_s = now
         self.begun_s = now
         self._stood_still_at = -1
+        self._look_s = now
         for robot, tasks in required_routes(mission, plan).items():
             self.crew[robot].route = list(tasks)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
@@ -167,12 +168,15 @@ class Executor:
 
     def _notice(self) -> None:
         """The monitor: missed telemetry, no progress, capacity."""
+        if self.now_s < self._look_s:
+            return
+        self._look_s = self.now_s + self._limits.look_every_s
         for hand in self._present:
             if is_silent(hand, self.now_s, self._limits):
                 self._ask(self._changes.put_out(hand, SILENT, self.now_s))
             elif is_stuck(hand, self.now_s, self._limits):
                 self._free_or_put_out(hand)
-            elif hand.activity is Activity.DRIVING:
+            elif hand.activity is Activity.DRIVING and self._capacity(hand) is not None:
                 self._notice_capacity(hand)
 
     def _free_or_put_out(self, hand: Hand) -> None:

@@ -57,6 +57,7 @@ class Hand:
     activity: Activity = Activity.IDLE
     told: Telemetry | None = None
     doing: Doing | None = None
+    work_way_m: float = 0.0  # metres that the work at hand makes it travel
     to_task: int = 0  # way points of the last order that lead to the task
     works: bool = False  # whether the order holds the work too
     delay_s: float = 0.0  # that the work at hand was ordered with
@@ -169,11 +170,6 @@ class Hand:
     def travel_left_m(self) -> float:
         """Metres to the entry of the task at hand."""
         return max(0.0, self.way_left_m - (self.work_way_m if self.works else 0.0))
-
-    @property
-    def work_way_m(self) -> float:
-        """Metres that the work at hand makes it travel."""
-        return 0.0 if self.doing is None else path_length(self.doing.entry, self.doing.waypoints)
 
     def charge_work(self) -> None:
         """The work at hand has ended: its cost is used up, as far as it was not travelled."""

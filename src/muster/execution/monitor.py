@@ -21,13 +21,16 @@ class Limits:
         a robot that has said nothing new for longer counts as silent.
     stuck_after_s
         a robot that gets on by less than a twentieth of its speed for so long is sent again, and the next time out.
+    look_every_s
+        how often robots are looked at; at most as often as the executor ticks.
     """
 
     silent_after_s: float = 5.0
     stuck_after_s: float = 30.0
+    look_every_s: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("silent_after_s", "stuck_after_s"):
+        for name in ("silent_after_s", "stuck_after_s", "look_every_s"):
             if not getattr(self, name) > 0:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected seconds above 0")
 
