@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test campaign help check format stub sanitize study bench clean prerequisites
+.PHONY: demo test campaign disturbances help check format stub sanitize study bench clean prerequisites
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -24,10 +24,14 @@ test: $(VENV)/developed
 campaign: $(VENV)/developed
 	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
 
+disturbances: $(VENV)/developed
+	$(BIN)/python -m tests.disturbances $(DISTURBANCES_FLAGS)
+
 help:
 	@echo "make demo       plan and draw a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
+	@echo "make disturbances  carry out 10,000 random missions in which robots fail and tasks change"
 	@echo "make check      formatters, linters, types, import contract"
 	@echo "make format     let the formatters change the files"
 	@echo "make stub       make the type stub of the core anew"

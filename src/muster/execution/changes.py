@@ -1,0 +1,167 @@
+"""What changes while a mission is carried out, as it reaches the ledger of tasks and the crew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from muster.execution.doing import place
+from muster.execution.hand import Activity, Hand
+from muster.execution.ledger import Ledger
+from muster.execution.travel import Travel
+from muster.mission.errors import ParameterError
+from muster.mission.kinds import shown
+from muster.mission.model import Event, Mission, Robot, Task
+from muster.motion.port import RobotPort
+
+FAILED, SILENT, STUCK = "failed", "silent", "stuck"
+"""Why a robot is out."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something that asks for a new plan: what, and of which robot or task."""
+
+    kind: str
+    subject: str
+    detail: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"kind": self.kind, "subject": self.subject, "detail": self.detail}
+
+
+@dataclass
+class Changes:
+    """Lets events happen to a ledger and a crew.
+
+    Parameters
+    ----------
+    mission
+        the question, for its rules.
+    ports
+        how robots are reached; a robot that joins has its port here by then.
+    """
+
+    mission: Mission
+    ledger: Ledger
+    crew: dict[str, Hand]
+    ports: Mapping[str, RobotPort]
+    travel: Travel
+
+    def take(self, event: Event, now: float) -> Iterator[Change]:
+        """Let an event happen; yields what asks for a new plan.
+
+        That a robot falls silent is for the monitor to notice: nothing is done here.
+
+        Raises
+        ------
+        ParameterError
+            if the event names a robot or task that there is not, or one anew that there is, or a robot without port.
+        """
+        if event.robot_fails is not None:
+            yield from self.put_out(self._hand(event.robot_fails), FAILED, now)
+        elif event.robot_returns is not None:
+            yield from self.take_back(self._hand(event.robot_returns), now)
+        elif event.robot_joins is not None:
+            yield self._join(event.robot_joins, now)
+        elif event.new_task is not None:
+            yield self._add(event.new_task)
+        elif event.cancel_task is not None:
+            yield from self._cancel(self._task(event.cancel_task), now)
+        elif event.move_task is not None:
+            yield from self._move(self._task(event.move_task.task), event.move_task.position, now)
+        elif event.delay_task is not None:
+            yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
+
+    def put_out(self, hand: Hand, why: str, now: float, detail: str = "") -> Iterator[Change]:
+        """A robot takes no part any more: what it was to do is free, also what it was doing."""
+        if hand.out == FAILED or (hand.out and why != FAILED):
+            return
+        hand.out = why
+        if hand.route:
+            self.ledger.give_up(hand.route[0])
+        hand.stop(now)
+        yield Change(f"robot-{why}", hand.robot.id, detail)
+
+    def take_back(self, hand: Hand, now: float) -> Iterator[Change]:
+        """A robot takes part again, from where it is."""
+        if hand.out:
+            hand.out, hand.heard_s, hand.stuck_before = "", now, False
+            hand.stop(now)
+            yield Change("robot-returns", hand.robot.id)
+
+    def _join(self, robot: Robot, now: float) -> Change:
+        if robot.id in self.crew:
+            raise ParameterError(f"robot_joins: {shown(robot.id)}; expected an id that no robot has")
+        if not self.travel.knows(robot.id):
+            raise ParameterError(f"robot_joins: {shown(robot.id)}; expected a robot with rows in the travel tables")
+        self.crew[robot.id] = new_hand(self.mission, robot, self.ports, now)
+        return Change("robot-joins", robot.id)
+
+    def _add(self, task: Task) -> Change:
+        if task.id in self.ledger.tasks:
+            raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
+        self.ledger.tasks[task.id] = task
+        return Change("new-task", task.id)
+
+    def _cancel(self, task: str, now: float) -> Iterator[Change]:
+        if task in self.ledger.ends_s or task in self.ledger.cancelled:
+            return
+        self._leave(task, now)
+        self.ledger.withdraw(task, now)
+        for hand in self.crew.values():
+            hand.route = [name for name in hand.route if name != task]
+        yield Change("cancel-task", task)
+
+    def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
+        """Work under way goes on where it is."""
+        at = self._at(task)
+        if task in self.ledger.ends_s or task in self.ledger.cancelled:
+            return
+        if at is not None and at.activity is Activity.WORKING:
+            return
+        self._leave(task, now)
+        self.ledger.move(task, to)
+        self.ledger.give_up(task)
+        self.ledger.refusals.pop(task, None)
+        yield Change("move-task", task)
+
+    def _delay(self, task: str, by_s: float) -> Iterator[Change]:
+        if task not in self.ledger.ends_s and task not in self.ledger.cancelled:
+            self.ledger.delay(task, by_s)
+            yield Change("delay-task", task, f"{by_s:g} s")
+
+    def _leave(self, task: str, now: float) -> None:
+        """Stop the robot that is at a task or on the way to it."""
+        hand = self._at(task)
+        if hand is not None and hand.activity not in (Activity.IDLE, Activity.RETURNING):
+            hand.stop(now)
+
+    def _at(self, task: str) -> Hand | None:
+        return next((hand for hand in self.crew.values() if hand.route[:1] == [task]), None)
+
+    def _hand(self, robot: str) -> Hand:
+        if robot not in self.crew:
+            raise ParameterError(f"robot: {shown(robot)}; expected {' or '.join(self.crew)}")
+        return self.crew[robot]
+
+    def _task(self, task: str) -> str:
+        if task not in self.ledger.tasks:
+            raise ParameterError(f"task: {shown(task)}; expected the id of a task that there is by then")
+        return task
+
+
+def new_hand(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float) -> Hand:
+    """A robot that begins to take part.
+
+    Raises
+    ------
+    ParameterError
+        if it has no port.
+    """
+    if robot.id not in ports:
+        raise ParameterError(f"ports: no port for robot {shown(robot.id)}; expected one for each robot")
+    home = robot.place_at_end(mission.rules)
+    in_time = mission.rules.usage == "time"
+    return Hand(robot, ports[robot.id], None if home is None else place(home), in_time, heard_s=now, since_s=now)

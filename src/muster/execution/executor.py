@@ -1,0 +1,271 @@
+"""The executor: carries a plan out through robot ports. Sans-I/O and in virtual time: `tick(now)` does all.
+
+Each robot takes the next task of its route when it is available (TCF thesis, 5.3.1: `a_i`), goes there, waits until all
+prerequisites have ended, does the work, and at last goes where its route ends. The monitor and events change what is
+to be done, and the rest is planned again (`reallocation`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from muster.execution.changes import SILENT, STUCK, Change, Changes, new_hand
+from muster.execution.dispatch import Dispatch
+from muster.execution.doing import Doer, Way, plain, straight
+from muster.execution.hand import Activity, Hand
+from muster.execution.ledger import Ledger
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
+from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
+from muster.execution.record import NoObserver, Observer
+from muster.execution.rest import Rest
+from muster.execution.situation import required_routes, rest_of, whole_plan
+from muster.execution.travel import Travel, travel_of
+from muster.mission.errors import ParameterError
+from muster.mission.model import Event, Mission
+from muster.mission.plan import Plan
+from muster.motion.port import RobotPort
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that happened: when (seconds), what, and plain data."""
+
+    at_s: float
+    kind: str
+    data: Mapping[str, Any]
+
+
+class Executor:
+    """Carries out one plan of one mission.
+
+    Parameters
+    ----------
+    mission, plan
+        what is to be done, with the events that happen meanwhile; and how. The rules that the plan ignores do not hold.
+    ports
+        for each robot how it is reached. A robot that joins has its port here by then.
+    doing
+        what a task makes a robot do.
+    way
+        the places a robot passes from one place to another.
+    travel
+        how travel is measured when the rest is planned again; by the mission's rule by default.
+    replan
+        plans the rest again; `Reallocation` by default.
+    limits
+        of the monitor.
+    observer
+        is told all that happens.
+    now
+        seconds of the mission's clock at which it begins.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        ports: Mapping[str, RobotPort],
+        *,
+        doing: Doer = plain,
+        way: Way = straight,
+        travel: Travel | None = None,
+        replan: Callable[[Rest], Revision] | None = None,
+        limits: Limits | None = None,
+        observer: Observer | None = None,
+        now: float = 0.0,
+    ) -> None:
+        self.mission = mission
+        self.ledger = Ledger.of(mission.tasks, "prerequisites" not in plan.ignored)
+        self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in mission.robots}
+        self.ended_s: float | None = None
+        self.happenings: list[Happening] = []
+        self.revisions: list[Revision] = []
+        self.planned = plan
+        self._travel = travel_of(mission) if travel is None else travel
+        self._replan = Reallocation(travel=self._travel) if replan is None else replan
+        self._limits = Limits() if limits is None else limits
+        self._observer = NoObserver() if observer is None else observer
+        self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
+        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self._tell)
+        self._script = sorted(mission.events, key=lambda event: event.at_s)
+        self._asked: list[Change] = []
+        self._left_out = {item.task: told(item.reasons) for item in plan.unassigned if item.reasons}
+        self.now_s = now
+        self.begun_s = now
+        self._stood_still_at = -1
+        self._look_s = now
+        for robot, tasks in required_routes(mission, plan).items():
+            self.crew[robot].route = list(tasks)
+        self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
+        self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
+        self._observer.on_plan(now, self.plan)
+
+    @property
+    def plan(self) -> Plan:
+        """The plan of the whole mission as it is now: what each robot did, does and will do."""
+        return whole_plan(self.mission, self.planned, self.crew, self.ledger, self._left_out)
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self.ended_s is not None
+
+    def report(self, event: Event) -> None:
+        """Let something happen that the mission file did not foresee; its `at_s` does not count.
+
+        Raises
+        ------
+        ParameterError
+            if the event does not fit (see `Changes.take`).
+        """
+        self._ask(self._changes.take(event, self.now_s))
+
+    def tick(self, now: float) -> Sequence[Happening]:
+        """Go on to a time, not before the last, in seconds; returns what happened.
+
+        To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
+        """
+        if now < self.now_s:
+            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
+        first, self.now_s = len(self.happenings), now
+        self._hear()
+        for hand in self._present:
+            self._dispatch.advance(hand, now)
+        self._follow_script()
+        self._notice()
+        self._go_on()
+        self._notice_standstill()
+        self._end_if_over()
+        return self.happenings[first:]
+
+    @property
+    def _present(self) -> list[Hand]:
+        return [hand for hand in self.crew.values() if not hand.out]
+
+    def _hear(self) -> None:
+        for hand in self.crew.values():
+            said = hand.hear(self.now_s)
+            if said is not None:
+                self._observer.on_telemetry(self.now_s, hand.robot.id, said)
+                if hand.out == SILENT:
+                    self._ask(self._changes.take_back(hand, self.now_s))
+
+    def _follow_script(self) -> None:
+        """Let those events of the mission file happen that are due."""
+        while self._script and self._script[0].at_s <= self.now_s:
+            event = self._script.pop(0)
+            try:
+                self.report(event)
+            except ParameterError as error:
+                self._tell("event-refused", {"reason": str(error)})
+
+    def _notice(self) -> None:
+        """The monitor: missed telemetry, no progress, capacity."""
+        if self.now_s < self._look_s:
+            return
+        self._look_s = self.now_s + self._limits.look_every_s
+        for hand in self._present:
+            if is_silent(hand, self.now_s, self._limits):
+                self._ask(self._changes.put_out(hand, SILENT, self.now_s))
+            elif is_stuck(hand, self.now_s, self._limits):
+                self._free_or_put_out(hand)
+            elif hand.activity is Activity.DRIVING and self._capacity(hand) is not None:
+                self._notice_capacity(hand)
+
+    def _free_or_put_out(self, hand: Hand) -> None:
+        """A robot that does not get on is sent again, and out the next time."""
+        if hand.stuck_before:
+            self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
+        else:
+            self._tell("robot-sent-again", {"robot": hand.robot.id, "reason": "no progress"})
+            self._dispatch.again(hand, self.now_s)
+
+    def _notice_capacity(self, hand: Hand) -> None:
+        """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
+        task, capacity, after = hand.route[0], self._capacity(hand), hand.used_after(self.now_s)
+        if exceeds(after + hand.home_usage, capacity):
+            reason = f"capacity: {after + hand.home_usage:.2f} used with it, of {capacity:.2f}"
+            self._ask(self._dispatch.refuse(hand, task, reason, self.now_s))
+        elif hand.warned_of != task and exceeds(after + self._dispatch.ahead[hand.robot.id].get(task, 0.0), capacity):
+            hand.warned_of = task
+            self._ask([Change("robot-runs-low", hand.robot.id, f"of {capacity:.2f} for its route")])
+
+    def _capacity(self, hand: Hand) -> float | None:
+        return None if "capacity" in self.planned.ignored else hand.robot.work_capacity
+
+    def _notice_standstill(self) -> None:
+        """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
+        waiting = [hand.route[0] for hand in self._present if hand.activity is Activity.WAITING]
+        still = all(
+            hand.activity is Activity.WAITING or (hand.activity is Activity.IDLE and not hand.route)
+            for hand in self._present
+        )
+        if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
+            self._stood_still_at = len(self.ledger.ends_s)
+            self._ask([Change("standstill", waiting[0], f"waits for {', '.join(self.ledger.missing(waiting[0]))}")])
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Plan the rest again if that was asked for, and send robots on, until nobody refuses what it is to do."""
+        while True:
+            if self._asked:
+                self._plan_again()
+            for hand in self._present:
+                self._ask(self._dispatch.send_on(hand, self.now_s))
+            if not self._asked:
+                return
+
+    def _ask(self, changes: Any) -> None:
+        """Have the rest planned again because of changes."""
+        for change in changes:
+            self._asked.append(change)
+            self._tell(change.kind, change.as_dict())
+
+    def _rest(self) -> Rest:
+        return rest_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
+
+    def _plan_again(self) -> None:
+        causes, self._asked = [change.as_dict() for change in self._asked], []
+        revision = self._replan(self._rest())
+        for hand in self._present:
+            self._dispatch.take_route(hand, revision.routes.get(hand.robot.id, ()), self.now_s)
+        for hand in self.crew.values():
+            if hand.out:
+                hand.route = []
+        self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
+        self.revisions.append(revision)
+        self._tell("replanned", {"causes": causes, **revision.difference()})
+        self._observer.on_plan(self.now_s, self.plan)
+
+    def _end_if_over(self) -> None:
+        ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
+        busy = ways or any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
+        if not self.done and not busy and not any(map(self._matters, self._script)):
+            self.ended_s = max(self.ledger.ends_s.values(), default=self.begun_s)
+            self.ended_s = max([self.ended_s, *(hand.begun_s for hand in self._present if hand.done)])
+            self._tell("mission-ended", {"lost": self.lost()})
+
+    def _matters(self, event: Event) -> bool:
+        """Whether an event to come can bring work, or a robot for what is open."""
+        helps = event.robot_joins or event.robot_returns or event.move_task
+        return event.new_task is not None or bool(helps and self.ledger.open)
+
+    def lost(self) -> dict[str, str]:
+        """Every task that is not done, and why; before the end: that is not done yet and in no route."""
+        under_way = {name for hand in self._present for name in hand.route}
+        lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
+        for task in self.ledger.open:
+            if task.id not in under_way:
+                lost[task.id] = self._left_out.get(task.id, "left out by the plan")
+        return {name: lost[name] for name in self.ledger.tasks if name in lost}
+
+    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        self.happenings.append(Happening(self.now_s, kind, data))
+        self._observer.on_event(self.now_s, kind, data)

@@ -1,0 +1,91 @@
+"""The ledger of tasks: which there are, how far each is, and why one is lost. Nothing is ever struck out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from muster.mission.model import Point, Task
+
+
+@dataclass
+class Ledger:
+    """What is known of each task.
+
+    Parameters
+    ----------
+    tasks
+        every task that there is or was, in order of appearance.
+    needs_order
+        whether prerequisites hold.
+    """
+
+    tasks: dict[str, Task]
+    needs_order: bool
+    delays_s: dict[str, float] = field(default_factory=dict)
+    arrivals_s: dict[str, float] = field(default_factory=dict)
+    starts_s: dict[str, float] = field(default_factory=dict)
+    ends_s: dict[str, float] = field(default_factory=dict)
+    done_by: dict[str, str] = field(default_factory=dict)
+    usage: dict[str, tuple[float, float]] = field(default_factory=dict)  # of tasks done: planned, flown
+    cancelled: dict[str, float] = field(default_factory=dict)
+    refusals: dict[str, dict[str, str]] = field(default_factory=dict)  # task, robot: why that robot cannot do it
+
+    @classmethod
+    def of(cls, tasks: Iterable[Task], needs_order: bool) -> Ledger:
+        return cls({task.id: task for task in tasks}, needs_order)
+
+    @property
+    def open(self) -> list[Task]:
+        """Tasks that are neither done nor cancelled, work under way included."""
+        return [task for name, task in self.tasks.items() if name not in self.ends_s and name not in self.cancelled]
+
+    @property
+    def waiting_s(self) -> float:
+        """Seconds that robots waited at tasks that were begun."""
+        return sum(start - self.arrivals_s[task] for task, start in self.starts_s.items())
+
+    def may_begin(self, task: str) -> bool:
+        """Whether all prerequisites have ended."""
+        return not self.needs_order or all(name in self.ends_s for name in self.tasks[task].prerequisites)
+
+    def missing(self, task: str) -> list[str]:
+        """Prerequisites that have not ended."""
+        return [name for name in self.tasks[task].prerequisites if self.needs_order and name not in self.ends_s]
+
+    def arrive(self, task: str, now: float) -> None:
+        self.arrivals_s[task] = now
+
+    def begin(self, task: str, now: float) -> None:
+        self.starts_s[task] = now
+
+    def give_up(self, task: str) -> None:
+        """The robot that was at it is no more."""
+        if task not in self.ends_s:
+            self.arrivals_s.pop(task, None)
+            self.starts_s.pop(task, None)
+
+    def end(self, task: str, robot: str, now: float) -> None:
+        self.ends_s[task] = now
+        self.done_by[task] = robot
+
+    def refuse(self, task: str, robot: str, reason: str) -> None:
+        self.refusals.setdefault(task, {})[robot] = reason
+
+    def move(self, task: str, to: Point) -> None:
+        """A task is elsewhere from now on; its entry and exit move with it."""
+        old = self.tasks[task]
+
+        def shifted(point: Point | None) -> Point | None:
+            if point is None:
+                return None
+            return tuple(c + b - a for c, a, b in zip(point, old.position, to, strict=True))
+
+        self.tasks[task] = replace(old, position=to, entry=shifted(old.entry), exit=shifted(old.exit))
+
+    def delay(self, task: str, by_s: float) -> None:
+        self.delays_s[task] = self.delays_s.get(task, 0.0) + by_s
+
+    def withdraw(self, task: str, now: float) -> None:
+        self.cancelled[task] = now
+        self.give_up(task)

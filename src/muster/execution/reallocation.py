@@ -1,0 +1,228 @@
+"""Re-allocation: the rest of a mission planned again when something has changed (TCF thesis, 7.3; market paper, 6).
+
+The plan so far, as far as it still can be, is where the search begins. `rules.stability` bounds how many tasks go from
+one robot that could do them to another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from muster.allocation.allocator import Routes
+from muster.allocation.explanations import unassigned
+from muster.allocation.fixed import admissible_part
+from muster.allocation.problem import Problem
+from muster.allocation.search import SEARCH, Parameters
+from muster.allocation.stop import Stop
+from muster.execution.rest import Posed, Rest, posed
+from muster.execution.rewiring import rewired
+from muster.execution.travel import Travel
+from muster.mission.clock import VirtualClock
+from muster.mission.plan import Reason
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revision:
+    """A new plan of the rest, and how it differs.
+
+    Parameters
+    ----------
+    routes
+        for each robot of the crew what it does next, in order, without work under way.
+    ahead
+        for each robot what it will use after each task of its route, in the mission's unit, the way to its end
+        included; under the empty name after what it is doing.
+    moved
+        tasks that went from one robot to another: from, to. Of them, and of the tasks dropped, those of `forced` had
+        to go: their robot is out, refused, or could not do all that it had.
+    added, dropped
+        tasks that had no robot and have one now, and the other way round.
+    left_out
+        every open task that no robot does, and why.
+    """
+
+    routes: Mapping[str, tuple[str, ...]]
+    ahead: Mapping[str, Mapping[str, float]]
+    moved: Mapping[str, tuple[str, str]]
+    forced: frozenset[str]
+    added: Mapping[str, str]
+    dropped: tuple[str, ...]
+    left_out: Mapping[str, str]
+
+    def difference(self) -> dict[str, Any]:
+        """What has changed, as plain data: robots of tasks moved and added, reasons of tasks dropped."""
+        return {
+            "moved": {task: list(robots) for task, robots in self.moved.items()},
+            "forced": sorted(self.forced),
+            "added": dict(self.added),
+            "dropped": {task: self.left_out[task] for task in self.dropped},
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reallocation:
+    """Plans the rest again by `search`, for a number of steps: the same rest gives the same plan.
+
+    Parameters
+    ----------
+    travel
+        how travel is measured.
+    iterations
+        steps of each search; with `rules.stability` there are up to three and one for each time that a robot cannot
+        do all that it had.
+    seed
+        of the search.
+    hot
+        temperature at which a search begins; low, as it begins with a good plan.
+    fill_waiting
+        whether waiting is made less afterwards, by `rewiring`.
+    """
+
+    travel: Travel
+    iterations: int = 3000
+    seed: int = 0
+    hot: float = 1.0
+    fill_waiting: bool = False
+
+    def __call__(self, rest: Rest) -> Revision:
+        """The rest planned again.
+
+        Without a crew nothing is done any more.
+        """
+        if not rest.crew:
+            return _nobody(rest)
+        what = posed(rest, self.travel)
+        problem = what.problem.ready()
+        before = _routes_before(problem, rest)
+        robot_of = {j: i for i, route in enumerate(before) for j in route[len(problem.beginning(i)) :]}
+        stable = rest.mission.rules.stability
+        if stable is None:
+            routes, forced = self._searched(problem, admissible_part(problem, before)), frozenset[int]()
+        else:
+            routes, forced = self._stable(problem, before, robot_of, stable)
+        if self.fill_waiting:
+            routes = rewired(problem, routes)
+        return _revision(rest, what, routes, {problem.tasks[j].id for j in forced})
+
+    def _stable(
+        self, problem: Problem, before: Routes, robot_of: Mapping[int, int], most: int
+    ) -> tuple[Routes, frozenset[int]]:
+        """Routes in which at most so many tasks have another robot, beyond those that their robot cannot do."""
+        forced: frozenset[int] = frozenset()
+        routes = admissible_part(problem, before)
+        while True:
+            routes = self._searched(_locked(problem, robot_of, forced), routes)
+            lost = frozenset(robot_of) - forced - {j for route in routes for j in route}
+            if not lost:
+                break
+            forced |= lost
+        freely = self._searched(problem, routes) if most else routes
+        moved = [j for i, route in enumerate(freely) for j in route if robot_of.get(j, i) != i and j not in forced]
+        spared = _spared(problem, routes)
+        free = forced.union(sorted(moved, key=lambda j: -spared[j])[:most])
+        return self._searched(_locked(problem, robot_of, free), routes), forced
+
+    def _searched(self, problem: Problem, start: Routes) -> Routes:
+        stop = Stop(iterations=self.iterations, clock=VirtualClock())
+        outcome = SEARCH.algorithm(problem, stop, self.seed, Parameters(hot=self.hot), start)
+        return outcome.routes
+
+
+def _routes_before(problem: Problem, rest: Rest) -> Routes:
+    """The plan so far, of the tasks that the problem has; each route begins with the robot's past."""
+    routes: Routes = []
+    for i, robot in enumerate(problem.robots):
+        still = [problem.task_index[name] for name in rest.routes.get(robot.id, ()) if name in problem.task_index]
+        routes.append([*problem.beginning(i), *(j for j in still if problem.may(i, j))])
+    return routes
+
+
+def _locked(problem: Problem, robot_of: Mapping[int, int], free: frozenset[int]) -> Problem:
+    """The problem in which tasks that have a robot keep it, but for some."""
+    tasks = tuple(
+        replace(task, only_robots=(problem.robots[robot_of[j]].id,)) if j in robot_of and j not in free else task
+        for j, task in enumerate(problem.tasks)
+    )
+    return replace(problem, tasks=tasks)
+
+
+def _spared(problem: Problem, routes: Routes) -> dict[int, float]:
+    """For each task in the routes the usage that its robot is spared without it."""
+    spared = {}
+    for i, route in enumerate(routes):
+        places = [problem.start(i), *route]
+        ends = [problem.end(i)] if problem.robots[i].place_at_end(problem.mission.rules) is not None else []
+        legs = problem.legs(i, places, [*route, *ends])
+        work = problem.work_usage(i)
+        for k, j in enumerate(route):
+            after = k + 1 < legs.shape[1]
+            spared[j] = float(legs[k, k] + work[j] + (legs[k + 1, k + 1] - legs[k, k + 1] if after else 0.0))
+    return spared
+
+
+def _ahead(problem: Problem, i: int, route: list[int]) -> dict[str, float]:
+    """What robot i will use after each task of its route, and under the empty name after what it is doing."""
+    if not route:
+        return {"": 0.0}
+    must_end = problem.robots[i].place_at_end(problem.mission.rules) is not None
+    work = problem.work_usage(i)
+    left = float(problem.legs(i, route[-1:], [problem.end(i)])[0, 0]) if must_end else 0.0
+    ahead, legs = {}, problem.legs(i, [problem.start(i), *route], route)
+    for k in reversed(range(len(route))):
+        ahead[problem.tasks[route[k]].id] = left
+        left += float(legs[k, k] + work[route[k]])
+    past = problem.beginning(i)
+    ahead[""] = ahead[problem.tasks[past[0]].id] if past else left
+    return ahead
+
+
+def usage_ahead(rest: Rest, travel: Travel) -> dict[str, dict[str, float]]:
+    """What each robot will use after each task of the routes as they are; see `Revision.ahead`."""
+    problem = posed(rest, travel).problem
+    routes = _routes_before(problem, rest)
+    return {robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)}
+
+
+def _revision(rest: Rest, what: Posed, routes: Routes, forced: Iterable[str]) -> Revision:
+    problem = what.problem
+    planned = {
+        robot.id: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :])
+        for i, robot in enumerate(problem.robots)
+    }
+    now = {task: robot for robot, tasks in planned.items() for task in tasks}
+    left_out = {item.task: told(item.reasons) for item in unassigned(problem, routes)} | dict(what.hopeless)
+    moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
+    still = {task for robot, tasks in rest.routes.items() for task in tasks}
+    freed = {task for task in moved if task not in still or moved[task][0] in rest.refusals.get(task, {})}
+    return Revision(
+        routes=planned,
+        ahead={robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)},
+        moved=moved,
+        forced=frozenset(forced) | freed,
+        added={task: robot for task, robot in now.items() if task not in rest.former},
+        dropped=tuple(task for task in left_out if task in rest.former),
+        left_out=left_out,
+    )
+
+
+def _nobody(rest: Rest) -> Revision:
+    names = [task.id for task in rest.tasks]
+    return Revision(
+        routes={},
+        ahead={},
+        moved={},
+        forced=frozenset(),
+        added={},
+        dropped=tuple(name for name in names if name in rest.former),
+        left_out=dict.fromkeys(names, "no robot takes part any more"),
+    )
+
+
+def told(reasons: Iterable[Reason]) -> str:
+    """Reasons in one line: robots with the same reason together."""
+    robots: dict[str, list[str]] = {}
+    for reason in reasons:
+        robots.setdefault(f"{reason.reason}: {reason.detail}", []).append(reason.robot)
+    return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())

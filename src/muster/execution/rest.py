@@ -1,0 +1,247 @@
+"""The rest of a mission as a problem: what is left to be planned while robots are under way.
+
+Each robot stands where it is, or will be when its work under way is done. What it has done is one task at the beginning
+of its route, which stays (`allocation.fixed`): it costs what the robot has used, lasts as long as the work under way
+still takes, and has the name of that work, so that dependants wait for it. So usages, the greatest of them, capacities
+and times are those of the whole mission, and prerequisites that have ended are gone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from muster.allocation.fixed import keeping
+from muster.allocation.problem import Problem
+from muster.execution.doing import plain_work_s
+from muster.execution.travel import Spot, Travel
+from muster.mission.model import Mission, Robot, Task
+from muster.mission.plan import Plan, Route
+from muster.motion.port import Place
+
+SO_FAR = "so far"
+_ROUNDING = 1e-9  # relative; by how much a capacity is above what cannot be helped
+
+
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """Where one robot that takes part stands in the mission.
+
+    Parameters
+    ----------
+    robot, home
+        who it is; where its route must end.
+    spot
+        where it is, or will be when the work under way is done.
+    free_s
+        when that is.
+    used
+        usage until then, in the mission's unit.
+    task
+        the work under way; None: there is none.
+    """
+
+    robot: Robot
+    home: Place | None
+    spot: Spot
+    free_s: float
+    used: float
+    task: str | None
+
+    @property
+    def has_past(self) -> bool:
+        return self.task is not None or self.used > 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rest:
+    """What is left of a mission at a time.
+
+    Parameters
+    ----------
+    mission
+        its rules; robots and tasks are those below.
+    ignored
+        rules that do not hold, of IGNORABLE.
+    crew
+        the robots that take part.
+    tasks
+        open tasks that are not under way; `ended` are done.
+    delays_s
+        by how much tasks take longer.
+    refusals
+        for a task the robots that cannot do it, and why.
+    routes
+        for each robot of the crew the tasks that it was to do, in order, without work under way; `former` for each
+        task the robot that was to do it, also one that is out.
+    """
+
+    mission: Mission
+    ignored: Collection[str]
+    now_s: float
+    crew: Sequence[Standing]
+    tasks: Sequence[Task]
+    ended: Collection[str]
+    delays_s: Mapping[str, float]
+    refusals: Mapping[str, Mapping[str, str]]
+    routes: Mapping[str, Sequence[str]]
+    former: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Posed:
+    """The rest as a problem, and why it does not have some tasks."""
+
+    problem: Problem
+    hopeless: Mapping[str, str]
+
+
+def posed(rest: Rest, travel: Travel) -> Posed:
+    """The problem that the rest is. There must be a crew."""
+    tasks, hopeless = _tasks_with_hope(rest, travel)
+    past = _past(rest)
+    mission = _mission(rest, [*past.values(), *tasks])
+    problem = Problem.compile(mission, ignored=rest.ignored)
+    spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
+    table = travel.table(problem, spots, {s.robot.id: s.spot for s in rest.crew})
+    problem = replace(problem, tabled=problem.travel if table is None else table)
+    problem = _bearable(problem, past)
+    routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
+    return Posed(keeping(problem, Plan(routes=routes)), hopeless)
+
+
+def _past(rest: Rest) -> dict[str, Task]:
+    """For each robot that has one, its past as a task."""
+    names = {task.id for task in rest.tasks}
+    past = {}
+    for standing in rest.crew:
+        if standing.has_past:
+            name = standing.task or f"{standing.robot.id} {SO_FAR}"
+            while name in names:
+                name += "'"
+            past[standing.robot.id] = _past_task(rest, standing, name)
+    return past
+
+
+def _past_task(rest: Rest, standing: Standing, name: str) -> Task:
+    in_time = rest.mission.rules.usage == "time"
+    lasts = standing.used if in_time else max(0.0, standing.free_s - rest.now_s)
+    return Task(
+        id=name,
+        type=None if rest.mission.suitability is None else SO_FAR,
+        position=standing.spot.point[: rest.mission.dimensions],
+        actuation_cost=0.0 if in_time else standing.used,
+        duration_s=lasts * standing.robot.efficiency,
+    )
+
+
+def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, str]]:
+    """The tasks that can be planned, as they are now; and why the others cannot."""
+    hopeless: dict[str, str] = {}
+    hopeful: dict[str, Task] = {}
+    needs_order = "prerequisites" not in rest.ignored
+    for task in rest.tasks:
+        robots, why = _robots_for(rest, task)
+        if not travel.knows(task.id):
+            hopeless[task.id] = "unreachable: the travel tables have no row for it"
+        elif robots is not None and not robots:
+            hopeless[task.id] = why
+        else:
+            before = tuple(name for name in task.prerequisites if needs_order and name not in rest.ended)
+            hopeful[task.id] = replace(_delayed(rest, task), prerequisites=before, only_robots=robots)
+    sure = {standing.task for standing in rest.crew if standing.task is not None}
+    waiting = dict(hopeful)
+    while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
+        for name in ready:
+            sure.add(name)
+            del waiting[name]
+    for name, task in waiting.items():
+        before_it = ", ".join(other for other in task.prerequisites if other not in sure)
+        hopeless[name] = f"prerequisite: {before_it} comes before it and is not going to be done"
+    return [task for name, task in hopeful.items() if name in sure], hopeless
+
+
+def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
+    """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
+    refused = rest.refusals.get(task.id, {})
+    if task.only_robots is None and not refused:
+        return None, ""
+    crew = [standing.robot.id for standing in rest.crew]
+    meant = crew if task.only_robots is None else [name for name in task.only_robots if name in crew]
+    robots = tuple(name for name in meant if name not in refused)
+    if task.only_robots is not None and not meant:
+        return robots, f"lock: only {', '.join(task.only_robots)} may do it, and takes no part any more"
+    return robots, "; ".join(f"{robot}: {why}" for robot, why in refused.items())
+
+
+def _delayed(rest: Rest, task: Task) -> Task:
+    """A task with its delay, as a duration that is right for the robot that has it, else for the fastest."""
+    delay = rest.delays_s.get(task.id, 0.0)
+    if not delay:
+        return task
+    crew = {standing.robot.id: standing.robot for standing in rest.crew}
+    robot = crew.get(rest.former.get(task.id, "")) or max(crew.values(), key=lambda robot: robot.speed_mps)
+    action = None if task.action is None or task.action.duration_s is not None else task.action
+    lasts = (plain_work_s(task, robot) + delay) * robot.efficiency
+    return replace(task, duration_s=lasts, action=action)
+
+
+def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
+    """The mission of which the problem is made. Travel is handed to the problem apart."""
+    mission = rest.mission
+    rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
+    scores = mission.suitability
+    return replace(
+        mission,
+        rules=rules,
+        map=None,
+        travel=None,
+        travel_tables={},
+        suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
+        robots=tuple(_robot(rest, standing) for standing in rest.crew),
+        tasks=tuple(tasks),
+        events=(),
+    )
+
+
+def _robot(rest: Rest, standing: Standing) -> Robot:
+    """A robot from now on. The reserve is kept of what it has left, so that detours may use it up by and by."""
+    robot, mission = standing.robot, rest.mission
+    capacity = robot.work_capacity
+    if capacity is not None:
+        left = max(0.0, capacity - standing.used)
+        capacity = standing.used + left * (1 - mission.rules.capacity_reserve)
+    # Usage of time is the past's duration, of which waiting is no part: it is put before the past.
+    leaves = standing.free_s - standing.used if mission.rules.usage == "time" else rest.now_s
+    if not standing.has_past:
+        leaves = rest.now_s
+    return replace(
+        robot,
+        position=standing.spot.point[: mission.dimensions],
+        end_position=None if standing.home is None else standing.home[: mission.dimensions],
+        return_to_start=False,
+        work_capacity=capacity,
+        available_from_s=max(0.0, leaves if standing.has_past else max(leaves, robot.available_from_s)),
+    )
+
+
+def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
+    """With capacities raised to what robots have used and need to go home: that is so, and no more than that.
+
+    A robot that has no way home need not go there.
+    """
+    robots = []
+    for i, robot in enumerate(problem.robots):
+        if robot.id in past:
+            j = problem.task_index[past[robot.id].id]
+            home = 0.0
+            if robot.end_position is not None:
+                home = float(problem.legs(i, [j], [problem.end(i)])[0, 0])
+            if math.isinf(home):
+                robot, home = replace(robot, end_position=None), 0.0
+            least = (float(problem.work_usage(i)[j]) + home) * (1 + _ROUNDING) + _ROUNDING
+            if robot.work_capacity is not None and robot.work_capacity < least:
+                robot = replace(robot, work_capacity=least)
+        robots.append(robot)
+    return replace(problem, robots=tuple(robots))

@@ -1,0 +1,1 @@
+"""Random missions carried out under random disturbances."""

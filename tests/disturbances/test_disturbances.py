@@ -1,0 +1,20 @@
+"""Nothing is lost, done twice or begun early, whatever goes wrong; `make disturbances` tries 10,000 missions."""
+
+from collections import Counter
+
+import pytest
+
+from tests.disturbances.trial import trial
+
+PART = 50
+
+
+@pytest.mark.parametrize("first", range(0, 500, PART))
+def test_missions_are_carried_out_whatever_happens(first):
+    reports = [trial(seed) for seed in range(first, first + PART)]
+    assert [f"seed {report.seed}: {failure}" for report in reports for failure in report.failures] == []
+    counts = sum((report.counts for report in reports), Counter())
+    assert counts["missions"] == PART
+    told = ("task-ends", "replanned", "moved", "lost", "new-task", "cancel-task", "move-task", "delay-task")
+    for kind in (*told, "robot-failed", "robot-silent", "robot-returns", "robot-joins"):
+        assert counts[kind] > 0, kind

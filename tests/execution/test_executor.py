@@ -1,0 +1,322 @@
+"""Plans carried out in a world without surprises, and what the executor does about changes."""
+
+import pytest
+from tests.execution.world import World, carry_out
+
+import muster
+from muster import Mission, Robot, Rules, Task
+from muster.execution.changes import FAILED, SILENT, STUCK
+from muster.execution.doing import Impossible, plain
+from muster.execution.executor import Executor
+from muster.execution.hand import Activity
+from muster.execution.monitor import Limits
+from muster.execution.report import report_of
+from muster.execution.travel import OverMap, way_of
+from muster.library import mission_names
+from muster.mission.errors import ParameterError
+from muster.mission.model import DelayedTask, Event, MovedTask
+from muster.mission.plan import Plan, Route
+from muster.motion.roads import Roads
+
+SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]
+
+
+def plan_of(**routes):
+    return Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes.items()))
+
+
+def line(*places, robots=1, events=(), rules=None, **task):
+    """Robots at the origin and tasks along the x axis, all of 1 m/s."""
+    return Mission(
+        name="line",
+        rules=rules or Rules(),
+        robots=tuple(Robot(id=f"r_{k}", position=(0.0, float(k))) for k in range(robots)),
+        tasks=tuple(Task(id=str(k), position=(x, 0.0), **task) for k, x in enumerate(places)),
+        events=tuple(events),
+    )
+
+
+def carried_out(mission, plan, **options):
+    world = World(mission)
+    return carry_out(Executor(mission, plan, world.ports, **options), world, until=1000)
+
+
+def kinds(executor):
+    return [happening.kind for happening in executor.happenings]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_missions_are_carried_out_as_planned(name):
+    """Every task, in order, after its prerequisites, for the usage and in the time that the judge finds."""
+    mission = muster.load(name)
+    plan = muster.solve(mission, "greedy")
+    verdict = muster.verify(mission, plan)
+    world, step = World(mission), verdict.makespan_s / 2000
+    roads = None if mission.map is None else Roads.of(mission)
+    travel = None if roads is None else OverMap(roads)
+    executor = Executor(mission, plan, world.ports, way=way_of(mission, roads), travel=travel)
+    carry_out(executor, world, step=step, until=3 * verdict.makespan_s + 100)
+    ledger = executor.ledger
+    assert executor.done
+    assert set(ledger.ends_s) == {task for route in plan.routes for task in route.tasks}
+    assert set(executor.lost()) == {item.task for item in plan.unassigned}
+    assert not executor.revisions
+    for task in mission.tasks:
+        if task.id in ledger.starts_s:
+            assert all(ledger.ends_s[before] <= ledger.starts_s[task.id] for before in task.prerequisites)
+    seen = step * (2 + 2 * len(ledger.ends_s)) if mission.rules.usage == "time" else 0.0  # time is counted in steps
+    for route, figures in zip(plan.routes, verdict.routes, strict=True):
+        assert executor.crew[route.robot].done == list(route.tasks)
+        assert executor.crew[route.robot].used == pytest.approx(route.usage, rel=1e-6, abs=1e-9 + seen)
+        assert executor.usage_planned[route.robot] == pytest.approx(figures.usage, rel=1e-6)
+    late = max(ledger.ends_s.values()) - verdict.makespan_s
+    assert (
+        -1e-6 <= late <= step * (2 + len(ledger.ends_s))
+    )  # a step at most for each task that is noticed to have ended
+
+
+def test_a_robot_waits_at_a_task_for_prerequisites_of_others():
+    mission = Mission(
+        robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(10, 0))),
+        tasks=(
+            Task(id="first", position=(0, 20)),
+            Task(id="then", position=(10, 1), prerequisites=("first",), actuation_cost=3),
+        ),
+    )
+    executor = carried_out(mission, plan_of(a=["first"], b=["then"]))
+    assert executor.ledger.arrivals_s["then"] == pytest.approx(1, abs=0.11)
+    assert executor.ledger.starts_s["then"] == pytest.approx(20, abs=0.11)
+    assert executor.ledger.ends_s["then"] == pytest.approx(23, abs=0.31)
+    assert executor.ledger.waiting_s == pytest.approx(19, abs=0.21)
+    ignoring = Plan(routes=plan_of(a=["first"], b=["then"]).routes, ignored=("prerequisites",))
+    assert carried_out(mission, ignoring).ledger.ends_s["then"] == pytest.approx(4, abs=0.31)
+
+
+def test_a_robot_is_available_when_it_has_nothing_to_do():
+    mission = line(5.0, duration_s=4.0)
+    world = World(mission)
+    executor = Executor(mission, plan_of(r_0=["0"]), world.ports)
+    assert executor.crew["r_0"].available
+    seen = []
+    carry_out(executor, world, each=lambda world, executor: seen.append(executor.crew["r_0"].available))
+    assert not any(seen[:85])
+    assert executor.crew["r_0"].available
+
+
+def test_it_goes_where_its_route_ends():
+    mission = line(5.0, rules=Rules(return_to_start=True))
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.crew["r_0"].position == (0, 0, 0)
+    assert executor.ended_s == pytest.approx(10, abs=0.31)
+    assert executor.crew["r_0"].used == pytest.approx(10)
+
+
+def test_a_failed_robots_tasks_are_done_by_another():
+    mission = line(5.0, 9.0, robots=2, events=[Event(at_s=6, robot_fails="r_0")], duration_s=3.0)
+    executor = carried_out(mission, plan_of(r_0=["0", "1"]))
+    assert executor.crew["r_0"].out == FAILED
+    assert executor.crew["r_1"].done == ["0", "1"]  # also the work under way
+    assert executor.ledger.starts_s["0"] > 6
+    assert executor.revisions[0].moved == {"0": ("r_0", "r_1"), "1": ("r_0", "r_1")}
+    assert executor.lost() == {}
+
+
+def test_what_only_the_failed_robot_could_do_is_lost_with_that_reason():
+    mission = line(5.0, robots=2, events=[Event(at_s=1, robot_fails="r_0")], only_robots=("r_0",))
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.lost() == {"0": "lock: only r_0 may do it, and takes no part any more"}
+    alone = line(5.0, events=[Event(at_s=1, robot_fails="r_0")])
+    assert carried_out(alone, plan_of(r_0=["0"])).lost() == {"0": "no robot takes part any more"}
+
+
+def test_a_failed_robot_that_returns_goes_on():
+    mission = line(5.0, events=[Event(at_s=1, robot_fails="r_0"), Event(at_s=50, robot_returns="r_0")])
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.ledger.ends_s["0"] == pytest.approx(54, abs=0.3)
+    assert executor.crew["r_0"].used == pytest.approx(5)
+
+
+def test_a_robot_that_returns_and_did_nothing_stays_where_it_is():
+    events = [Event(at_s=1, robot_fails="r_1"), Event(at_s=2, robot_returns="r_1")]
+    mission = line(5.0, robots=2, events=events)
+    away = Mission(
+        robots=(mission.robots[0], Robot(id="r_1", position=(50, 0), end_position=(0, 90))),
+        tasks=mission.tasks,
+        events=mission.events,
+    )
+    assert carried_out(away, plan_of(r_0=["0"])).crew["r_1"].used == 0
+
+
+def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
+    events = [Event(at_s=2, robot_silent="r_0"), Event(at_s=20, robot_returns="r_0")]
+    mission = line(40.0, 60.0, robots=2, events=events)
+    executor = carried_out(mission, plan_of(r_0=["0", "1"]), limits=Limits(silent_after_s=5))
+    noticed = next(h.at_s for h in executor.happenings if h.kind == f"robot-{SILENT}")
+    assert noticed == pytest.approx(7, abs=0.21)
+    assert "robot-returns" in kinds(executor)
+    assert sorted(executor.ledger.ends_s) == ["0", "1"]
+    assert kinds(executor).count("task-ends") == 2
+
+
+def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():
+    mission = line(40.0, robots=2)
+    world = World(mission)
+    world.ports["r_0"].broken = True  # it talks, and does not move
+    executor = Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=10))
+    carry_out(executor, world)
+    assert executor.crew["r_0"].out == STUCK
+    assert [h.at_s for h in executor.happenings if h.kind == "robot-sent-again"] == [pytest.approx(10.5, abs=0.6)]
+    assert executor.crew["r_1"].done == ["0"]
+
+
+def test_work_that_takes_far_too_long_is_stuck_too():
+    mission = line(5.0, robots=2, duration_s=3.0)
+    world = World(mission)
+
+    def breaks(world, executor):
+        world.ports["r_0"].broken = executor.crew["r_0"].activity is Activity.WORKING
+
+    executor = carry_out(
+        Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=4)), world, each=breaks
+    )
+    assert executor.crew["r_0"].out == STUCK
+    assert executor.crew["r_1"].done == ["0"]
+
+
+class Detours(World):
+    """Robots whose odometry runs on: they go 30 % more than the way."""
+
+    def step(self, dt):
+        before = {name: point.odometry for name, point in self.ports.items()}
+        super().step(dt)
+        for name, point in self.ports.items():
+            point.odometry += 0.3 * (point.odometry - before[name])
+            point.step(0.0)
+
+
+def test_what_no_longer_fits_after_detours_goes_to_another_or_is_lost():
+    """30 m of capacity: 20 m are 26 with detours, and 8 m more would be 36."""
+    robots = (Robot(id="r_0", position=(0, 0), work_capacity=30), Robot(id="r_1", position=(0, 50), work_capacity=100))
+    tasks = (Task(id="0", position=(20, 0)), Task(id="1", position=(28, 0)))
+    mission = Mission(rules=Rules(stability=0), robots=robots, tasks=tasks)
+    world = Detours(mission)
+    executor = carry_out(Executor(mission, plan_of(r_0=["0", "1"]), world.ports), world)
+    assert executor.crew["r_0"].done == ["0"]
+    assert executor.crew["r_1"].done == ["1"]
+    assert "robot-runs-low" in kinds(executor)
+    alone = Mission(robots=robots[:1], tasks=tasks)
+    world = Detours(alone)
+    executor = carry_out(Executor(alone, plan_of(r_0=["0", "1"]), world.ports), world)
+    assert executor.crew["r_0"].used <= 30
+    assert list(executor.lost()) == ["1"]
+    assert "capacity" in executor.lost()["1"]
+
+
+def test_ignored_capacity_is_not_watched():
+    robots = (Robot(id="r_0", position=(0, 0), work_capacity=3),)
+    mission = Mission(robots=robots, tasks=(Task(id="0", position=(20, 0)),))
+    plan = Plan(routes=plan_of(r_0=["0"]).routes, ignored=("capacity",))
+    assert carried_out(mission, plan).crew["r_0"].done == ["0"]
+
+
+def test_a_new_task_is_done_when_it_appears():
+    event = Event(at_s=30, new_task=Task(id="9", position=(7, 0), prerequisites=("0",)))
+    mission = line(5.0, events=[event])
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.ledger.ends_s["9"] == pytest.approx(32, abs=0.3)
+    assert executor.revisions[0].added == {"9": "r_0"}
+
+
+def test_a_cancelled_task_is_left_even_while_it_is_done():
+    mission = line(5.0, 9.0, events=[Event(at_s=7, cancel_task="0")], actuation_cost=10.0)
+    executor = carried_out(mission, plan_of(r_0=["0", "1"]))
+    assert executor.ledger.ends_s == {"1": pytest.approx(21, abs=0.4)}
+    assert executor.lost()["0"].startswith("cancelled at 7")
+    assert executor.crew["r_0"].used == pytest.approx(9 + 10 + 2, abs=0.2)  # two seconds of ten had been worked
+
+
+def test_what_waits_for_a_cancelled_task_is_lost():
+    mission = Mission(
+        robots=(Robot(id="r_0", position=(0, 0)),),
+        tasks=(Task(id="0", position=(9, 0)), Task(id="1", position=(12, 0), prerequisites=("0",))),
+        events=(Event(at_s=2, cancel_task="0"),),
+    )
+    lost = carried_out(mission, plan_of(r_0=["0", "1"])).lost()
+    assert lost["1"] == "prerequisite: 0 comes before it and is not going to be done"
+
+
+def test_a_task_that_moves_is_done_where_it_is_then():
+    mission = line(9.0, events=[Event(at_s=2, move_task=MovedTask(task="0", position=(2.0, 6.0)))])
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.crew["r_0"].position == (2, 6, 0)
+    assert executor.ledger.ends_s["0"] == pytest.approx(8, abs=0.3)
+
+
+@pytest.mark.parametrize("at_s", [1, 7])
+def test_a_delay_counts_also_while_the_work_is_under_way(at_s):
+    mission = line(5.0, events=[Event(at_s=at_s, delay_task=DelayedTask(task="0", by_s=6))], duration_s=4.0)
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.ledger.ends_s["0"] == pytest.approx(15, abs=0.4)
+
+
+def test_a_robot_that_joins_takes_work():
+    robot = Robot(id="new", position=(50, 0), speed_mps=2)
+    mission = line(40.0, 45.0, events=[Event(at_s=3, robot_joins=robot)])
+    executor = carried_out(mission, plan_of(r_0=["0", "1"]))
+    assert sorted(executor.crew["new"].done) == ["0", "1"]
+    assert report_of(executor, contacts=0, min_distance_m=1.0).robots[1].usage_planned == 0
+
+
+def test_what_a_robot_cannot_do_goes_to_another():
+    mission = line(5.0, robots=2)
+
+    def doing(task, robot):
+        return Impossible("no camera") if robot.id == "r_0" else plain(task, robot)
+
+    executor = carried_out(mission, plan_of(r_0=["0"]), doing=doing)
+    assert executor.crew["r_1"].done == ["0"]
+    lost = carried_out(line(5.0), plan_of(r_0=["0"]), doing=doing).lost()
+    assert lost == {"0": "r_0: no camera"}
+
+
+def test_robots_that_wait_for_each_other_get_a_new_plan():
+    mission = Mission(
+        robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(10, 0))),
+        tasks=(
+            Task(id="0", position=(0, 5)),
+            Task(id="1", position=(10, 5), prerequisites=("0",)),
+            Task(id="2", position=(10, 9)),
+            Task(id="3", position=(0, 9), prerequisites=("2",)),
+        ),
+    )
+    executor = carried_out(mission, plan_of(a=["3", "0"], b=["1", "2"]))
+    assert "standstill" in kinds(executor)
+    assert len(executor.ledger.ends_s) == 4
+
+
+def test_events_from_outside():
+    mission = line(5.0)
+    world = World(mission)
+    executor = Executor(mission, plan_of(r_0=["0"]), world.ports)
+    executor.tick(0.0)
+    executor.report(Event(at_s=0, new_task=Task(id="7", position=(1, 0))))
+    carry_out(executor, world)
+    assert sorted(executor.ledger.ends_s) == ["0", "7"]
+    with pytest.raises(ParameterError, match='new_task: "7"; expected an id that no task has'):
+        executor.report(Event(at_s=0, new_task=Task(id="7", position=(1, 0))))
+    with pytest.raises(ParameterError, match='robot: "x"; expected r_0'):
+        executor.report(Event(at_s=0, robot_fails="x"))
+
+
+def test_what_does_not_fit_is_refused():
+    mission = line(5.0)
+    world = World(mission)
+    with pytest.raises(ParameterError, match='plan: task "x"; expected each task'):
+        Executor(mission, plan_of(r_0=["x"]), world.ports)
+    with pytest.raises(ParameterError, match='plan: robot "x"; expected each robot'):
+        Executor(mission, plan_of(x=["0"]), world.ports)
+    with pytest.raises(ParameterError, match='ports: no port for robot "r_0"'):
+        Executor(mission, plan_of(r_0=["0"]), {})
+    executor = Executor(mission, plan_of(r_0=["0"]), world.ports, now=5.0)
+    with pytest.raises(ParameterError, match="time does not go back"):
+        executor.tick(4.0)

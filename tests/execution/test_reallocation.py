@@ -1,0 +1,182 @@
+"""The rest of a mission, planned again."""
+
+from dataclasses import replace
+
+import pytest
+from tests.execution.world import World
+from tests.random_missions import random_mission, with_travel_tables
+
+import muster
+from muster.allocation import greedy
+from muster.allocation.fixed import admissible_part
+from muster.allocation.problem import Problem
+from muster.execution.executor import Executor
+from muster.execution.reallocation import Reallocation, told
+from muster.execution.rest import posed
+from muster.execution.travel import travel_of
+from muster.mission.model import Event
+from muster.mission.plan import Reason
+from muster.studies.bench import large_mission
+
+
+class Kept(Reallocation):
+    """Remembers what it was asked."""
+
+    def __call__(self, rest):
+        asked.append(rest)
+        return super().__call__(rest)
+
+
+asked = []
+
+
+def under_way(mission, *, seed=0, share=0.4, step=0.25, **options):
+    """An executor part of the way through a greedy plan, and its world."""
+    plan = muster.solve(mission, "greedy")
+    world, travel = World(mission), travel_of(mission)
+    executor = Executor(mission, plan, world.ports, travel=travel, replan=Kept(travel=travel, seed=seed, **options))
+    executor.tick(0.0)
+    while world.now < share * plan.makespan_s:
+        world.step(step)
+        executor.tick(world.now)
+    asked.clear()
+    return executor, world
+
+
+def busiest(executor):
+    return max(executor.crew, key=lambda name: len(executor.crew[name].route))
+
+
+def after_a_failure(mission, **options):
+    executor, world = under_way(mission, **options)
+    out = busiest(executor)
+    before = {name: robot for robot, hand in executor.crew.items() for name in hand.route}
+    executor.report(Event(at_s=0, robot_fails=out))
+    executor.tick(world.now)
+    return executor, out, before
+
+
+def figures(problem, revision):
+    routes = [
+        [*problem.beginning(i), *(problem.task_index[name] for name in revision.routes[robot.id])]
+        for i, robot in enumerate(problem.robots)
+    ]
+    return problem.value(routes)
+
+
+def test_a_failure_among_20_robots_and_100_tasks_is_answered_better_than_by_greedy():
+    mission = large_mission(100, 20)
+    executor, out, before = after_a_failure(mission, step=2.0)
+    problem = posed(asked[0], travel_of(mission)).problem
+    weight, value = figures(problem, executor.revisions[0])
+    by_greedy = problem.value(greedy.completed(problem, [list(route) for route in problem.fixed]))
+    still = [
+        [*problem.beginning(i), *(problem.task_index[name] for name in asked[0].routes[robot.id])]
+        for i, robot in enumerate(problem.robots)
+    ]
+    by_insertion = problem.value(greedy.completed(problem, still))
+    assert weight == by_greedy[0] == by_insertion[0]
+    assert value < min(by_greedy[1], by_insertion[1])
+    freed = {name for name, robot in before.items() if robot == out}
+    assert len(freed) > 3
+    assert {name: pair[0] for name, pair in executor.revisions[0].moved.items() if name in freed} == dict.fromkeys(
+        freed, out
+    )
+
+
+@pytest.mark.parametrize("stability", [0, 1, 3])
+def test_no_more_tasks_change_robot_than_the_rules_let(stability):
+    """The plan is made badly before, so that a free search would move much more."""
+    mission = large_mission(30, 4)
+    plan = muster.solve(mission, "greedy")
+    names = [task.id for task in mission.tasks]
+    bad = replace(plan, routes=tuple(replace(r, tasks=tuple(names[k::4])) for k, r in enumerate(plan.routes)))
+    moved = {}
+    for rule in (stability, None):
+        ruled = replace(mission, rules=replace(mission.rules, stability=rule))
+        world = World(ruled)
+        executor = Executor(ruled, bad, world.ports)
+        executor.tick(0.0)
+        executor.report(Event(at_s=0, cancel_task=names[0]))
+        executor.tick(0.0)
+        moved[rule] = executor.revisions[0].moved
+        assert not executor.revisions[0].forced
+    assert len(moved[stability]) == stability
+    assert len(moved[None]) > 10
+
+
+def test_usages_of_the_rest_are_those_of_the_whole_mission():
+    """What was used and what is left make up the plan's usage: nothing has changed, so it can only become less."""
+    judged = 0
+    for seed in range(60):
+        mission = random_mission(seed, tasks=8, robots=3, objective="total", usage="distance")
+        mission = replace(mission, tasks=tuple(replace(task, entry=None, exit=None) for task in mission.tasks))
+        executor, world = under_way(mission, share=0.1 * (seed % 9))
+        revision = executor._replan(executor._rest())
+        if revision.added or revision.dropped:
+            continue
+        works = {name: hand.activity.value == "working" for name, hand in executor.crew.items()}
+        used = {n: h.used_after(world.now) if works[n] else h.used for n, h in executor.crew.items()}
+        total = sum(used[name] + revision.ahead[name][""] for name in executor.crew)
+        assert total <= sum(executor.usage_planned.values()) + 1e-6
+        assert total >= 0.5 * sum(executor.usage_planned.values())
+        judged += 1
+    assert judged > 30
+
+
+def test_the_same_rest_gives_the_same_plan():
+    mission = large_mission(40, 5)
+    first, second = (after_a_failure(mission, step=2.0, seed=7)[0] for _ in range(2))
+    assert first.revisions == second.revisions
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_travel_tables_hold_from_where_robots_are(seed):
+    mission = with_travel_tables(random_mission(seed, tasks=7, robots=3), seed)
+    executor, _, _ = after_a_failure(mission, share=0.3)
+    if asked and asked[0].crew:
+        problem = posed(asked[0], travel_of(mission)).problem
+        for standing in asked[0].crew:
+            i, table = problem.robot_index[standing.robot.id], mission.travel_tables[standing.robot.type]
+            row = table.metres[table.places.index(standing.spot.name)]
+            for j, task in enumerate(problem.tasks):
+                if task.id in table.places and standing.task != task.id:
+                    speed = standing.robot.speed_mps if problem.in_time else 1
+                    assert problem.legs(i, [problem.start(i)], [j])[0, 0] == row[table.places.index(task.id)] / speed
+    assert set(executor.ledger.ends_s) | set(executor.lost()) | {
+        name for hand in executor.crew.values() for name in hand.route
+    } == {task.id for task in mission.tasks}
+
+
+@pytest.mark.parametrize("name", ["floor", "yard"])
+def test_over_a_map_a_failed_robots_work_is_done_by_the_others(name):
+    mission = muster.load(name)
+    executor, out, before = after_a_failure(mission)
+    problem = posed(asked[0], executor._travel).problem
+    straight = [standing.spot.point for standing in asked[0].crew]
+    assert all(len(point) == 3 for point in straight)
+    assert problem.travel[0].size > 0
+    moved = executor.revisions[0].moved
+    assert {task for task, robot in before.items() if robot == out} == set(moved) | set(executor.lost()) & set(before)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_admissible_part_of_routes_is_admissible_and_in_order(seed):
+    mission = random_mission(seed, tasks=12, robots=3)
+    problem = Problem.compile(mission)
+    routes = [list(range(i, 12, 3)) for i in range(3)]
+    part = admissible_part(problem, routes)
+    plan = muster.Plan(
+        routes=tuple(
+            muster.Route(r.id, tuple(problem.tasks[j].id for j in route))
+            for r, route in zip(problem.robots, part, strict=True)
+        )
+    )
+    assert not [v for v in muster.verify(mission, plan).violations if v.kind not in ("unassigned", "figure")]
+    for whole, kept in zip(routes, part, strict=True):
+        assert [j for j in whole if j in kept] == kept
+
+
+def test_reasons_are_told_together():
+    reasons = (Reason("a", "skill", "lacks x"), Reason("b", "lock", "only c"), Reason("c", "skill", "lacks x"))
+    assert told(reasons) == "skill: lacks x (a, c); lock: only c (b)"

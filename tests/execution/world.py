@@ -1,0 +1,89 @@
+"""A tiny world: robots are points that go straight at their speed, exactly, and say exactly where they are."""
+
+import math
+
+from muster.execution.doing import place
+from muster.motion.port import Telemetry
+
+FAILURES = ("robot_fails", "robot_silent", "robot_returns", "robot_joins")
+
+
+class Point:
+    """One robot and its port."""
+
+    def __init__(self, robot, now=0.0):
+        self.robot, self.speed = robot.id, robot.speed_mps
+        self.position, self.odometry = place(robot.position), 0.0
+        self.order = self.passed = 0
+        self.waypoints, self.held = [], 0.0
+        self.broken = self.mute = self.slow = False
+        self.now, self.last, self.sent = now, None, 0
+
+    def send(self, waypoints):
+        self.sent += 1
+        if not self.mute:  # a robot that is not reached goes on with what it had
+            self.order, self.passed, self.waypoints, self.held = self.sent, 0, list(waypoints), 0.0
+        return self.sent
+
+    def cancel(self):
+        return self.send([])
+
+    def telemetry(self):
+        return self.last
+
+    def step(self, dt):
+        """Go on exactly: to the next way point, hold, and on to the one after it."""
+        left = 0.0 if self.broken else dt
+        while left > 0 and self.passed < len(self.waypoints):
+            goal = self.waypoints[self.passed]
+            way = math.dist(self.position, goal.position)
+            if way > left * self.speed:
+                share = left * self.speed / way
+                self.position = tuple(a + share * (b - a) for a, b in zip(self.position, goal.position, strict=True))
+                self.odometry += left * self.speed
+                break
+            self.position, self.odometry = goal.position, self.odometry + way
+            left -= way / self.speed
+            stays = min(left, goal.hold_s - self.held)
+            self.held, left = self.held + stays, left - stays
+            if self.held < goal.hold_s - 1e-9:
+                break
+            self.passed, self.held = self.passed + 1, 0.0
+        self.now += dt
+        if not self.mute:
+            self.last = Telemetry(self.now, self.position, 0.0, (0.0, 0.0, 0.0), self.odometry, self.order, self.passed)
+
+
+class World:
+    """The robots of a mission, and what its script does to their bodies."""
+
+    def __init__(self, mission):
+        self.now = 0.0
+        self.ports = {robot.id: Point(robot) for robot in mission.robots}
+        self._script = sorted((e for e in mission.events if any(getattr(e, k) for k in FAILURES)), key=lambda e: e.at_s)
+        for point in self.ports.values():
+            point.step(0.0)
+
+    def step(self, dt):
+        self.now += dt
+        while self._script and self._script[0].at_s <= self.now:
+            event = self._script.pop(0)
+            if event.robot_joins is not None:
+                self.ports[event.robot_joins.id] = Point(event.robot_joins, self.now - dt)
+            for name in filter(None, (event.robot_fails, event.robot_silent, event.robot_returns)):
+                if name in self.ports:
+                    self.ports[name].broken = event.robot_fails is not None
+                    self.ports[name].mute = event.robot_silent is not None
+        for point in self.ports.values():
+            point.step(dt)
+
+
+def carry_out(executor, world, *, step=0.1, until=10_000.0, each=None):
+    """Until the mission is over, or a time."""
+    executor.tick(world.now)
+    while not executor.done and world.now < until:
+        world.step(step)
+        if each is not None:
+            each(world, executor)
+        executor.tick(world.now)
+    return executor
