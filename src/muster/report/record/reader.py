@@ -108,7 +108,7 @@ def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Rec
         mission=mission,
         mission_text=text,
         image=grid_from(maps[-1]) if maps else None,
-        plans=tuple(PlanVersion(m["time_s"], plan_from(m["plan"], str(file))) for m in plans),
+        plans=tuple(PlanVersion(m["time_s"], plan_from(m["plan"], str(file)), m["lines"]) for m in plans),
         events=events,
         bids=tuple(messages.get("/muster/bid", [])),
         tracks=_tracks(tuple(situation.robots), messages.get("/muster/state", [])),

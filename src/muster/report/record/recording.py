@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Mission, Point, Robot
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.report.record.situation import Situation
@@ -28,10 +28,14 @@ class Happening:
 
 @dataclass(frozen=True)
 class PlanVersion:
-    """A plan, and from when on it held."""
+    """A plan, from when on it held, and its routes as lines: where each robot still had to go then.
+
+    `lines` has points of two or three coordinates, as the mission has, in metres.
+    """
 
     time_s: float
     plan: Plan
+    lines: Mapping[str, Sequence[Point]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,6 +100,7 @@ _TRANSFORM = _record(
 _FIELD = _record(
     "foxglove.PackedElementField", name=_TEXT, offset=_COUNT, type=_one_of("foxglove.NumericType", UINT8=1)
 )
+_LINES = {"type": "object", "additionalProperties": _many(_many(_NUMBER))}
 _STATE = _record("muster.RobotState", **dict.fromkeys(("x", "y", "z", "heading_rad", "vx", "vy", "vz"), _NUMBER))
 
 SCHEMAS: dict[str, Schema] = {
@@ -131,7 +132,7 @@ SCHEMAS: dict[str, Schema] = {
         ),
         _record("muster.State", time_s=_NUMBER, robots={"type": "object", "additionalProperties": _STATE}),
         _record("muster.Event", time_s=_NUMBER, kind=_TEXT, data={"type": "object"}),
-        _record("muster.Plan", time_s=_NUMBER, plan={"type": "object"}),
+        _record("muster.Plan", time_s=_NUMBER, plan={"type": "object"}, lines=_LINES),
         _record(
             "muster.Bid", time_s=_NUMBER, round=_COUNT, task=_TEXT, robot=_TEXT, price=_NUMBER, bids={"type": "object"}
         ),

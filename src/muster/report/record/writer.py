@@ -130,10 +130,10 @@ class RecordWriter:
 
     def on_plan(self, now: float, plan: Plan) -> None:
         """Write a plan, with the bids that led to it where they are known, and the routes as lines."""
-        self._write("/muster/plan", now, {"time_s": now, "plan": plan.as_dict()})
+        lines = self._routes.of(plan, self._situation, self._places)
+        self._write("/muster/plan", now, {"time_s": now, "plan": plan.as_dict(), "lines": lines})
         for award in plan.book.awards if plan.book is not None else ():
             self._write("/muster/bid", now, {"time_s": now, **award.as_dict()})
-        lines = self._routes.of(plan, self._situation, self._places)
         order = list(self._situation.robots)
         routes = [scene.route_entity(now, robot, order.index(robot), line) for robot, line in lines.items()]
         self._write("/scene", now, scene.update(routes))
