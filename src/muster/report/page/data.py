@@ -50,9 +50,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
             for bar in bars
             if bar.robot in order
         ],
-        "events": [
-            [_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events
-        ],
+        "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events],
         "nearest": _nearest(recording, tracks),
         "map": _map(recording.mission.map, recording.image),
         "figures": _figures(recording),
@@ -191,7 +189,9 @@ def _map(chart: Map | None, image: Grid | None) -> dict[str, Any] | None:
 
 def _zone(zone: Zone) -> dict[str, Any]:
     low, high = zone.floor_m, zone.ceiling_m
-    heights = "" if low is None and high is None else f", {low or 0:g} m to {'the sky' if high is None else f'{high:g} m'}"
+    heights = (
+        "" if low is None and high is None else f", {low or 0:g} m to {'the sky' if high is None else f'{high:g} m'}"
+    )
     return {
         "corners": [_millimetres(corner) for corner in zone.polygon],
         "label": f"no entry: {', '.join(zone.forbidden_to)}{heights}",

@@ -9,6 +9,8 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
+_MOST_NUMBERS = 1_000_000  # in memory at once
+
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
@@ -39,11 +41,11 @@ def nearest(positions: Floats, radii: Floats) -> Nearest:
     """
     first, second = np.triu_indices(len(radii), 1)
     touch = radii[first] + radii[second]
-    metres, pairs = np.full(len(positions), np.nan), np.zeros((len(positions), 2), dtype=np.int64)
-    least = np.zeros(len(positions))
-    for k, places in enumerate(positions):
-        apart = np.linalg.norm(places[first] - places[second], axis=1)
-        if np.isfinite(apart).any():
-            best = int(np.nanargmin(apart - touch))
-            metres[k], pairs[k], least[k] = apart[best], (first[best], second[best]), touch[best]
-    return Nearest(metres, pairs, least)
+    metres, best = np.full(len(positions), np.nan), np.zeros(len(positions), dtype=np.int64)
+    at_once = max(1, _MOST_NUMBERS // len(touch))
+    for start in range(0, len(positions), at_once):
+        block = slice(start, start + at_once)
+        apart = np.linalg.norm(positions[block, first] - positions[block, second], axis=2)
+        best[block] = np.where(np.isnan(apart), np.inf, apart - touch).argmin(axis=1)
+        metres[block] = np.take_along_axis(apart, best[block, None], axis=1)[:, 0]
+    return Nearest(metres, np.stack([first[best], second[best]], axis=1), touch[best])
