@@ -13,8 +13,8 @@ from tests.report.page.conftest import MORE
 from muster.mission.errors import InputError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.grid import Grid
-from muster.report.page import page_text, write_page
 from muster.report.page import data as data_of_page
+from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
 from muster.report.page.spans import Span, spans
