@@ -144,10 +144,10 @@ def test_keys(browser, page):
 def test_pointing_into_a_chart_goes_there(browser, page):
     browser.open(page("31T-6R"), *WIDE)
     box = browser.evaluate("document.getElementById('gantt').getBoundingClientRect().toJSON()")
-    browser.click(box["x"] + 58 + (box["width"] - 68) / 2, box["y"] + 20)
+    browser.click(box["x"] + 64 + (box["width"] - 74) / 2, box["y"] + 20)
     assert time_of(browser) == pytest.approx(61.341 / 2, abs=0.1)
     line = browser.evaluate("Number(document.querySelector('#gantt .cursor').getAttribute('x1'))")
-    assert line == pytest.approx(58 + (box["width"] - 68) / 2, abs=1)
+    assert line == pytest.approx(64 + (box["width"] - 74) / 2, abs=1)
 
 
 def test_the_time_chart_has_a_bar_for_each_span(browser, page, recorded):

@@ -15,7 +15,7 @@ from tests.report.voyages import carry_out
 
 import muster
 from muster.mission.clock import VirtualClock
-from muster.mission.errors import InputError, MusterError, ParameterError
+from muster.mission.errors import InputError, MissingExtraError, MusterError, ParameterError
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
 from muster.report.record import RecordWriter, read_record
@@ -276,6 +276,14 @@ def test_a_mission_by_travel_tables(tmp_path):
     assert read.mission.rules == Rules()
     assert "matrix" in read.mission_text
     assert [robot.id for robot in read.robots] == ["a"]
+
+
+def test_without_the_extra(monkeypatch, tmp_path, mission, whole):
+    monkeypatch.setitem(sys.modules, "mcap", None)
+    for call in (lambda: read_record(whole), lambda: RecordWriter(tmp_path / "r.mcap", mission)):
+        with pytest.raises(MissingExtraError, match=r"a record needs .* pip install 'muster-robotics\[record\]'"):
+            call()
+    assert not (tmp_path / "r.mcap").exists()
 
 
 def test_a_robot_too_many(writer):

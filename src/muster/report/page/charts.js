@@ -1,9 +1,9 @@
 // Charts over time, all with the same axis: what robots do, how near they are to each other, how high they are.
 
-const LABELS = 58; // pixels left of every chart
+const LABELS = 64; // pixels left of every chart
 const AXIS = 18; // pixels below
 const MOST_PAIRS = 15;
-const MOST_ROWS_NAMED = 40;
+const LABEL_HEIGHT = 12;
 const ganttPicture = document.getElementById("gantt");
 const distancePicture = document.getElementById("distance-chart");
 const heightPicture = document.getElementById("height-chart");
@@ -35,7 +35,8 @@ function timeAxis(picture, width, height) {
   for (let now = 0; now <= duration * 1.0001; now += step) {
     const label = `${Number(now.toPrecision(6))}${now === 0 ? " s" : ""}`;
     picture.append(svg("line", { class: "tick", x1: x(now), x2: x(now), y1: 0, y2: height - AXIS }));
-    picture.append(svg("text", { x: x(now), y: height - 5, "text-anchor": "middle" }, label));
+    const anchor = now === 0 ? "start" : "middle";
+    picture.append(svg("text", { x: x(now), y: height - 4, "text-anchor": anchor }, label));
   }
 }
 
@@ -57,14 +58,14 @@ function showCharts(now) {
 const BAR_SHARES = { travel: 0.2, waiting: 0.55, work: 0.8 };
 
 function drawGantt() {
-  const row = Math.min(Math.max(220 / robots.length, 5), 24);
+  const row = Math.min(Math.max(220 / robots.length, 2.5), 24);
   ganttPicture.style.height = `${row * robots.length + AXIS}px`;
   const [width, height] = fitted(ganttPicture);
   picturedAs(ganttPicture, `Time chart of ${robots.length} robots: travel, waiting and work`);
   timeAxis(ganttPicture, width, height);
   const patterns = svg("defs");
   ganttPicture.append(patterns);
-  const every = Math.ceil(robots.length / MOST_ROWS_NAMED);
+  const every = Math.ceil(LABEL_HEIGHT / row);
   robots.forEach((robot, k) => {
     patterns.append(hatching(robot));
     const middle = (k + 0.5) * row;
@@ -122,7 +123,7 @@ function lineChart(picture, low, high, unit) {
   for (let value = Math.ceil(low / step) * step; value <= high; value += step) {
     picture.append(svg("line", { class: "tick", x1: LABELS, x2: width - 10, y1: y(value), y2: y(value) }));
     const label = `${Number(value.toPrecision(6))} ${unit}`;
-    picture.append(svg("text", { x: LABELS - 6, y: y(value) + 4, "text-anchor": "end" }, label));
+    picture.append(svg("text", { x: LABELS - 6, y: y(value) + 3, "text-anchor": "end" }, label));
   }
   const line = (values, attributes) => {
     let pen = "M";

@@ -34,6 +34,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
     """All that the page is told."""
     tracks = _thinned(recording.tracks)
     order = {robot.id: k for k, robot in enumerate(recording.robots)}
+    gone = _gone(recording)
     bars = spans(recording.events, recording.duration_s)
     return {
         "name": recording.mission.name,
@@ -42,7 +43,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "duration": _thousandths(recording.duration_s),
         "spatial": recording.mission.dimensions == 3,
         "times": _differences(tracks.times_s),
-        "robots": [_robot(recording, tracks, k) for k in range(len(order))],
+        "robots": [_robot(recording, tracks, k, gone) for k in range(len(order))],
         "tasks": _tasks(recording),
         "plans": _plans(recording, order),
         "spans": [
@@ -90,7 +91,7 @@ def _differences(values: Floats) -> list[int | None]:
     return found
 
 
-def _robot(recording: Recording, tracks: Tracks, k: int) -> dict[str, Any]:
+def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]) -> dict[str, Any]:
     robot = recording.robots[k]
     data: dict[str, Any] = {
         "id": robot.id,
@@ -100,15 +101,20 @@ def _robot(recording: Recording, tracks: Tracks, k: int) -> dict[str, Any]:
         "x": _differences(tracks.positions[:, k, 0]),
         "y": _differences(tracks.positions[:, k, 1]),
         "heading": _differences(_unwrapped(tracks.headings[:, k])),
-        "gone": [
-            [_thousandths(event.time_s), event.kind in _GONE]
-            for event in recording.events
-            if event.kind in (*_GONE, *_BACK) and event.data.get("robot") == robot.id
-        ],
+        "gone": gone.get(robot.id, []),
     }
     if recording.mission.dimensions == 3:
         data["z"] = _differences(tracks.positions[:, k, 2])
     return data
+
+
+def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
+    """By robot when it goes out, and when it is back: [time, whether it is out from then on]."""
+    found: dict[str, list[list[Any]]] = {}
+    for event in recording.events:
+        if event.kind in (*_GONE, *_BACK):
+            found.setdefault(event.data["robot"], []).append([_thousandths(event.time_s), event.kind in _GONE])
+    return found
 
 
 def _unwrapped(headings: Floats) -> Floats:

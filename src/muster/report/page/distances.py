@@ -39,13 +39,23 @@ def nearest(positions: Floats, radii: Floats) -> Nearest:
     positions, radii
         (m, n, 3) and (n,) metres, n at least 2; a robot that is not there has NaN.
     """
-    first, second = np.triu_indices(len(radii), 1)
-    touch = radii[first] + radii[second]
-    metres, best = np.full(len(positions), np.nan), np.zeros(len(positions), dtype=np.int64)
-    at_once = max(1, _MOST_NUMBERS // len(touch))
-    for start in range(0, len(positions), at_once):
-        block = slice(start, start + at_once)
-        apart = np.linalg.norm(positions[block, first] - positions[block, second], axis=2)
-        best[block] = np.where(np.isnan(apart), np.inf, apart - touch).argmin(axis=1)
-        metres[block] = np.take_along_axis(apart, best[block, None], axis=1)[:, 0]
-    return Nearest(metres, np.stack([first[best], second[best]], axis=1), touch[best])
+    moments, n = positions.shape[:2]
+    touch = radii[:, None] + radii[None, :]
+    touch[np.diag_indices(n)] = -np.inf
+    pairs = np.zeros((moments, 2), dtype=np.int64)
+    at_once = max(1, _MOST_NUMBERS // n**2)
+    for start in range(0, moments, at_once):
+        apart = _distances(positions[start : start + at_once]) - touch
+        best = np.where(np.isnan(apart), np.inf, apart).reshape(len(apart), -1).argmin(axis=1)
+        pairs[start : start + at_once] = np.stack(np.unravel_index(best, (n, n)), axis=1)
+    first, second, rows = pairs[:, 0], pairs[:, 1], np.arange(moments)
+    metres = np.linalg.norm(positions[rows, first] - positions[rows, second], axis=1)
+    alone = first == second
+    return Nearest(np.where(alone, np.nan, metres), pairs, np.where(alone, 0.0, radii[first] + radii[second]))
+
+
+def _distances(places: Floats) -> Floats:
+    """Between all places (k, n, 3) of each moment: (k, n, n) metres, by |a - b|^2 = a a + b b - 2 a b."""
+    squares = np.square(places).sum(axis=2)
+    apart = squares[:, :, None] + squares[:, None, :] - 2 * places @ places.transpose(0, 2, 1)
+    return np.asarray(np.sqrt(np.maximum(apart, 0.0)))

@@ -2,6 +2,9 @@
 
 const MARGIN = 26; // pixels around what is shown
 const MOST_NAMED_TASKS = 80;
+const MOST_NAMED_ROBOTS = 30;
+const TASK_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_TASKS / tasks.length), 0.3), 1); // smaller in a crowd
+const ROBOT_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_ROBOTS / robots.length), 0.4), 1);
 const mapPicture = document.getElementById("map");
 let project = null; // metres to pixels: {x, y, scale}
 let trails = [];
@@ -106,7 +109,8 @@ function trail(robot) {
     }
     lengths.push(length);
   }
-  const path = svg("path", { class: "trail", d: steps || "M0 0", stroke: robot.color });
+  const look = { stroke: robot.color, "stroke-width": 2.2 * ROBOT_SCALE, opacity: 0.85 * ROBOT_SCALE };
+  const path = svg("path", { class: "trail", d: steps || "M0 0", ...look });
   return { path, lengths };
 }
 
@@ -134,20 +138,21 @@ function taskShapes() {
 }
 
 function taskMark(task) {
-  const mark = svg("g", { class: "task", "data-task": task.id }, ...taskShapes(), svg("title"));
+  const shapes = svg("g", { transform: `scale(${TASK_SCALE})` }, ...taskShapes());
+  const mark = svg("g", { class: "task", "data-task": task.id }, shapes, svg("title"));
   if (tasks.length <= MOST_NAMED_TASKS) mark.append(svg("text", { x: 8, y: 4 }, task.id));
   return mark;
 }
 
 function robotMark(robot) {
-  const radius = Math.max(robot.radius * project.scale, 6);
+  const radius = Math.max(robot.radius * project.scale, 6 * ROBOT_SCALE);
   const body = robot.kind === "air"
     ? svg("rect", { x: -radius, y: -radius, width: 2 * radius, height: 2 * radius, rx: radius / 2.5, fill: robot.color })
     : svg("circle", { r: radius, fill: robot.color });
-  const nose = svg("line", { class: "nose", x2: radius });
+  const nose = svg("line", { class: "nose", x2: radius, "stroke-width": 2 * ROBOT_SCALE });
   const turning = svg("g", { class: "body" }, body, nose);
   const mark = svg("g", { class: "robot", "data-robot": robot.id }, turning, svg("title", {}, robot.id));
-  if (robots.length <= 30) mark.append(svg("text", { x: radius + 3, y: -radius }, robot.id));
+  if (robots.length <= MOST_NAMED_ROBOTS) mark.append(svg("text", { x: radius + 3, y: -radius }, robot.id));
   return mark;
 }
 

@@ -60,7 +60,8 @@ function showPanels(now) {
 
 function doing(robot, now) {
   if (isGone(robot, now)) return "is out";
-  const span = spansOf[robot.index].find(({ from, until }) => from <= now && now < until);
+  const goesOn = (until) => until === duration && !data.ended; // beyond where the record breaks off
+  const span = spansOf[robot.index].find(({ from, until }) => from <= now && (now < until || goesOn(until)));
   return span ? `${DOING[span.kind]} ${span.task}` : "is free";
 }
 
@@ -80,6 +81,6 @@ function showNearest(now) {
   const k = Math.max(lastUntil(times, now), 0);
   const metres = nearest.metres[k];
   const pair = `${robots[nearest.first[k]].id} and ${robots[nearest.second[k]].id}`;
-  const contact = nearest.touch[k] > 0 ? `, contact at ${nearest.touch[k].toFixed(2)} m` : "";
-  document.getElementById("nearest").textContent = metres === null ? "" : `${pair}: ${metres.toFixed(2)} m${contact}`;
+  const contact = nearest.touch[k] > 0 ? `; contact at ${nearest.touch[k].toFixed(2)} m` : "";
+  document.getElementById("nearest").textContent = metres === null ? "" : `${pair}, ${metres.toFixed(2)} m${contact}`;
 }

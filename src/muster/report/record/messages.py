@@ -65,27 +65,32 @@ def pose(place: Iterable[float] = (0.0, 0.0, 0.0), heading: float = 0.0) -> dict
 
 def state_text(now: float, names: Iterable[str], rows: Iterable[list[float]]) -> bytes:
     """muster.State: of each robot a row x, y, z, heading, vx, vy, vz."""
-    keys = ("x", "y", "z", "heading_rad", "vx", "vy", "vz")
     robots = ",".join(
-        f"{json.dumps(name)}:{{" + ",".join(f'"{key}":{value:.4f}' for key, value in zip(keys, row, strict=True)) + "}"
-        for name, row in zip(names, rows, strict=True)
+        f'{json.dumps(name)}:{{"x":{x:.4f},"y":{y:.4f},"z":{z:.4f},"heading_rad":{heading:.4f},'
+        f'"vx":{vx:.4f},"vy":{vy:.4f},"vz":{vz:.4f}}}'
+        for name, (x, y, z, heading, vx, vy, vz) in zip(names, rows, strict=True)
     )
     return f'{{"time_s":{now!r},"robots":{{{robots}}}}}'.encode()
 
 
-def poses_text(now: float, rows: Iterable[list[float]]) -> bytes:
+def place_texts(rows: Iterable[list[float]]) -> list[tuple[str, str]]:
+    """Of each row x, y, z, heading, ... the place and the turn as JSON, for `poses_text` and `transforms_text`."""
+    return [(_xyz(row), _turn(row[3])) for row in rows]
+
+
+def poses_text(now: float, places: Iterable[tuple[str, str]]) -> bytes:
     """foxglove.PosesInFrame."""
-    poses = ",".join(f'{{"position":{_xyz(row)},"orientation":{_turn(row[3])}}}' for row in rows)
+    poses = ",".join(f'{{"position":{xyz},"orientation":{turn}}}' for xyz, turn in places)
     return f'{{"timestamp":{_stamp_text(now)},"frame_id":"{MAP_FRAME}","poses":[{poses}]}}'.encode()
 
 
-def transforms_text(now: float, names: Iterable[str], rows: Iterable[list[float]]) -> bytes:
+def transforms_text(now: float, names: Iterable[str], places: Iterable[tuple[str, str]]) -> bytes:
     """foxglove.FrameTransforms: from the map to each body."""
     time = _stamp_text(now)
     transforms = ",".join(
         f'{{"timestamp":{time},"parent_frame_id":"{MAP_FRAME}","child_frame_id":{json.dumps(body_frame(name))},'
-        f'"translation":{_xyz(row)},"rotation":{_turn(row[3])}}}'
-        for name, row in zip(names, rows, strict=True)
+        f'"translation":{xyz},"rotation":{turn}}}'
+        for name, (xyz, turn) in zip(names, places, strict=True)
     )
     return f'{{"transforms":[{transforms}]}}'.encode()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -100,7 +101,7 @@ class Recording:
         reported = (self.report or {}).get("mission_time_s") or 0.0
         return float(max([0.0, reported, *told, *self.tracks.times_s[-1:].tolist()]))
 
-    @property
+    @cached_property
     def robots(self) -> tuple[Robot, ...]:
         """Those of the mission, then those that joined."""
         situation = Situation(self.mission)

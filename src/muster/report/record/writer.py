@@ -108,15 +108,16 @@ class RecordWriter:
         if now < self._next_s - 1e-9:
             return
         self._next_s = max(self._next_s + self._period_s, now + self._period_s / 2)
-        self._write_step(now, names, np.column_stack([positions, headings, velocities]))
+        self._write_step(float(now), names, np.column_stack([positions, headings, velocities]))
 
     def _write_step(self, now: float, names: Sequence[str], states: Floats) -> None:
         there: list[int] = np.flatnonzero(np.isfinite(states).all(axis=1)).tolist()
         present = [names[k] for k in there]
         rows = states[there].tolist()
         self._places = {name: tuple(row[:3]) for name, row in zip(present, rows, strict=True)}
-        self._add("/tf", now, messages.transforms_text(now, present, rows))
-        self._add("/poses", now, messages.poses_text(now, rows))
+        texts = messages.place_texts(rows)
+        self._add("/tf", now, messages.transforms_text(now, present, texts))
+        self._add("/poses", now, messages.poses_text(now, texts))
         self._add("/muster/state", now, messages.state_text(now, present, rows))
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
