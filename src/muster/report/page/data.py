@@ -113,7 +113,7 @@ def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
     found: dict[str, list[list[Any]]] = {}
     for event in recording.events:
         if event.kind in (*_GONE, *_BACK):
-            found.setdefault(event.data["robot"], []).append([_thousandths(event.time_s), event.kind in _GONE])
+            found.setdefault(str(event.data.get("robot")), []).append([_thousandths(event.time_s), event.kind in _GONE])
     return found
 
 
