@@ -32,6 +32,21 @@ def test_the_python_example_of_the_readme_runs(tmp_path, monkeypatch):
     assert (tmp_path / "plan.png").stat().st_size > 0
 
 
+def test_the_python_example_of_the_records_runs(tmp_path, monkeypatch):
+    pytest.importorskip("mcap")
+    (example,) = blocks((ROOT / "docs" / "records.md").read_text(encoding="utf-8"), "python")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example, "records.md", "exec"), {})
+    assert (tmp_path / "replay.html").stat().st_size > 0
+
+
+def test_the_topics_of_a_record_are_described():
+    from muster.report.record.schemas import TOPICS
+
+    text = (ROOT / "docs" / "records.md").read_text(encoding="utf-8")
+    assert dict(re.findall(r"^\| `(/[a-z/]+)` \| `([A-Za-z.]+)` \|", text, flags=re.MULTILINE)) == TOPICS
+
+
 def test_the_verbs_of_the_readme_are_those_of_the_command():
     verbs = {
         line.split()[1] for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("muster ")

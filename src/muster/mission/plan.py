@@ -140,7 +140,18 @@ def read_plan(path: str | Path) -> Plan:
     except UnicodeEncodeError as error:
         half = f"\\u{ord(error.object[error.start]):04x} alone in a text"
         raise PlanError([Finding(str(file), None, "", half, "whole characters")]) from None
-    return _Reading(str(file)).plan(data)
+    return plan_from(data, str(file))
+
+
+def plan_from(data: object, file: str) -> Plan:
+    """The plan in plain data, as its file holds it; `file` names it in messages.
+
+    Raises
+    ------
+    PlanError
+        with everything that is wrong with it.
+    """
+    return _Reading(file).plan(data)
 
 
 class _Reading:

@@ -1,0 +1,5 @@
+"""Pages to look at a record in a browser."""
+
+from muster.report.page.page import page_text, write_page
+
+__all__ = ["page_text", "write_page"]

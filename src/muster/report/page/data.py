@@ -1,0 +1,243 @@
+"""What the page of a record shows, as compact JSON data: whole millimetres, milliseconds and milliradians.
+
+Series that change little from one moment to the next are written as differences; `null` is a moment at which a robot
+is not there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.model import Map, Zone
+from muster.motion.grid import Grid
+from muster.report.page.distances import nearest
+from muster.report.page.spans import spans
+from muster.report.record import Recording, Tracks
+from muster.report.record.messages import event_line
+from muster.report.record.situation import OPEN, Situation
+from muster.report.styles import PALETTE
+
+Floats = npt.NDArray[np.float64]
+
+MOST_SAMPLES = 200_000
+"""Moments times robots; where a record has more, moments are left out evenly."""
+
+_ALARMING = ("lost", "robot_fails", "robot_silent", "contact")
+_GONE, _BACK = ("robot_fails", "robot_silent"), ("robot_returns",)
+
+
+def page_data(recording: Recording) -> dict[str, Any]:
+    """All that the page is told."""
+    tracks = _thinned(recording.tracks)
+    order = {robot.id: k for k, robot in enumerate(recording.robots)}
+    gone = _gone(recording)
+    bars = spans(recording.events, recording.duration_s)
+    return {
+        "name": recording.mission.name,
+        "complete": recording.complete,
+        "ended": recording.report is not None,
+        "duration": _thousandths(recording.duration_s),
+        "spatial": recording.mission.dimensions == 3,
+        "times": _differences(tracks.times_s),
+        "robots": [_robot(recording, tracks, k, gone) for k in range(len(order))],
+        "tasks": _tasks(recording),
+        "plans": _plans(recording, order),
+        "spans": [
+            [order[bar.robot], bar.task, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
+            for bar in bars
+            if bar.robot in order
+        ],
+        "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events],
+        "nearest": _nearest(recording, tracks),
+        "map": _map(recording.mission.map, recording.image),
+        "figures": _figures(recording),
+    }
+
+
+def _thinned(tracks: Tracks) -> Tracks:
+    moments = len(tracks.times_s)
+    every = -(-moments * len(tracks.robots) // MOST_SAMPLES)
+    if every <= 1:
+        return tracks
+    kept = np.unique(np.append(np.arange(0, moments, every), moments - 1))
+    return Tracks(
+        tracks.robots,
+        tracks.times_s[kept],
+        tracks.positions[kept],
+        tracks.headings[kept],
+        tracks.velocities[kept],
+    )
+
+
+def _thousandths(value: float) -> int:
+    return round(value * 1000)
+
+
+def _differences(values: Floats) -> list[int | None]:
+    """Values in thousandths, each as the difference from the last one that there was."""
+    found: list[int | None] = []
+    last = 0
+    for value in values.tolist():
+        if value != value:  # NaN
+            found.append(None)
+            continue
+        now = _thousandths(value)
+        found.append(now - last)
+        last = now
+    return found
+
+
+def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]) -> dict[str, Any]:
+    robot = recording.robots[k]
+    data: dict[str, Any] = {
+        "id": robot.id,
+        "color": k % len(PALETTE),
+        "radius": _thousandths(robot.radius_m),
+        "kind": robot.kind,
+        "x": _differences(tracks.positions[:, k, 0]),
+        "y": _differences(tracks.positions[:, k, 1]),
+        "heading": _differences(_unwrapped(tracks.headings[:, k])),
+        "gone": gone.get(robot.id, []),
+    }
+    if recording.mission.dimensions == 3:
+        data["z"] = _differences(tracks.positions[:, k, 2])
+    return data
+
+
+def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
+    """By robot when it goes out, and when it is back: [time, whether it is out from then on]."""
+    found: dict[str, list[list[Any]]] = {}
+    for event in recording.events:
+        if event.kind in (*_GONE, *_BACK):
+            found.setdefault(str(event.data.get("robot")), []).append([_thousandths(event.time_s), event.kind in _GONE])
+    return found
+
+
+def _unwrapped(headings: Floats) -> Floats:
+    """The same directions without jumps, so that what lies between two of them can be drawn."""
+    there, smooth = np.isfinite(headings), headings.copy()
+    smooth[there] = np.unwrap(headings[there])
+    return smooth
+
+
+def _tasks(recording: Recording) -> list[dict[str, Any]]:
+    """Of each task where it is and in which state, from which moment on."""
+    situation = Situation(recording.mission)
+    tasks = {name: _task(situation, name, 0.0) for name in situation.tasks}
+    for event in recording.events:
+        name = situation.take(event.kind, event.data)
+        if name not in situation.tasks or event.kind == "robot_joins":
+            continue
+        if name not in tasks:
+            tasks[name] = _task(situation, name, event.time_s)
+            continue
+        now = _thousandths(event.time_s)
+        tasks[name]["places"].append([now, *_millimetres(situation.tasks[name].position)])
+        tasks[name]["states"].append([now, situation.states[name], event.data.get("robot")])
+    return list(tasks.values())
+
+
+def _task(situation: Situation, name: str, since: float) -> dict[str, Any]:
+    task, now = situation.tasks[name], _thousandths(since)
+    return {
+        "id": name,
+        "type": task.type,
+        "places": [[now, *_millimetres(task.position)]],
+        "states": [[now, OPEN, None]],
+    }
+
+
+def _millimetres(place: Sequence[float]) -> list[int]:
+    return [_thousandths(value) for value in place]
+
+
+def _plans(recording: Recording, order: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Of each plan its routes as lines: the number of the robot, and its points one after another."""
+    return [
+        {
+            "at": _thousandths(version.time_s),
+            "routes": [
+                [order[robot], [value for point in line for value in _millimetres(point)]]
+                for robot, line in version.lines.items()
+                if robot in order and len(line) > 1
+            ],
+        }
+        for version in recording.plans
+    ]
+
+
+def _nearest(recording: Recording, tracks: Tracks) -> dict[str, Any] | None:
+    robots = recording.robots
+    if len(robots) < 2 or not len(tracks.times_s):
+        return None
+    found = nearest(tracks.positions, np.array([robot.radius_m for robot in robots]))
+    return {
+        "metres": _differences(found.metres),
+        "touch": _differences(found.touch_m),
+        "first": found.pairs[:, 0].tolist(),
+        "second": found.pairs[:, 1].tolist(),
+    }
+
+
+def _map(chart: Map | None, image: Grid | None) -> dict[str, Any] | None:
+    if chart is None:
+        return None
+    return {
+        "boundary": None if chart.boundary is None else [_millimetres(corner) for corner in chart.boundary],
+        "zones": [_zone(zone) for zone in chart.zones],
+        "image": None if image is None else _image(image),
+    }
+
+
+def _zone(zone: Zone) -> dict[str, Any]:
+    low, high = zone.floor_m, zone.ceiling_m
+    heights = (
+        "" if low is None and high is None else f", {low or 0:g} m to {'the sky' if high is None else f'{high:g} m'}"
+    )
+    return {
+        "corners": [_millimetres(corner) for corner in zone.polygon],
+        "label": f"no entry: {', '.join(zone.forbidden_to)}{heights}",
+    }
+
+
+def _image(image: Grid) -> dict[str, Any]:
+    """The cells as lengths of runs, free and blocked by turns, from the lowest row on."""
+    cells = image.blocked.ravel()
+    ends = np.append(np.flatnonzero(cells[1:] != cells[:-1]) + 1, cells.size)
+    runs = np.diff(np.concatenate([[0], ends])).tolist()
+    return {
+        "rows": image.shape[0],
+        "columns": image.shape[1],
+        "resolution": image.resolution_m,
+        "origin": list(image.origin),
+        "runs": [0, *runs] if cells[0] else runs,
+    }
+
+
+def _figures(recording: Recording) -> list[list[str]]:
+    """The report's figures in words; without a report what can be told of the events."""
+    report = recording.report or {}
+    done = report.get("tasks_done") or [event for event in recording.events if event.kind == "ends"]
+    lost = report.get("tasks_lost") or [event for event in recording.events if event.kind == "lost"]
+    figures = [
+        ["mission time", f"{recording.duration_s:.1f} s"],
+        ["tasks done", str(len(done))],
+        ["tasks lost", str(len(lost))],
+    ]
+    for key, name, unit in _REPORTED:
+        if isinstance(report.get(key), int | float):
+            value = report[key]
+            figures.append([name, f"{value:g}" if isinstance(value, int) else f"{value:.2f}{unit}"])
+    return figures
+
+
+_REPORTED = (
+    ("contacts", "contacts", ""),
+    ("min_distance_m", "least distance", " m"),
+    ("waiting_s", "waiting", " s"),
+    ("reallocations", "re-allocations", ""),
+)

@@ -1,0 +1,194 @@
+// The map: walls and zones, planned routes, trails, tasks and robots as they are at a time.
+
+const MARGIN = 26; // pixels around what is shown
+const MOST_NAMED_TASKS = 80;
+const MOST_NAMED_ROBOTS = 30;
+const TASK_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_TASKS / tasks.length), 0.3), 1); // smaller in a crowd
+const ROBOT_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_ROBOTS / robots.length), 0.4), 1);
+const mapPicture = document.getElementById("map");
+let project = null; // metres to pixels: {x, y, scale}
+let trails = [];
+let routes = null;
+let shownPlan = -1;
+let robotMarks = [];
+let taskMarks = [];
+
+function drawMap() {
+  const [width, height] = fitted(mapPicture);
+  project = projection(width, height);
+  routes = svg("g");
+  shownPlan = -1;
+  mapPicture.append(...floorParts(), routes);
+  trails = robots.map(trail);
+  taskMarks = tasks.map(taskMark);
+  robotMarks = robots.map(robotMark);
+  const marks = [...trails.map((one) => one.path), ...taskMarks, ...robotMarks];
+  mapPicture.append(...marks, scaleBar(height));
+}
+
+function projection(width, height) {
+  const xs = [];
+  const ys = [];
+  const add = (x, y) => { if (x !== null) { xs.push(x); ys.push(y); } };
+  for (const task of tasks) for (const [, x, y] of task.places) add(x, y);
+  for (const robot of robots) for (let k = 0; k < robot.x.length; k += 1) add(robot.x[k], robot.y[k]);
+  for (const [x, y] of mapCorners()) add(x, y);
+  const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
+  const most = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
+  const [west, east, south, north] = xs.length ? [least(xs), most(xs), least(ys), most(ys)] : [0, 1, 0, 1];
+  const room = (pixels, metres) => Math.max(pixels - 2 * MARGIN, 10) / Math.max(metres, 1e-3);
+  const scale = Math.min(room(width, east - west), room(height, north - south));
+  const left = (width - scale * (east - west)) / 2 - scale * west;
+  const foot = (height + scale * (north - south)) / 2 + scale * south;
+  return { scale, x: (metres) => left + scale * metres, y: (metres) => foot - scale * metres };
+}
+
+function mapCorners() {
+  if (!data.map) return [];
+  const metres = (corner) => corner.map((value) => value / 1000);
+  const corners = [...(data.map.boundary ?? []), ...data.map.zones.flatMap((zone) => zone.corners)].map(metres);
+  if (!data.map.image) return corners;
+  const { columns, rows, resolution, origin: [x, y, yaw] } = data.map.image;
+  const [c, s] = [Math.cos(yaw) * resolution, Math.sin(yaw) * resolution];
+  const at = (column, row) => [x + c * column - s * row, y + s * column + c * row];
+  return [...corners, at(0, 0), at(columns, 0), at(0, rows), at(columns, rows)];
+}
+
+function points(corners) {
+  return corners.map(([x, y]) => `${project.x(x / 1000).toFixed(1)},${project.y(y / 1000).toFixed(1)}`).join(" ");
+}
+
+function floorParts() {
+  if (!data.map) return [];
+  const parts = data.map.image ? [walls(data.map.image)] : [];
+  if (data.map.boundary) parts.push(svg("polygon", { class: "boundary", points: points(data.map.boundary) }));
+  for (const zone of data.map.zones) {
+    const label = svg("title", {}, zone.label);
+    parts.push(svg("polygon", { class: "zone", points: points(zone.corners) }, label));
+  }
+  return parts;
+}
+
+// Blocked cells as pixels of a picture, laid on the ground where origin and yaw say.
+function walls({ rows, columns, resolution, origin: [x, y, yaw], runs }) {
+  const canvas = html("canvas", { width: columns, height: rows });
+  const context = canvas.getContext("2d");
+  const pixels = context.createImageData(columns, rows);
+  let cell = 0;
+  runs.forEach((length, k) => {
+    if (k % 2) for (let i = cell; i < cell + length; i += 1) pixels.data.set([128, 130, 136, 255], 4 * i);
+    cell += length;
+  });
+  context.putImageData(pixels, 0, 0);
+  const [c, s] = [Math.cos(yaw), Math.sin(yaw)].map((part) => part * resolution * project.scale);
+  const transform = `matrix(${c} ${-s} ${-s} ${-c} ${project.x(x)} ${project.y(y)})`;
+  return svg("image", { class: "wall", href: canvas.toDataURL(), width: columns, height: rows, transform });
+}
+
+function scaleBar(height) {
+  const step = niceStep(110 / project.scale, 1.5);
+  const [x, y, length] = [12, height - 12, step * project.scale];
+  const bar = svg("path", { d: `M${x} ${y - 4}v4h${length}v-4`, fill: "none", stroke: "var(--quiet)" });
+  return svg("g", {}, bar, svg("text", { x: x + length + 6, y: y + 3 }, `${step} m`));
+}
+
+// The whole way of a robot, of which as much is shown as it has gone: `lengths` in pixels at each moment.
+function trail(robot) {
+  const lengths = [];
+  let steps = "";
+  let last = null;
+  let length = 0;
+  for (let k = 0; k < times.length; k += 1) {
+    if (robot.x[k] !== null) {
+      const here = [project.x(robot.x[k]), project.y(robot.y[k])];
+      if (!last || Math.hypot(here[0] - last[0], here[1] - last[1]) > 0.3) {
+        if (last) length += Math.hypot(here[0] - last[0], here[1] - last[1]);
+        steps += `${last ? "L" : "M"}${here[0].toFixed(1)} ${here[1].toFixed(1)}`;
+        last = here;
+      }
+    }
+    lengths.push(length);
+  }
+  const look = { stroke: robot.color, "stroke-width": 2.2 * ROBOT_SCALE, opacity: 0.85 * ROBOT_SCALE };
+  const path = svg("path", { class: "trail", d: steps || "M0 0", ...look });
+  return { path, lengths };
+}
+
+function showRoutes(now) {
+  const current = lastUntil(plans, now, (plan) => plan.at);
+  if (current === shownPlan) return;
+  shownPlan = current;
+  const lines = current < 0 ? [] : plans[current].routes;
+  routes.replaceChildren(...lines.map(([robot, flat]) => {
+    const width = data.spatial ? 3 : 2;
+    const corners = [];
+    for (let k = 0; k < flat.length; k += width) corners.push([flat[k], flat[k + 1]]);
+    return svg("polyline", { class: "route", points: points(corners), stroke: robots[robot].color });
+  }));
+}
+
+const TASK_SHAPES = [
+  ["circle", { r: 5.5 }],
+  ["path", { class: "check", d: "M-2.8 .2 -.8 2.4 3 -2" }],
+  ["path", { class: "cross", d: "M-3 -3 3 3M-3 3 3 -3" }],
+];
+
+function taskShapes() {
+  return TASK_SHAPES.map(([name, attributes]) => svg(name, attributes));
+}
+
+function taskMark(task) {
+  const shapes = svg("g", { transform: `scale(${TASK_SCALE})` }, ...taskShapes());
+  const mark = svg("g", { class: "task", "data-task": task.id }, shapes, svg("title"));
+  if (tasks.length <= MOST_NAMED_TASKS) mark.append(svg("text", { x: 8, y: 4 }, task.id));
+  return mark;
+}
+
+function robotMark(robot) {
+  const radius = Math.max(robot.radius * project.scale, 6 * ROBOT_SCALE);
+  const body = robot.kind === "air"
+    ? svg("rect", { x: -radius, y: -radius, width: 2 * radius, height: 2 * radius, rx: radius / 2.5, fill: robot.color })
+    : svg("circle", { r: radius, fill: robot.color });
+  const nose = svg("line", { class: "nose", x2: radius, "stroke-width": 2 * ROBOT_SCALE });
+  const turning = svg("g", { class: "body" }, body, nose);
+  const mark = svg("g", { class: "robot", "data-robot": robot.id }, turning, svg("title", {}, robot.id));
+  if (robots.length <= MOST_NAMED_ROBOTS) mark.append(svg("text", { x: radius + 3, y: -radius }, robot.id));
+  return mark;
+}
+
+function showMap(now) {
+  showRoutes(now);
+  const moment = Math.max(lastUntil(times, now), 0);
+  trails.forEach(({ path, lengths }) => {
+    const [here, next] = [lengths[moment] ?? 0, lengths[moment + 1] ?? lengths[moment] ?? 0];
+    const gap = (times[moment + 1] ?? Infinity) - times[moment];
+    const gone = here + (next - here) * Math.min(Math.max((now - times[moment]) / gap, 0), 1);
+    path.setAttribute("stroke-dasharray", `${gone || 0} 1e6`);
+  });
+  tasks.forEach((task, k) => showTask(task, taskMarks[k], now));
+  robots.forEach((robot, k) => showRobot(robot, robotMarks[k], now));
+}
+
+function showTask(task, mark, now) {
+  const place = currentOf(task.places, now);
+  mark.toggleAttribute("hidden", !place);
+  mark.style.display = place ? "" : "none";
+  if (!place) return;
+  const [, state, robot] = currentOf(task.states, now);
+  const [, x, y] = place;
+  mark.setAttribute("transform", `translate(${project.x(x)} ${project.y(y)})`);
+  mark.setAttribute("class", `task ${state.replace(" ", "-")}`);
+  mark.dataset.state = state;
+  const by = robot ? ` by ${robot}` : "";
+  mark.querySelector("title").textContent = `task ${task.id}${task.type ? ` (${task.type})` : ""}: ${state}${by}`;
+}
+
+function showRobot(robot, mark, now) {
+  const [x, y, heading] = [valueAt(robot.x, now), valueAt(robot.y, now), valueAt(robot.heading, now)];
+  mark.style.display = x === null ? "none" : "";
+  if (x === null) return;
+  Object.assign(mark.dataset, { x: x.toFixed(3), y: y.toFixed(3) });
+  mark.setAttribute("transform", `translate(${project.x(x)} ${project.y(y)})`);
+  mark.querySelector(".body").setAttribute("transform", `rotate(${(-heading * 180) / Math.PI})`);
+  mark.classList.toggle("gone", isGone(robot, now));
+}

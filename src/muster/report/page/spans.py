@@ -1,0 +1,53 @@
+"""What robots did over time: travelling, waiting, working, each from when until when, as a record's events tell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from muster.report.record import Happening
+
+TRAVEL, WAITING, WORK = "travel", "waiting", "work"
+_BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK}
+_BREAKS_OFF = ("robot_fails", "cancel_task", "lost")
+
+
+@dataclass(frozen=True)
+class Span:
+    """What a robot does, for which task, from when until when, seconds."""
+
+    robot: str
+    task: str
+    kind: str
+    from_s: float
+    until_s: float
+
+
+def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
+    """The spans in a record's events, in the order of their ends; those of no length are left out.
+
+    A span ends when the robot begins something else, ends the task or fails, when the task is cancelled or lost, and at
+    the latest with the record.
+    """
+    found: list[Span] = []
+    doing: dict[str, tuple[str, str, float]] = {}
+
+    def close(robot: str, until_s: float) -> None:
+        if robot in doing:
+            task, kind, from_s = doing.pop(robot)
+            if until_s > from_s:
+                found.append(Span(robot, task, kind, from_s, until_s))
+
+    for event in events:
+        robot, task = event.data.get("robot"), event.data.get("task")
+        if event.kind in _BEGINS:
+            close(str(robot), event.time_s)
+            doing[str(robot)] = (str(task), _BEGINS[event.kind], event.time_s)
+        elif event.kind == "ends":
+            close(str(robot), event.time_s)
+        elif event.kind in _BREAKS_OFF:
+            for one in [name for name, (of, *_) in doing.items() if name == robot or (robot is None and of == task)]:
+                close(one, event.time_s)
+    for one in list(doing):
+        close(one, duration_s)
+    return found

@@ -1,0 +1,7 @@
+"""Records: one MCAP file of a mission that is carried out, and the same read back."""
+
+from muster.report.record.reader import read_record
+from muster.report.record.recording import Happening, PlanVersion, Recording, Tracks
+from muster.report.record.writer import RecordWriter
+
+__all__ = ["Happening", "PlanVersion", "RecordWriter", "Recording", "Tracks", "read_record"]

@@ -1,0 +1,111 @@
+"""A record that was read: what a mission was, what was planned, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.model import Mission, Point, Robot
+from muster.mission.plan import Plan
+from muster.motion.grid import Grid
+from muster.report.record.situation import Situation
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Happening:
+    """An event: when, seconds of the mission's clock; of which kind; and what is said of it."""
+
+    time_s: float
+    kind: str
+    data: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class PlanVersion:
+    """A plan, from when on it held, and its routes as lines: where each robot still had to go then.
+
+    `lines` has points of two or three coordinates, as the mission has, in metres.
+    """
+
+    time_s: float
+    plan: Plan
+    lines: Mapping[str, Sequence[Point]]
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """Where the robots were: m moments, n robots. A robot that was not there has NaN.
+
+    Parameters
+    ----------
+    robots
+        their ids, (n,).
+    times_s
+        (m,) seconds of the mission's clock, growing.
+    positions, headings, velocities
+        (m, n, 3) metres, (m, n) radians, (m, n, 3) m/s in the map frame.
+    """
+
+    robots: tuple[str, ...]
+    times_s: Floats
+    positions: Floats
+    headings: Floats
+    velocities: Floats
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """What a record holds.
+
+    Parameters
+    ----------
+    file
+        its name, for messages.
+    mission, mission_text
+        the mission, without travel tables, and its text as the record has it.
+    image
+        the cells of a map that is an image.
+    plans, events, bids
+        in the order in which they came.
+    tracks
+        of the robots of the mission, then those that joined.
+    report
+        None where the mission did not come to its end.
+    complete
+        whether the file was ended in order and is undamaged; if it breaks off, what was read is all up to its last
+        whole chunk.
+    """
+
+    file: str
+    mission: Mission
+    mission_text: str
+    image: Grid | None
+    plans: tuple[PlanVersion, ...]
+    events: tuple[Happening, ...]
+    bids: tuple[Mapping[str, Any], ...]
+    tracks: Tracks
+    report: Mapping[str, Any] | None
+    complete: bool
+
+    @property
+    def duration_s(self) -> float:
+        """The time of the last thing that is told."""
+        told = [event.time_s for event in self.events] + [version.time_s for version in self.plans]
+        reported = (self.report or {}).get("mission_time_s") or 0.0
+        return float(max([0.0, reported, *told, *self.tracks.times_s[-1:].tolist()]))
+
+    @cached_property
+    def robots(self) -> tuple[Robot, ...]:
+        """Those of the mission, then those that joined."""
+        situation = Situation(self.mission)
+        for event in self.events:
+            if event.kind == "robot_joins":
+                situation.take(event.kind, event.data)
+        return tuple(situation.robots.values())

@@ -1,0 +1,215 @@
+"""The page in a real browser without a window."""
+
+import numpy as np
+import pytest
+from tests.report.page.conftest import MORE
+
+pytest.importorskip("mcap")
+pytest.importorskip("shapely")
+pytestmark = pytest.mark.xdist_group("browser")
+
+WIDE, NARROW = (1400, 900), (360, 740)
+
+
+def seek(browser, time):
+    browser.evaluate(f"""(() => {{
+        const slider = document.getElementById("slider");
+        slider.value = {time};
+        slider.dispatchEvent(new Event("input"));
+    }})()""")
+
+
+def time_of(browser):
+    return browser.evaluate("Number(document.getElementById('slider').value)")
+
+
+def robots_of(browser):
+    """Where the page says the robots are: metres."""
+    return browser.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('#map .robot')]"
+        ".map(mark => [mark.dataset.robot, [Number(mark.dataset.x), Number(mark.dataset.y)]]))"
+    )
+
+
+def task_states(browser):
+    return browser.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('#map .task')]"
+        ".filter(mark => mark.style.display !== 'none').map(mark => [mark.dataset.task, mark.dataset.state]))"
+    )
+
+
+@pytest.mark.parametrize("name", ["31T-6R", "floor", "yard"])
+@pytest.mark.parametrize("size", [WIDE, NARROW])
+@pytest.mark.parametrize("dark", [False, True])
+def test_it_loads_without_complaint_and_without_network(name, size, dark, browser, page):
+    browser.open(page(name), *size, dark=dark)
+    seek(browser, 20)
+    assert browser.requests == []
+    assert browser.complaints == []
+    assert browser.evaluate("document.title") == name
+    paper = browser.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (paper == "rgb(255, 255, 255)") != dark
+    assert browser.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.evaluate("document.getElementById('heights').hidden") == (name != "yard")
+    assert browser.evaluate("document.querySelectorAll('#map image').length") == (name == "floor")
+
+
+def test_no_element_reaches_out_of_a_narrow_window(browser, page):
+    browser.open(page("31T-6R", more=MORE), *NARROW, mobile=True)
+    out = browser.evaluate("""[...document.querySelectorAll("body *")].filter(element => {
+        const box = element.getBoundingClientRect();
+        return !element.ownerSVGElement && box.width > 0 && (box.right > innerWidth + 0.5 || box.left < -0.5);
+    }).map(element => element.outerHTML.slice(0, 80))""")
+    assert out == []
+
+
+@pytest.mark.parametrize("name", ["31T-6R", "yard"])
+@pytest.mark.parametrize("moment", [0, 123, 400, -1])
+def test_the_slider_moves_the_robots_to_where_they_were(name, moment, browser, page, recorded):
+    tracks = recorded(name).tracks
+    browser.open(page(name), *WIDE)
+    seek(browser, tracks.times_s[moment])
+    seen = robots_of(browser)
+    np.testing.assert_allclose([seen[name] for name in tracks.robots], tracks.positions[moment, :, :2], atol=1.1e-3)
+
+
+def test_between_two_moments_robots_are_between_two_places(browser, page, recorded):
+    tracks = recorded("31T-6R").tracks
+    browser.open(page("31T-6R"), *WIDE)
+    seek(browser, (tracks.times_s[100] + tracks.times_s[101]) / 2)
+    middle = (tracks.positions[100] + tracks.positions[101]) / 2
+    np.testing.assert_allclose(list(robots_of(browser).values()), middle[:, :2], atol=1.6e-3)
+
+
+def test_robots_are_drawn_where_they_are(browser, page):
+    """Marks on the page are as far from each other, in pixels, as robots in metres: one scale for all."""
+    browser.open(page("31T-6R"), *WIDE)
+    seek(browser, 30)
+    metres = np.array(list(robots_of(browser).values()))
+    pixels = np.array(
+        browser.evaluate(
+            "[...document.querySelectorAll('#map .robot')].map(mark => {"
+            "const {e, f} = mark.transform.baseVal.consolidate().matrix; return [e, -f]; })"
+        )
+    )
+    ratios = (pixels[1:] - pixels[0]) / (metres[1:] - metres[0])
+    assert ratios == pytest.approx(ratios.mean(), rel=1e-2)
+    assert ratios.mean() > 10
+
+
+@pytest.mark.parametrize("time", [0.05, 19.9, 31.0, 61.3])
+def test_tasks_turn_done(time, browser, page, recorded):
+    recording = recorded("31T-6R", more=MORE)
+    browser.open(page("31T-6R", more=MORE), *WIDE)
+    seek(browser, time)
+    states = task_states(browser)
+    done = {event.data["task"] for event in recording.events if event.kind == "ends" and event.time_s <= time}
+    assert {task for task, state in states.items() if state == "done"} >= done - {"22"}
+    assert states.get("late <b>") == (None if time < 20 else "lost" if time >= 30 else "open")
+
+
+def test_it_plays_pauses_and_ends(browser, page):
+    browser.open(page("31T-6R"), *WIDE)
+    assert time_of(browser) == 0
+    browser.press(" ", code="Space")
+    assert browser.evaluate("document.getElementById('play').getAttribute('aria-label')") == "Pause"
+    browser.wait_for("Number(document.getElementById('slider').value) > 0.5")
+    browser.press(" ", code="Space")
+    paused = time_of(browser)
+    frames = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+    assert browser.evaluate(frames)
+    assert time_of(browser) == paused
+    seek(browser, 61)
+    browser.evaluate("document.getElementById('speed').value = 10")
+    browser.evaluate("document.getElementById('play').click()")
+    browser.wait_for("document.getElementById('play').getAttribute('aria-label') === 'Play'")
+    assert time_of(browser) == pytest.approx(61.341)
+
+
+def test_keys(browser, page):
+    browser.open(page("31T-6R"), *WIDE)
+    for key, shift, expected in (
+        ("ArrowRight", 0, 1),
+        ("ArrowRight", 8, 11),
+        ("ArrowLeft", 0, 10),
+        ("End", 0, 61.341),
+        ("ArrowRight", 0, 61.341),
+        ("Home", 0, 0),
+        ("ArrowLeft", 0, 0),
+    ):
+        browser.press(key, modifiers=shift)
+        assert time_of(browser) == pytest.approx(expected)
+
+
+def test_pointing_into_a_chart_goes_there(browser, page):
+    browser.open(page("31T-6R"), *WIDE)
+    box = browser.evaluate("document.getElementById('gantt').getBoundingClientRect().toJSON()")
+    browser.click(box["x"] + 64 + (box["width"] - 74) / 2, box["y"] + 20)
+    assert time_of(browser) == pytest.approx(61.341 / 2, abs=0.1)
+    line = browser.evaluate("Number(document.querySelector('#gantt .cursor').getAttribute('x1'))")
+    assert line == pytest.approx(64 + (box["width"] - 74) / 2, abs=1)
+
+
+def test_the_time_chart_has_a_bar_for_each_span(browser, page, recorded):
+    from muster.report.page.spans import spans
+
+    recording = recorded("31T-6R", more=MORE)
+    browser.open(page("31T-6R", more=MORE), *WIDE)
+    expected = spans(recording.events, recording.duration_s)
+    for kind in ("travel", "waiting", "work"):
+        seen = browser.evaluate(f"[...document.querySelectorAll('#gantt rect.{kind}')].map(bar => bar.dataset.task)")
+        assert sorted(seen) == sorted(span.task for span in expected if span.kind == kind)
+    fills = browser.evaluate("[...document.querySelectorAll('#gantt rect.waiting')].map(b => b.getAttribute('fill'))")
+    assert fills
+    assert all(fill.startswith("url(#hatch-") for fill in fills)
+
+
+def test_events_are_listed_and_lead_to_their_time(browser, page, recorded):
+    events = recorded("31T-6R", more=MORE).events
+    browser.open(page("31T-6R", more=MORE), *WIDE)
+    assert browser.evaluate("document.querySelectorAll('#events li').length") == len(events)
+    alarms = browser.evaluate("[...document.querySelectorAll('#events .alarm')].map(e => e.textContent)")
+    assert alarms == [
+        "robot fails: robot r_5",
+        "lost: task late <b>, reason capacity",
+        "contact: robots r_0 r_1, distance_m 0.12",
+    ]
+    browser.evaluate("document.querySelector('#events .alarm').closest('button').click()")
+    assert time_of(browser) == 20
+    assert browser.evaluate("document.querySelector('#robots [data-robot=r_5]').textContent") == "r_5 is out"
+    assert browser.evaluate("document.querySelector('#map [data-robot=r_5]').classList.contains('gone')")
+
+
+def test_what_a_killed_process_left_is_shown_as_such(browser, page):
+    browser.open(page("31T-6R", until=20.0), *WIDE)
+    warning = browser.evaluate("document.getElementById('warning').textContent")
+    assert warning == "The mission did not come to its end."
+    assert browser.evaluate("document.getElementById('warning').hidden") is False
+
+
+def test_everything_to_be_used_has_a_name(browser, page):
+    """What a screen reader says of each control and picture."""
+    browser.open(page("yard"), *WIDE)
+    nodes = browser("Accessibility.getFullAXTree")["nodes"]
+    named = {
+        (node["role"]["value"], node["name"]["value"])
+        for node in nodes
+        if not node["ignored"] and node["role"]["value"] in ("button", "slider", "combobox", "image")
+    }
+    assert all(name for _, name in named)
+    assert {("button", "Play"), ("slider", "Time"), ("combobox", "Speed")} <= named
+    assert {name.split()[0] for role, name in named if role == "image"} >= {"Map", "Time", "Distance", "Height"}
+    seek(browser, 12)
+    assert browser.evaluate("document.getElementById('slider').getAttribute('aria-valuetext')") == "12.0 s"
+
+
+def test_a_window_that_changes(browser, page):
+    browser.open(page("31T-6R"), *WIDE)
+    seek(browser, 30)
+    browser("Emulation.setDeviceMetricsOverride", width=500, height=700, deviceScaleFactor=2, mobile=False)
+    browser.wait_for("document.getElementById('map').viewBox.baseVal.width < 500")
+    assert time_of(browser) == 30
+    boxes = browser.evaluate(
+        "[...document.querySelectorAll('#map .robot .body')].map(mark => mark.getBoundingClientRect().right)"
+    )
+    assert max(boxes) < 500
