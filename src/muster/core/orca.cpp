@@ -40,22 +40,20 @@ HalfSpace<D> outside(const Vec<D>& apart, const Vec<D>& v, double radius, double
 template <int D>
 class Navigator {
  public:
-  Navigator(const Agents<D>& agents, const std::vector<Wall<D>>& walls, const OrcaSettings& settings, double dt,
-            const AgentTree<D>& tree)
+  Navigator(const Agents<D>& agents, const OrcaSettings& settings, double dt, const AgentTree<D>& tree)
       : agents_(agents),
-        walls_(walls),
         settings_(settings),
         dt_(dt),
         tree_(tree),
         largest_radius_(*std::max_element(agents.radii.begin(), agents.radii.end())),
         largest_speed_(*std::max_element(agents.max_speeds.begin(), agents.max_speeds.end())) {}
 
-  Vec<D> velocity(int i) {
+  Vec<D> velocity(int i, const std::vector<Wall<D>>& all_walls) {
     Vec<D> x;
     const double most = agents_.max_speeds[i];
     const Aim<D> aim{agents_.preferred[i], false};
     spaces_.clear();
-    face_walls(i);
+    face_walls(i, all_walls);
     const std::size_t walls = spaces_.size();
     if (settings_.apart) keep_apart(i);
     const std::size_t hard = spaces_.size();
@@ -74,10 +72,10 @@ class Navigator {
     return distance > agents_.radii[i] + settings_.wall_horizon * agents_.max_speeds[i];
   }
 
-  void face_walls(int i) {
+  void face_walls(int i, const std::vector<Wall<D>>& walls) {
     near_walls_.clear();
     const Vec<D>& p = agents_.positions[i];
-    for (const Wall<D>& wall : walls_) {
+    for (const Wall<D>& wall : walls) {
       const double distance = norm(p - closest(wall, p));
       if (out_of_reach(i, distance)) continue;
       near_walls_.push_back(&wall);
@@ -120,7 +118,6 @@ class Navigator {
   }
 
   const Agents<D>& agents_;
-  const std::vector<Wall<D>>& walls_;
   const OrcaSettings& settings_;
   double dt_;
   const AgentTree<D>& tree_;
@@ -149,9 +146,21 @@ std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<W
   const AgentTree<D> tree(agents.positions);
   std::vector<Vec<D>> result(agents.positions.size());
   in_parts(agents.size(), threads, [&](int begin, int end) {
-    Navigator<D> navigator(agents, walls, settings, dt, tree);
-    for (int i = begin; i < end; ++i) result[i] = navigator.velocity(i);
+    Navigator<D> navigator(agents, settings, dt, tree);
+    for (int i = begin; i < end; ++i) result[i] = navigator.velocity(i, walls);
   });
+  return result;
+}
+
+template <int D>
+std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<std::vector<Wall<D>>>& walls,
+                                    const std::vector<char>& choosing, const OrcaSettings& settings, double dt) {
+  std::vector<Vec<D>> result = agents.velocities;
+  if (agents.size() == 0) return result;
+  const AgentTree<D> tree(agents.positions);
+  Navigator<D> navigator(agents, settings, dt, tree);
+  for (int i = 0; i < agents.size(); ++i)
+    if (choosing[i]) result[i] = navigator.velocity(i, walls[i]);
   return result;
 }
 
@@ -161,5 +170,9 @@ template std::vector<Vec<2>> orca_velocities(const Agents<2>&, const std::vector
                                              int);
 template std::vector<Vec<3>> orca_velocities(const Agents<3>&, const std::vector<Box>&, const OrcaSettings&, double,
                                              int);
+template std::vector<Vec<2>> orca_velocities(const Agents<2>&, const std::vector<std::vector<Segment>>&,
+                                             const std::vector<char>&, const OrcaSettings&, double);
+template std::vector<Vec<3>> orca_velocities(const Agents<3>&, const std::vector<std::vector<Box>>&,
+                                             const std::vector<char>&, const OrcaSettings&, double);
 
 }  // namespace muster

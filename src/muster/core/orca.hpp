@@ -28,4 +28,10 @@ template <int D>
 std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<Wall<D>>& walls,
                                     const OrcaSettings& settings, double dt, int threads);
 
+// The same where each agent has walls of its own and some have made up their minds: those that are not `choosing` keep
+// their velocities.
+template <int D>
+std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<std::vector<Wall<D>>>& walls,
+                                    const std::vector<char>& choosing, const OrcaSettings& settings, double dt);
+
 }  // namespace muster
