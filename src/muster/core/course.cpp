@@ -65,14 +65,22 @@ Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, doubl
   return (1.0 / dt) * (from - robot.position);
 }
 
+Vec<3> to_post(const CrowdRobot& robot, double dt) {
+  const Vec<3> way = robot.post - robot.position;
+  const double away = norm(way), speed = Braking{dt, robot.body.acceleration}.speed(away);
+  return away > 0.0 ? (std::min(speed, robot.top_speed()) / away) * way : Vec<3>{};
+}
+
 bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
   const double away = norm(point.at - robot.position);
-  if (away <= kExact) return true;
   if (point.stops() || robot.next + 1 == robot.way.size()) {
+    const Braking braking{dt, robot.body.acceleration};
+    if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
     const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
-    return no_nearer && away <= tolerances.arrival;
+    return away <= (no_nearer ? tolerances.arrival : kExact);
   }
+  if (away <= kExact) return true;
   const double missed = distance_to_piece(point.at, before, robot.position);
   if (missed <= tolerances.corner + kRounding && corner_speed(robot, before, robot.next, tolerances, dt) > 0.0)
     return true;

@@ -14,6 +14,9 @@ struct Tolerances {
 // holds or turns, at the last, and at corners that it cannot take. Undisturbed it lands exactly on where it stops.
 Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, double dt);
 
+// The same, straight to its post.
+Vec<3> to_post(const CrowdRobot& robot, double dt);
+
 // Whether the next way point is passed by the step that began at `before`.
 bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt);
 

@@ -60,12 +60,14 @@ struct CrowdRobot {
   double hold_until = 0.0;
   double slowed = 1.0;
   bool failed = false;
+  bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
   double asked_until = kNever;  // until then it makes room though it has no order
+  Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
 
   Random noise{0}, whims{0};  // what the world does to it, and the tilts that it tries
   std::vector<Upright> near_faces;
@@ -74,10 +76,13 @@ struct CrowdRobot {
 
   double top_speed() const { return body.speed * slowed; }
   bool under_way() const { return velocity != Vec<3>{}; }
-  // It stays where it is whatever comes: at work, out of order, or without an order and not asked to make room.
+  bool comes_back(double time) const {
+    return phase == Phase::idle && !failed && asked_until < time && position != post;
+  }
+  // It stays where it is whatever comes: at work, out of order, or at its post and not asked to make room.
   bool stands(double time) const {
     if (commanded != Vec<3>{}) return false;
-    return failed || phase == Phase::holding || (phase == Phase::idle && asked_until < time);
+    return failed || phase == Phase::holding || (phase == Phase::idle && asked_until < time && position == post);
   }
 };
 

@@ -26,7 +26,7 @@ int CrowdWorld::add_walls(WallSet walls) {
 int CrowdWorld::add(const Body& body, const Vec<3>& position, double heading) {
   CrowdRobot robot;
   robot.body = body;
-  robot.position = position;
+  robot.position = robot.post = position;
   robot.heading = wrapped(heading);
   const std::uint64_t seed = settings_.seed * 0x9e3779b97f4a7c15ULL + 2 * robots_.size();
   robot.noise = Random(seed);
@@ -43,6 +43,8 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.order = order;
   robot.next = 0;
   robot.phase = robot.way.empty() ? Phase::idle : Phase::going;
+  robot.stopping = robot.way.empty();
+  robot.post = robot.position;
   robot.patience = {};
 }
 
@@ -77,13 +79,16 @@ void CrowdWorld::step() {
 void CrowdWorld::want(const AgentTree<3>& tree) {
   const std::size_t n = robots_.size();
   course_.assign(n, {});
-  for (std::size_t i = 0; i < n; ++i)
-    if (robots_[i].phase == Phase::going) course_[i] = along_course(robots_[i], settings_.tolerances, settings_.dt);
+  for (std::size_t i = 0; i < n; ++i) {
+    const CrowdRobot& robot = robots_[i];
+    if (robot.phase == Phase::going) course_[i] = along_course(robot, settings_.tolerances, settings_.dt);
+    if (robot.comes_back(time())) course_[i] = to_post(robot, settings_.dt);
+  }
   wanted_ = course_;
   if (settings_.avoidance == Avoidance::none) return;
   const Manners manners(robots_, tree, time(), settings_.dt);
   for (std::size_t i = 0; i < n; ++i)
-    if (robots_[i].phase == Phase::going && robots_[i].body.radius > 0.0)
+    if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0)
       wanted_[i] = manners.wanted(static_cast<int>(i), course_[i]);
 }
 
@@ -110,7 +115,7 @@ void CrowdWorld::move(const AgentTree<3>& tree) {
     const double share = settings_.avoidance == Avoidance::none ? 1.0 : right.share(static_cast<int>(i));
     robot.commanded = choices_[i].at(share);
     robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
-    robot.turned_aside = share < 1.0 || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
+    robot.turned_aside = share < 1.0 - kAside || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
     robot.heading = wrapped(robot.heading + steering.yaw_rate * dt);
     drive(robot);
     if (norm(robot.position - robot.looked_at) > kWallsFor) collect_walls(robot);
@@ -134,6 +139,10 @@ void CrowdWorld::drive(CrowdRobot& robot) {
 
 void CrowdWorld::take_note(int i) {
   CrowdRobot& robot = robots_[i];
+  if (robot.phase == Phase::idle) {
+    settle(robot);
+    return;
+  }
   if (robot.phase == Phase::going) {
     while (robot.phase == Phase::going && passes(robot, before_[i], settings_.tolerances, settings_.dt)) {
       if (robot.way[robot.next].stops())
@@ -152,11 +161,21 @@ void CrowdWorld::take_note(int i) {
   if (robot.phase == Phase::holding && time() >= robot.hold_until - 1e-6 * settings_.dt) next_way_point(i);
 }
 
+// Where a robot without an order comes to a stand is its post.
+void CrowdWorld::settle(CrowdRobot& robot) const {
+  if (robot.comes_back(time())) robot.patience.note(robot, settings_.dt);
+  const bool near = norm(robot.post - robot.position) <= settings_.tolerances.arrival;
+  if (near || robot.failed || robot.stopping) robot.post = robot.position;
+  if (robot.commanded == Vec<3>{}) robot.stopping = false;
+}
+
 void CrowdWorld::next_way_point(int i) {
   CrowdRobot& robot = robots_[i];
   const bool labelled = robot.way[robot.next].labelled, last = ++robot.next == robot.way.size();
   robot.phase = last ? Phase::idle : Phase::going;
   robot.patience = {};
+  robot.stopping = last;
+  robot.post = robot.position;
   if (labelled || last) events_.push_back({time(), i, robot.order, static_cast<int>(robot.next), last});
 }
 

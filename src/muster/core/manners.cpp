@@ -22,8 +22,9 @@ Vec<3> tilted(const Vec<3>& v, double angle) {
 }  // namespace
 
 void Patience::note(const CrowdRobot& robot, double dt) {
-  const double away = norm(robot.way[robot.next].at - robot.position);
-  if (away < best - 0.1 * robot.top_speed()) {
+  const Vec<3>& goal = robot.phase == Phase::idle ? robot.post : robot.way[robot.next].at;
+  const double away = norm(goal - robot.position);
+  if (away < best - 0.1 * std::min(best, robot.top_speed())) {
     best = away;
     stuck = 0.0;
   } else if (robot.turned_aside) {
@@ -31,11 +32,15 @@ void Patience::note(const CrowdRobot& robot, double dt) {
   }
 }
 
-// The longer a robot is large and slow, the longer it takes it to get past another.
+// A large and slow robot takes longer to get past another. After a try patience begins anew.
 double Patience::tilt_at(double time, const Body& body, Random& random) {
   if (time < until) return tilt;
+  if (tilt != 0.0) {
+    *this = {};
+    return 0.0;
+  }
   const double past = 2.0 * body.radius / body.speed;
-  tilt = tilt != 0.0 ? 0.0 : (random.uniform() < 0.75 ? -1.0 : 1.0) * kPi * (0.2 + 0.5 * random.uniform());
+  tilt = (random.uniform() < 0.75 ? -1.0 : 1.0) * kPi * (0.2 + 0.5 * random.uniform());
   until = time + 0.5 + past * (0.5 + 1.5 * random.uniform());
   return tilt;
 }
@@ -46,27 +51,46 @@ Manners::Manners(std::vector<CrowdRobot>& robots, const AgentTree<3>& tree, doub
 }
 
 Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
-  CrowdRobot& robot = robots_[i];
+  const CrowdRobot& robot = robots_[i];
   if (!robot.turned_aside) return course;
   const double radius = robot.body.radius;
   const double stop = Braking{dt_, robot.body.acceleration}.distance(robot.top_speed());
-  const bool impatient = robot.patience.stuck > kPatience;
   std::vector<int> near;
   tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
+  return robot.phase == Phase::idle ? wanted_to_post(i, course, near) : wanted_under_way(i, course, near);
+}
+
+Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<int>& near) const {
+  CrowdRobot& robot = robots_[i];
+  const Vec<3>& goal = robot.way[robot.next].at;
+  const bool impatient = robot.patience.stuck > kPatience;
   for (const int k : near) {
     const CrowdRobot& other = robots_[k];
-    if (other.body.radius == 0.0 || !other.stands(time_)) continue;
-    const bool on_way_point = norm(other.position - robot.way[robot.next].at) < radius + other.body.radius;
-    const bool free_to_go = !other.failed && other.phase == Phase::idle;
-    if (free_to_go && (on_way_point || impatient)) ask(k);
-    if (!free_to_go && on_way_point) {
+    const bool on_way_point = stands_on(k, goal, robot.body.radius);
+    const bool ahead = dot(other.position - robot.position, course) > 0.0;
+    const bool has_time = !other.failed && other.phase == Phase::idle && other.body.radius > 0.0;
+    if (has_time && (on_way_point || (impatient && ahead))) ask(k);
+    if (!has_time && on_way_point) {
       robot.patience.stuck = 0.0;
       return {};
     }
   }
   if (impatient) return tilted(course, robot.patience.tilt_at(time_, robot.body, robot.whims));
-  const bool far = norm(robot.way[robot.next].at - robot.position) > 2.0 * radius;
-  return far ? tilted(course, kRight) : course;
+  return norm(goal - robot.position) > 2.0 * robot.body.radius ? tilted(course, kRight) : course;
+}
+
+Vec<3> Manners::wanted_to_post(int i, const Vec<3>& course, const std::vector<int>& near) const {
+  CrowdRobot& robot = robots_[i];
+  const bool taken =
+      std::any_of(near.begin(), near.end(), [&](int k) { return stands_on(k, robot.post, robot.body.radius); });
+  if (!taken && robot.patience.stuck <= kPatience) return course;
+  robot.post = robot.position;
+  return {};
+}
+
+bool Manners::stands_on(int k, const Vec<3>& place, double radius) const {
+  const CrowdRobot& other = robots_[k];
+  return other.body.radius > 0.0 && other.stands(time_) && norm(other.position - place) < radius + other.body.radius;
 }
 
 void Manners::ask(int k) const { robots_[k].asked_until = time_ + kAskedFor; }

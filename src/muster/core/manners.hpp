@@ -2,7 +2,8 @@
 //
 // - Where another stands on a robot's way point, at work or broken down, the robot waits beside it until it goes; if
 // the
-//   other has nothing to do, it is asked to make room.
+//   other has nothing to do, it is asked to make room, and comes back afterwards unless its post is taken or out of
+//   reach.
 // - A robot that another turns aside keeps a little to the right, so that two who meet choose different sides.
 // - One that has not come nearer to its way point for a while tries other directions, at random and by turns with the
 //   straight way, and asks those to make room who have nothing to do.
@@ -24,6 +25,9 @@ class Manners {
 
  private:
   void ask(int k) const;
+  Vec<3> wanted_under_way(int i, const Vec<3>& course, const std::vector<int>& near) const;
+  Vec<3> wanted_to_post(int i, const Vec<3>& course, const std::vector<int>& near) const;
+  bool stands_on(int k, const Vec<3>& place, double radius) const;
 
   std::vector<CrowdRobot>& robots_;
   const AgentTree<3>& tree_;
