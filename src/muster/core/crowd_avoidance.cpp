@@ -11,7 +11,6 @@ namespace muster {
 namespace {
 
 constexpr double kFirm = 1e18;  // the priority of those who do not give way
-constexpr double kMild = -1.0;  // of those who were asked to make room; those of missions are at least 0
 
 template <int D>
 Vec<D> in_dimensions(const Vec<3>& v) {
@@ -69,7 +68,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
     agents.preferred.push_back(in_dimensions<D>(wanted_[group[k]]));
     agents.radii.push_back(body.radius * (body.faces_its_way ? 1.0 + settings_.margin : 1.0));
     agents.max_speeds.push_back(robot.top_speed());
-    agents.priorities.push_back(!chooses ? kFirm : robot.phase == Phase::idle ? kMild : body.priority);
+    agents.priorities.push_back(chooses ? body.priority : kFirm);
     if constexpr (D == 2) walls[k] = robot.near_walls;
   }
   if (std::find(choosing.begin(), choosing.end(), 1) == choosing.end()) return;

@@ -40,11 +40,13 @@ HalfSpace<D> outside(const Vec<D>& apart, const Vec<D>& v, double radius, double
 template <int D>
 class Navigator {
  public:
-  Navigator(const Agents<D>& agents, const OrcaSettings& settings, double dt, const AgentTree<D>& tree)
+  Navigator(const Agents<D>& agents, const OrcaSettings& settings, double dt, const AgentTree<D>& tree,
+            const std::vector<char>* choosing = nullptr)
       : agents_(agents),
         settings_(settings),
         dt_(dt),
         tree_(tree),
+        choosing_(choosing),
         largest_radius_(*std::max_element(agents.radii.begin(), agents.radii.end())),
         largest_speed_(*std::max_element(agents.max_speeds.begin(), agents.max_speeds.end())) {}
 
@@ -111,16 +113,20 @@ class Navigator {
 
   void face_agents(int i) {
     tree_.near(i, settings_.neighbourhood, found_);
-    for (const int k : found_)
+    for (const int k : found_) {
+      const bool firm = choosing_ != nullptr && !(*choosing_)[k];
+      const double yields = firm ? 1.0 : agents_.yields(i, k), spares = firm ? 1.0 : 1.0 - yields;
       spaces_.push_back(orca_space(agents_.positions[k] - agents_.positions[i], agents_.velocities[i],
                                    agents_.velocities[k], agents_.radii[i] + agents_.radii[k], settings_.horizon, dt_,
-                                   agents_.yields(i, k)));
+                                   yields, spares));
+    }
   }
 
   const Agents<D>& agents_;
   const OrcaSettings& settings_;
   double dt_;
   const AgentTree<D>& tree_;
+  const std::vector<char>* choosing_;  // null: all
   double largest_radius_, largest_speed_;
   Program<D> program_;
   std::vector<HalfSpace<D>> spaces_;
@@ -132,11 +138,11 @@ class Navigator {
 
 template <int D>
 HalfSpace<D> orca_space(const Vec<D>& apart, const Vec<D>& v_a, const Vec<D>& v_b, double radius, double horizon,
-                        double dt, double yields) {
+                        double dt, double yields, double spares) {
   const Vec<D> v = v_a - v_b;
   const HalfSpace<D> free = outside(apart, v, radius, horizon, dt);
   const double u = free.violation(v);  // along the normal: the least change of the relative velocity
-  return {free.normal, dot(free.normal, v_a) + (u > 0.0 ? yields : 1.0 - yields) * u};
+  return {free.normal, dot(free.normal, v_a) + (u > 0.0 ? yields : spares) * u};
 }
 
 template <int D>
@@ -158,14 +164,14 @@ std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<s
   std::vector<Vec<D>> result = agents.velocities;
   if (agents.size() == 0) return result;
   const AgentTree<D> tree(agents.positions);
-  Navigator<D> navigator(agents, settings, dt, tree);
+  Navigator<D> navigator(agents, settings, dt, tree, &choosing);
   for (int i = 0; i < agents.size(); ++i)
     if (choosing[i]) result[i] = navigator.velocity(i, walls[i]);
   return result;
 }
 
-template HalfSpace<2> orca_space(const Vec<2>&, const Vec<2>&, const Vec<2>&, double, double, double, double);
-template HalfSpace<3> orca_space(const Vec<3>&, const Vec<3>&, const Vec<3>&, double, double, double, double);
+template HalfSpace<2> orca_space(const Vec<2>&, const Vec<2>&, const Vec<2>&, double, double, double, double, double);
+template HalfSpace<3> orca_space(const Vec<3>&, const Vec<3>&, const Vec<3>&, double, double, double, double, double);
 template std::vector<Vec<2>> orca_velocities(const Agents<2>&, const std::vector<Segment>&, const OrcaSettings&, double,
                                              int);
 template std::vector<Vec<3>> orca_velocities(const Agents<3>&, const std::vector<Box>&, const OrcaSettings&, double,
