@@ -100,9 +100,10 @@ void CrowdWorld::steer() {
     CrowdRobot& robot = robots_[i];
     const bool free = norm(chosen_[i] - course_[i]) < 1e-6;
     steerings_[i] = steered(robot, chosen_[i], free, settings_.dt);
-    choices_[i] = {steerings_[i].braked,           steerings_[i].wanted, robot.body.radius,
-                   robot.body.acceleration,        robot.stands(time()), &robot.near_faces,
-                   &walls_[robot.body.walls].slabs};
+    const Steering& steering = steerings_[i];
+    choices_[i] = {steering.braked,      steering.wanted,   steering.straight,
+                   steering.after,       robot.body.radius, robot.body.acceleration,
+                   robot.stands(time()), &robot.near_faces, &walls_[robot.body.walls].slabs};
   }
 }
 
@@ -113,10 +114,15 @@ void CrowdWorld::move(const AgentTree<3>& tree) {
     CrowdRobot& robot = robots_[i];
     const Steering& steering = steerings_[i];
     const double share = settings_.avoidance == Avoidance::none ? 1.0 : right.share(static_cast<int>(i));
-    robot.commanded = choices_[i].at(share);
-    robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
+    if (share < 0.0) {
+      robot.commanded = steering.straight;
+      robot.ahead = steering.ahead_braked;
+    } else {
+      robot.commanded = choices_[i].at(share);
+      robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
+      robot.heading = wrapped(robot.heading + steering.yaw_rate * dt);
+    }
     robot.turned_aside = share < 1.0 - kAside || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
-    robot.heading = wrapped(robot.heading + steering.yaw_rate * dt);
     drive(robot);
     if (norm(robot.position - robot.looked_at) > kWallsFor) collect_walls(robot);
   }

@@ -10,8 +10,9 @@ namespace muster {
 namespace {
 
 constexpr double kRounding = 1e-10;  // metres
-constexpr double kTouch = 1e-3;      // metres by which a body may lie on a wall: paths of a map lead along it exactly
+constexpr double kTouch = 1e-4;      // metres by which a body may lie on a wall: paths of a map lead along it exactly
 constexpr int kHalvings = 20;
+constexpr double kStraight = -1.0;
 
 }  // namespace
 
@@ -31,6 +32,7 @@ double RightOfWay::share(int i) {
   look_at_robots(i);
   look_at_walls(i);
   if (allowed(i, 1.0)) return 1.0;
+  if (!allowed(i, 0.0)) return kStraight;
   double low = 0.0, high = 1.0;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (low + high);
@@ -51,8 +53,8 @@ void RightOfWay::look_at_robots(int i) {
     const double distance = norm(apart);
     if (distance == 0.0) continue;
     const Vec<3> towards = (1.0 / distance) * apart;
-    const double braked = stopping(i, own.braked, towards);
-    const double left = distance - own.radius - other.radius - braked - stopping(k, other.braked, -1.0 * towards);
+    const double braked = stopping(i, own.straight, {}, towards);
+    const double left = distance - own.radius - other.radius - braked - stopping(k, other.straight, {}, -1.0 * towards);
     limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left)});
   }
 }
@@ -75,15 +77,16 @@ void RightOfWay::look_at_walls(int i) {
 bool RightOfWay::allowed(int i, double share) const {
   const Vec<3> velocity = choices_[i].at(share);
   return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
-    return stopping(i, velocity, limit.towards) <= limit.most + kRounding;
+    return stopping(i, velocity, choices_[i].after, limit.towards) <= limit.most + kRounding;
   });
 }
 
-double RightOfWay::stopping(int i, const Vec<3>& velocity, const Vec<3>& towards) const {
-  const double closing = dot(velocity, towards);
-  if (closing <= 0.0) return 0.0;
-  const double speed = norm(velocity);
-  return Braking{dt_, choices_[i].acceleration}.distance(speed) * closing / speed;
+double RightOfWay::stopping(int i, const Vec<3>& velocity, const Vec<3>& after, const Vec<3>& towards) const {
+  const Braking braking{dt_, choices_[i].acceleration};
+  const double closing = dot(velocity, towards), speed = norm(velocity);
+  const double rest = braking.distance(braking.slower(speed));
+  const double share = after == Vec<3>{} ? (speed > 0.0 ? closing / speed : 0.0) : dot(after, towards);
+  return std::max(0.0, closing * dt_) + rest * std::max(0.0, share);
 }
 
 }  // namespace muster

@@ -15,7 +15,9 @@ namespace muster {
 // The velocities that a robot may have in a step: from `braked`, as little as it can, to `wanted`.
 struct Choice {
   Vec<3> braked, wanted;
-  double radius;  // 0: it is not looked at
+  Vec<3> straight;  // braked too, and without turning: what is always left
+  Vec<3> after;     // the direction in which it brakes after the step; 0: in that of the step
+  double radius;    // 0: it is not looked at
   double acceleration;
   bool stands;
   const std::vector<Upright>* faces;  // near ones
@@ -24,7 +26,8 @@ struct Choice {
   Vec<3> at(double share) const { return braked + share * (wanted - braked); }
 };
 
-// For each robot the greatest share that it may have, 1 where nothing is in its way.
+// For each robot the greatest share that it may have, 1 where nothing is in its way; below 0 where it may not even
+// turn.
 class RightOfWay {
  public:
   RightOfWay(const std::vector<Vec<3>>& positions, const std::vector<Choice>& choices, const AgentTree<3>& tree,
@@ -41,7 +44,7 @@ class RightOfWay {
   void look_at_robots(int i);
   void look_at_walls(int i);
   bool allowed(int i, double share) const;
-  double stopping(int i, const Vec<3>& velocity, const Vec<3>& towards) const;
+  double stopping(int i, const Vec<3>& velocity, const Vec<3>& after, const Vec<3>& towards) const;
 
   const std::vector<Vec<3>>& positions_;
   const std::vector<Choice>& choices_;

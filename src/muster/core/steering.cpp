@@ -25,8 +25,8 @@ double turn_to_way_point(const CrowdRobot& robot, double dt) {
 
 Steering in_any_direction(const CrowdRobot& robot, const Vec<3>& chosen, double dt) {
   const double change = robot.body.acceleration * dt;
-  return {reached(robot.commanded, Vec<3>{}, change), reached(robot.commanded, chosen, change), 0.0, 0.0,
-          turn_to_way_point(robot, dt)};
+  const Vec<3> braked = reached(robot.commanded, Vec<3>{}, change);
+  return {braked, reached(robot.commanded, chosen, change), 0.0, 0.0, turn_to_way_point(robot, dt), braked, {}};
 }
 
 Steering where_it_looks(const CrowdRobot& robot, const Vec<3>& chosen, bool free, double dt) {
@@ -49,7 +49,9 @@ Steering where_it_looks(const CrowdRobot& robot, const Vec<3>& chosen, bool free
   const Vec<3> way{{chord * std::cos(robot.heading + half), chord * std::sin(robot.heading + half), climb}};
   Vec<3> wanted = ahead * way;
   if (speed == 0.0) wanted[2] = chosen[2];
-  return {least * way, wanted, least, ahead, yaw_rate};
+  const Vec<3> nose{{std::cos(robot.heading), std::sin(robot.heading), 0.0}};
+  const Vec<3> after{{std::cos(robot.heading + 2.0 * half), std::sin(robot.heading + 2.0 * half), 0.0}};
+  return {least * way, wanted, least, ahead, yaw_rate, least * nose, after};
 }
 
 }  // namespace

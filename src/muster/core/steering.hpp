@@ -10,6 +10,7 @@ struct Steering {
   Vec<3> braked, wanted;              // velocities over the step: braking as hard as it can, and as steered
   double ahead_braked, ahead_wanted;  // the same, of the speed ahead of one that faces its way
   double yaw_rate;
+  Vec<3> straight, after;  // as in Choice
 };
 
 // `chosen` is the velocity to get near to; `free`, whether nobody is in the way, so that corners are turned on the

@@ -29,7 +29,7 @@ NEIGHBOURS = 10
 MARGIN = 0.05
 """By which avoidance takes robots that face their way for larger, as a share of the radius: they answer late."""
 WALL_HORIZON_S = 0.3
-CORNER_M, CORNER_BY_WALLS_M = 0.02, 0.0005
+CORNER_M = 0.02
 """By how much a way point may be cut where a robot goes on past it."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
@@ -134,7 +134,7 @@ class KinematicWorld:
             neighbours=NEIGHBOURS,
             margin=MARGIN,
             arrival=arrival_m,
-            corner=CORNER_M if self._map is None else CORNER_BY_WALLS_M,
+            corner=CORNER_M,
             velocity_noise=noise.velocity,
             slip=noise.slip,
             odometry_noise=noise.odometry,
