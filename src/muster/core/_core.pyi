@@ -510,9 +510,9 @@ class CrowdWorld:
 
     def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, margin: float, arrival: float, corner: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
 
-    def add_walls(self, faces: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], slabs: Sequence[tuple[Sequence[Sequence[float]], float, float]]) -> int:
+    def add_walls(self, faces: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], slabs: Sequence[tuple[Sequence[Sequence[float]], float, float]], ground: float) -> int:
         """
-        Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling. Returns the number of this set.
+        Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.
         """
 
     def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int) -> int:

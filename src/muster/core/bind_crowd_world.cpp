@@ -34,8 +34,8 @@ Avoidance avoidance_named(const std::string& name) {
   throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
 }
 
-WallSet walls_of(const Faces& faces, const Slabs& slabs) {
-  WallSet walls;
+WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
+  WallSet walls{{}, {}, ground};
   for (std::size_t k = 0; k < faces.shape(0); ++k) {
     const double* f = faces.data() + 6 * k;
     walls.faces.push_back({{Vec<2>{{f[0], f[1]}}, Vec<2>{{f[2], f[3]}}}, f[4], f[5]});
@@ -72,10 +72,12 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
   crowd
       .def(
           "add_walls",
-          [](CrowdWorld& w, const Faces& faces, const Slabs& slabs) { return w.add_walls(walls_of(faces, slabs)); },
-          "faces"_a, "slabs"_a,
+          [](CrowdWorld& w, const Faces& faces, const Slabs& slabs, double ground) {
+            return w.add_walls(walls_of(faces, slabs, ground));
+          },
+          "faces"_a, "slabs"_a, "ground"_a,
           "Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, "
-          "floor, ceiling. Returns the number of this set.")
+          "floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.")
       .def(
           "add",
           [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,

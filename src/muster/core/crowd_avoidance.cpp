@@ -10,6 +10,7 @@ namespace muster {
 
 namespace {
 
+constexpr double kFar = 1e9;    // metres
 constexpr double kFirm = 1e18;  // the priority of those who do not give way
 
 template <int D>
@@ -17,6 +18,12 @@ Vec<D> in_dimensions(const Vec<3>& v) {
   Vec<D> result;
   for (int k = 0; k < D; ++k) result[k] = v[k];
   return result;
+}
+
+// So far below the ground that a ball over it may touch it with its centre.
+std::vector<Box> ground_below(const WallSet& walls, double radius) {
+  if (std::isinf(walls.ground)) return {};
+  return {{Vec<3>{{-kFar, -kFar, -kFar}}, Vec<3>{{kFar, kFar, walls.ground - radius}}}};
 }
 
 template <int D>
@@ -69,7 +76,10 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
     agents.radii.push_back(body.radius * (body.faces_its_way ? 1.0 + settings_.margin : 1.0));
     agents.max_speeds.push_back(robot.top_speed());
     agents.priorities.push_back(chooses ? body.priority : kFirm);
-    if constexpr (D == 2) walls[k] = robot.near_walls;
+    if constexpr (D == 2)
+      walls[k] = robot.near_walls;
+    else
+      walls[k] = ground_below(walls_[body.walls], body.radius);
   }
   if (std::find(choosing.begin(), choosing.end(), 1) == choosing.end()) return;
   const std::vector<Vec<D>> found = velocities<D>(agents, walls, choosing, settings_);

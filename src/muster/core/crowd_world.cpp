@@ -103,7 +103,7 @@ void CrowdWorld::steer() {
     const Steering& steering = steerings_[i];
     choices_[i] = {steering.braked,      steering.wanted,   steering.straight,
                    steering.after,       robot.body.radius, robot.body.acceleration,
-                   robot.stands(time()), &robot.near_faces, &walls_[robot.body.walls].slabs};
+                   robot.stands(time()), &robot.near_faces, &walls_[robot.body.walls]};
   }
 }
 

@@ -67,11 +67,11 @@ void RightOfWay::look_at_walls(int i) {
     if (distance > 0.0)
       limits_.push_back({(1.0 / distance) * (closest - p), std::max(0.0, distance - own.radius + kTouch)});
   };
-  if (own.faces != nullptr)
-    for (const Upright& face : *own.faces) consider(face.closest(p));
-  if (own.slabs != nullptr)
-    for (const Slab& slab : *own.slabs)
-      if (slab.covers(p)) consider(slab.closest(p));
+  for (const Upright& face : *own.faces) consider(face.closest(p));
+  for (const Slab& slab : own.walls->slabs)
+    if (slab.covers(p)) consider(slab.closest(p));
+  if (std::isfinite(own.walls->ground))
+    limits_.push_back({Vec<3>{{0.0, 0.0, -1.0}}, std::max(0.0, p[2] - own.walls->ground)});
 }
 
 bool RightOfWay::allowed(int i, double share) const {

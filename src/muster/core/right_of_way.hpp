@@ -21,7 +21,7 @@ struct Choice {
   double acceleration;
   bool stands;
   const std::vector<Upright>* faces;  // near ones
-  const std::vector<Slab>* slabs;
+  const WallSet* walls;
 
   Vec<3> at(double share) const { return braked + share * (wanted - braked); }
 };

@@ -39,6 +39,7 @@ struct Slab {
 struct WallSet {
   std::vector<Upright> faces;
   std::vector<Slab> slabs;
+  double ground;  // no centre comes below; -infinity: nothing is in the way
 };
 
 }  // namespace muster

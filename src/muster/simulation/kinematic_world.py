@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from muster import core
+from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
@@ -120,6 +121,7 @@ class KinematicWorld:
         _require(avoidance, mission, seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
         self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
         self._dimensions = mission.dimensions
+        self._lowest_m = _lowest(mission)
         self._dt_s = dt_s
         self._noise = noise
         self._seed = seed
@@ -300,12 +302,17 @@ class KinematicWorld:
     def _walls_for(self, body: Body) -> int:
         """The number of the walls that stop this body; the same body has the same."""
         if body not in self._walls:
-            if self._map is None:
-                faces, slabs = _NO_FACES, []
-            else:
-                faces, slabs = faces_and_slabs(self._map, body)
-            self._walls[body] = self._crowd.add_walls(faces, slabs)
+            faces, slabs = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
+            ground = self._lowest_m if body.kind == "air" else -math.inf
+            self._walls[body] = self._crowd.add_walls(faces, slabs, ground)
         return self._walls[body]
+
+
+def _lowest(mission: Mission) -> float:
+    """Where the ground is: 0, or the lowest place of a mission in space; -inf in the plane."""
+    if mission.dimensions == 2:
+        return -math.inf
+    return min(0.0, *(place[2] for _, place in positions(mission) if len(place) == 3))
 
 
 def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:
