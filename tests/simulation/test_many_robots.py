@@ -58,7 +58,7 @@ def test_balls_pass_each_other_in_space():
 
 def test_drones_are_not_pushed_below_the_ground():
     given = {"kind": "air", "kinematics": "quadcopter", "radius_m": 0.4}
-    team = [robot(f"r_{k}", (2.0 * k - 5, y, 0.1), **given) for k in range(6) for y in (-3.0, 3.0)]
+    team = [robot(f"r_{k}_{y:g}", (2.0 * k - 5, y, 0.1), **given) for k in range(6) for y in (-3.0, 3.0)]
     world = KinematicWorld(mission(*team))
     for one in team:
         x, y, z = one.position
@@ -76,10 +76,10 @@ def test_drones_give_way_to_those_on_the_ground():
     world.ports["a"].send([Waypoint((-3.0, 0.1, 0.5))])
     assert len(until_idle(world, 60.0)) == 2
     assert world.contacts == ()
-    assert world.distances_m["g"] == pytest.approx(6.0, rel=1e-3)
+    assert world.distances_m["g"] == pytest.approx(6.0, rel=0.005)
 
 
-@pytest.mark.parametrize(("kind", "acceleration"), itertools.product(KINDS, (None, 1.0)))
+@pytest.mark.parametrize(("kind", "acceleration"), list(itertools.product(KINDS, (None, 1.0))))
 def test_two_exchange_places_in_a_corridor(kind, acceleration):
     half = 0.3 * 4.2 / 2  # 4 radii, and a twentieth for the margin of those that face their way
     corridor = Map(boundary=((-6, -half), (6, -half), (6, half), (-6, half)))
@@ -91,7 +91,7 @@ def test_two_exchange_places_in_a_corridor(kind, acceleration):
     assert world.contacts == ()
 
 
-@pytest.mark.parametrize(("kind", "count"), itertools.product(KINDS, (1, 3)))
+@pytest.mark.parametrize(("kind", "count"), list(itertools.product(KINDS, (1, 3))))
 def test_goes_around_those_who_stand(kind, count):
     row = [robot(f"s_{k}", (5.0, 0.7 * (k - (count - 1) / 2)), radius_m=0.3) for k in range(count)]
     world = KinematicWorld(mission(robot("go", radius_m=0.3, kinematics=kind), *row))
@@ -131,7 +131,7 @@ def test_without_a_radius_nobody_is_avoided():
     world = KinematicWorld(team)
     send_across(world, team)
     done = until_idle(world, 60.0)
-    assert set(done.values()) == {pytest.approx(10.0)}
+    assert list(done.values()) == pytest.approx([10.0] * 6)
     assert world.contacts == ()
     assert world.min_distance_m == pytest.approx(0.0, abs=1e-9)
 

@@ -13,8 +13,10 @@ constexpr double kRounding = 1e-9;  // metres
 double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, const Tolerances& tolerances,
                     double dt) {
   const auto& way = robot.way;
-  if (way[k].stops() || k + 1 == way.size()) return 0.0;
-  const Vec<3> in = way[k].at - from, out = way[k + 1].at - way[k].at;
+  const auto on = std::find_if(way.begin() + static_cast<std::ptrdiff_t>(k), way.end(),
+                               [&](const Waypoint& point) { return !(point.at == way[k].at); });
+  if (way[k].stops() || on == way.end()) return 0.0;
+  const Vec<3> in = way[k].at - from, out = on->at - way[k].at;
   const double lengths = norm(in) * norm(out);
   if (lengths == 0.0) return robot.top_speed();
   const double turn = std::acos(std::clamp(dot(in, out) / lengths, -1.0, 1.0));
