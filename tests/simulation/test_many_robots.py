@@ -4,12 +4,12 @@ import itertools
 
 import numpy as np
 import pytest
+from tests.simulation.scenes import circle, mission, robot, send_across, states, until_idle
 
 from muster.mission.model import Map, Zone
 from muster.motion.port import Waypoint
 from muster.motion.world import World
 from muster.simulation import KinematicWorld
-from tests.simulation.scenes import circle, mission, robot, send_across, states, until_idle
 
 KINDS = ("holonomic", "differential-drive")
 
@@ -161,9 +161,7 @@ def random_orders(world, random, steps, side):
 @pytest.mark.parametrize("seed", range(4))
 def test_random_crowds_touch_neither_each_other_nor_walls(seed):
     random = np.random.default_rng(seed)
-    around = Map(
-        boundary=((0, 0), (8, 0), (8, 8), (0, 8)), zones=(Zone(polygon=((3, 3), (5, 3.5), (4, 5))),)
-    )
+    around = Map(boundary=((0, 0), (8, 0), (8, 8), (0, 8)), zones=(Zone(polygon=((3, 3), (5, 3.5), (4, 5))),))
     places = [(x, y) for x in (1.0, 2.0, 6.0, 7.0) for y in (1.0, 4.0, 7.0)]
     robots = [
         robot(

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.simulation.scenes import mission, robot, states, until_idle
 
 from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
-from tests.simulation.scenes import mission, robot, states, until_idle
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")
 COORDINATE = st.floats(-10, 10).map(lambda x: round(x, 3))

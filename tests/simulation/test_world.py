@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.simulation.scenes import circle, mission, robot, send_across, states, until_idle
 
 from muster.mission.errors import ParameterError
 from muster.motion.port import RobotPort, Waypoint
 from muster.simulation import KinematicWorld, Noise
-from tests.simulation.scenes import circle, mission, robot, send_across, states, until_idle
 
 
 def run(seed, **given):
