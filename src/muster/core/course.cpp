@@ -40,13 +40,6 @@ double speed_along(const CrowdRobot& robot, const Tolerances& tolerances, double
   return most;
 }
 
-double distance_to_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to) {
-  const Vec<3> along = to - from;
-  const double squared = dot(along, along);
-  const double share = squared > 0.0 ? std::clamp(dot(p - from, along) / squared, 0.0, 1.0) : 0.0;
-  return norm(p - (from + share * along));
-}
-
 }  // namespace
 
 Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, double dt) {
@@ -67,8 +60,15 @@ Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, doubl
   return (1.0 / dt) * (from - robot.position);
 }
 
-Vec<3> to_post(const CrowdRobot& robot, double dt) {
-  const Vec<3> way = robot.post - robot.position;
+Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to) {
+  const Vec<3> along = to - from;
+  const double squared = dot(along, along);
+  const double share = squared > 0.0 ? std::clamp(dot(p - from, along) / squared, 0.0, 1.0) : 0.0;
+  return from + share * along;
+}
+
+Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
+  const Vec<3> way = place - robot.position;
   const double away = norm(way), speed = Braking{dt, robot.body.acceleration}.speed(away);
   return away > 0.0 ? (std::min(speed, robot.top_speed()) / away) * way : Vec<3>{};
 }
@@ -83,7 +83,7 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tol
     return away <= (no_nearer ? tolerances.arrival : kExact);
   }
   if (away <= kExact) return true;
-  const double missed = distance_to_piece(point.at, before, robot.position);
+  const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
   if (missed <= tolerances.corner + kRounding && corner_speed(robot, before, robot.next, tolerances, dt) > 0.0)
     return true;
   const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);

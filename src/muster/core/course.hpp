@@ -14,8 +14,10 @@ struct Tolerances {
 // holds or turns, at the last, and at corners that it cannot take. Undisturbed it lands exactly on where it stops.
 Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, double dt);
 
-// The same, straight to its post.
-Vec<3> to_post(const CrowdRobot& robot, double dt);
+// As fast as lets it stop there.
+Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt);
+
+Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to);
 
 // Whether the next way point is passed by the step that began at `before`.
 bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt);

@@ -45,6 +45,17 @@ struct Patience {
   double tilt_at(double time, const Body& body, Random& random);
 };
 
+// The way back of a robot that others drove away from the straight piece that it follows: a wall may be between by now.
+struct Trail {
+  Vec<3> from;                 // where the piece begins
+  std::vector<Vec<3>> crumbs;  // places since it was left
+  bool back = false;           // whether the robot is on its way back
+
+  void note(const CrowdRobot& robot);
+  // Where to go to get back.
+  Vec<3> aim(const CrowdRobot& robot) const;
+};
+
 struct CrowdRobot {
   Body body;
   Vec<3> position;
@@ -66,6 +77,7 @@ struct CrowdRobot {
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
+  Trail trail;
   double asked_until = kNever;  // until then it makes room though it has no order
   Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
 

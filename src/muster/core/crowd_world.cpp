@@ -46,6 +46,7 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.stopping = robot.way.empty();
   robot.post = robot.position;
   robot.patience = {};
+  robot.trail = {robot.position, {}, false};
 }
 
 void CrowdWorld::fail(int i) {
@@ -82,7 +83,7 @@ void CrowdWorld::want(const AgentTree<3>& tree) {
   for (std::size_t i = 0; i < n; ++i) {
     const CrowdRobot& robot = robots_[i];
     if (robot.phase == Phase::going) course_[i] = along_course(robot, settings_.tolerances, settings_.dt);
-    if (robot.comes_back(time())) course_[i] = to_post(robot, settings_.dt);
+    if (robot.comes_back(time())) course_[i] = straight_to(robot, robot.post, settings_.dt);
   }
   wanted_ = course_;
   if (settings_.avoidance == Avoidance::none) return;
@@ -156,7 +157,10 @@ void CrowdWorld::take_note(int i) {
       else
         next_way_point(i);
     }
-    if (robot.phase == Phase::going) robot.patience.note(robot, settings_.dt);
+    if (robot.phase == Phase::going) {
+      robot.patience.note(robot, settings_.dt);
+      if (robot.turned_aside || !robot.trail.crumbs.empty()) robot.trail.note(robot);
+    }
   }
   if (robot.phase == Phase::turning) {
     const Waypoint& point = robot.way[robot.next];
@@ -180,6 +184,7 @@ void CrowdWorld::next_way_point(int i) {
   const bool labelled = robot.way[robot.next].labelled, last = ++robot.next == robot.way.size();
   robot.phase = last ? Phase::idle : Phase::going;
   robot.patience = {};
+  robot.trail = {robot.position, {}, false};
   robot.stopping = last;
   robot.post = robot.position;
   if (labelled || last) events_.push_back({time(), i, robot.order, static_cast<int>(robot.next), last});

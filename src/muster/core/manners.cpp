@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "course.hpp"
+
 namespace muster {
 
 namespace {
 
 constexpr double kRight = -0.1;    // radians
 constexpr double kPatience = 1.0;  // seconds
+constexpr double kCrumbs = 0.05;   // metres
 constexpr double kAskedFor = 3.0;  // seconds
 constexpr double kPi = 3.14159265358979323846;
 
@@ -45,6 +48,26 @@ double Patience::tilt_at(double time, const Body& body, Random& random) {
   return tilt;
 }
 
+void Trail::note(const CrowdRobot& robot) {
+  const Vec<3>& p = robot.position;
+  const double spacing = std::max(kCrumbs, 0.5 * robot.body.radius);
+  const auto near = [&](const Vec<3>& crumb) { return norm(crumb - p) <= spacing; };
+  if (norm(closest_on_piece(p, from, robot.way[robot.next].at) - p) <= spacing) {
+    crumbs.clear();
+    back = false;
+  } else if (back) {
+    while (!crumbs.empty() && near(crumbs.back())) crumbs.pop_back();
+  } else if (const auto loop = std::find_if(crumbs.begin(), crumbs.end(), near); loop != crumbs.end()) {
+    crumbs.erase(loop + 1, crumbs.end());
+  } else {
+    crumbs.push_back(p);
+  }
+}
+
+Vec<3> Trail::aim(const CrowdRobot& robot) const {
+  return crumbs.empty() ? closest_on_piece(robot.position, from, robot.way[robot.next].at) : crumbs.back();
+}
+
 Manners::Manners(std::vector<CrowdRobot>& robots, const AgentTree<3>& tree, double time, double dt)
     : robots_(robots), tree_(tree), time_(time), dt_(dt) {
   for (const CrowdRobot& robot : robots) largest_radius_ = std::max(largest_radius_, robot.body.radius);
@@ -75,6 +98,8 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
       return {};
     }
   }
+  robot.trail.back = near.empty() && (robot.trail.back || (impatient && !robot.near_faces.empty()));
+  if (robot.trail.back) return straight_to(robot, robot.trail.aim(robot), dt_);
   if (impatient) return tilted(course, robot.patience.tilt_at(time_, robot.body, robot.whims));
   return norm(goal - robot.position) > 2.0 * robot.body.radius ? tilted(course, kRight) : course;
 }

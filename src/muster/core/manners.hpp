@@ -7,6 +7,7 @@
 // - A robot that another turns aside keeps a little to the right, so that two who meet choose different sides.
 // - One that has not come nearer to its way point for a while tries other directions, at random and by turns with the
 //   straight way, and asks those to make room who have nothing to do.
+// - One that nobody but a wall keeps from its way point was driven off its way: it goes back as it came.
 #pragma once
 
 #include <vector>

@@ -37,7 +37,7 @@ _SLICE = 10_000
 """Steps after which Ctrl-C is listened to."""
 
 Observer = Callable[[float, Floats, Floats, Floats], None]
-"""Called with the time in seconds, positions (n, 3), headings (n,) and velocities (n, 3), robots in order of the world."""
+"""Called with time in seconds, positions (n, 3), headings (n,) and velocities (n, 3), robots in order of the ports."""
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,7 @@ class KinematicWorld:
         return self._ports[robot.id]
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
-        """It stops as soon as it can, forgets its way points and takes no more; `silent`: it says nothing more either."""
+        """It stops as soon as it can and takes no more way points; `silent`: it says nothing more either."""
         self._crowd.fail(self._number(robot))
         if silent:
             self._ports[robot].fall_silent()

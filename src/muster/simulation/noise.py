@@ -15,8 +15,8 @@ class Noise:
     Parameters
     ----------
     velocity
-        standard deviation of the share of its velocity that a robot misses in a step. It never gets more than it wanted,
-        so that noise alone brings no robot into contact.
+        standard deviation of the share of its velocity that a robot misses in a step. It never gets more than it
+        wanted, so that noise alone brings no robot into contact.
     slip
         the most of its way, as a share, that a robot loses in a step though its odometry counts it; evenly from 0.
     odometry
