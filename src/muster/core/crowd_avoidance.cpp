@@ -26,6 +26,23 @@ std::vector<Box> ground_below(const WallSet& walls, double radius) {
   return {{Vec<3>{{-kFar, -kFar, -kFar}}, Vec<3>{{kFar, kFar, walls.ground - radius}}}};
 }
 
+// Along the walls instead of into them: what each leaves of a velocity, for those that fly.
+Vec<3> slid(const CrowdRobot& robot, const WallSet& walls, Vec<3> velocity, double dt) {
+  const Braking braking{dt, robot.body.acceleration};
+  const auto leave = [&](const Vec<3>& closest) {
+    const Vec<3> way = closest - robot.position;
+    const double distance = norm(way);
+    if (distance == 0.0) return;
+    const double closing = dot(velocity, way) / distance;
+    const double most = braking.speed(std::max(0.0, distance - robot.body.radius));
+    if (closing > most) velocity = velocity - ((closing - most) / distance) * way;
+  };
+  for (const Upright& face : robot.near_faces) leave(face.closest(robot.position));
+  for (const Slab& slab : walls.slabs)
+    if (slab.covers(robot.position)) leave(slab.closest(robot.position));
+  return velocity;
+}
+
 template <int D>
 std::vector<Vec<D>> velocities(const Agents<D>& agents, const std::vector<std::vector<Wall<D>>>& walls,
                                const std::vector<char>& choosing, const CrowdSettings& settings) {
@@ -91,6 +108,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
       if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
     }
     for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
+    if constexpr (D == 3) chosen = slid(robots_[group[k]], walls_[robots_[group[k]].body.walls], chosen, settings_.dt);
   }
 }
 

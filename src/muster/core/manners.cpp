@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kRight = -0.1;    // radians
 constexpr double kPatience = 1.0;  // seconds
+constexpr double kOnPiece = 0.01;  // metres
 constexpr double kCrumbs = 0.05;   // metres
 constexpr double kAskedFor = 3.0;  // seconds
 constexpr double kPi = 3.14159265358979323846;
@@ -54,7 +55,6 @@ void Trail::note(const CrowdRobot& robot) {
   const auto near = [&](const Vec<3>& crumb) { return norm(crumb - p) <= spacing; };
   if (norm(closest_on_piece(p, from, robot.way[robot.next].at) - p) <= spacing) {
     crumbs.clear();
-    back = false;
   } else if (back) {
     while (!crumbs.empty() && near(crumbs.back())) crumbs.pop_back();
   } else if (const auto loop = std::find_if(crumbs.begin(), crumbs.end(), near); loop != crumbs.end()) {
@@ -98,10 +98,18 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
       return {};
     }
   }
-  robot.trail.back = near.empty() && (robot.trail.back || (impatient && !robot.near_faces.empty()));
-  if (robot.trail.back) return straight_to(robot, robot.trail.aim(robot), dt_);
+  if (near.empty() && !robot.near_faces.empty() && (robot.trail.back || impatient)) return wanted_back(robot, course);
+  robot.trail.back = false;
   if (impatient) return tilted(course, robot.patience.tilt_at(time_, robot.body, robot.whims));
   return norm(goal - robot.position) > 2.0 * robot.body.radius ? tilted(course, kRight) : course;
+}
+
+Vec<3> Manners::wanted_back(CrowdRobot& robot, const Vec<3>& course) const {
+  const Vec<3> aim = robot.trail.aim(robot);
+  robot.trail.back = norm(aim - robot.position) > kOnPiece;
+  if (robot.trail.back) return straight_to(robot, aim, dt_);
+  robot.patience = {};
+  return course;
 }
 
 Vec<3> Manners::wanted_to_post(int i, const Vec<3>& course, const std::vector<int>& near) const {

@@ -27,6 +27,7 @@ class Manners {
  private:
   void ask(int k) const;
   Vec<3> wanted_under_way(int i, const Vec<3>& course, const std::vector<int>& near) const;
+  Vec<3> wanted_back(CrowdRobot& robot, const Vec<3>& course) const;
   Vec<3> wanted_to_post(int i, const Vec<3>& course, const std::vector<int>& near) const;
   bool stands_on(int k, const Vec<3>& place, double radius) const;
 
