@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from tests.simulation.scenes import circle, mission, robot, send_across, states, until_idle
 
+import muster
 from muster.mission.model import Map, Zone
+from muster.motion.path import Path
 from muster.motion.port import Waypoint
+from muster.motion.roads import Roads, body_of
 from muster.motion.world import World
 from muster.simulation import KinematicWorld
 
@@ -183,3 +186,23 @@ def test_random_crowds_touch_neither_each_other_nor_walls(seed):
             deepest = max(deepest, max(one.radius_m - c for one, c in zip(robots, clear, strict=True)))
     assert world.contacts == ()
     assert deepest <= 1e-3
+
+
+@pytest.mark.parametrize("name", ["floor", "yard"])
+def test_all_get_along_shortest_paths_of_a_shipped_map(name):
+    team, random = muster.load(name), np.random.default_rng(0)
+    roads, world, planned = Roads.of(team), KinematicWorld(team), {}
+    for one in team.robots:
+        places = [one.position, *(team.tasks[k].position for k in random.choice(len(team.tasks), 3, replace=False))]
+        found = [roads.path(body_of(one), a, b) for a, b in itertools.pairwise(places)]
+        paths = [path for path in found if isinstance(path, Path)]
+        if len(paths) == len(found):
+            corners = [point for path in paths for point in path.points[1:]]
+            world.ports[one.id].send([Waypoint((*map(float, point), 0.0)[:3]) for point in corners])
+            planned[one.id] = sum(path.length_m for path in paths)
+    while not all(map(world.idle, planned)) and world.time_s < 600:
+        world.advance(600.0)
+    assert all(map(world.idle, planned))
+    assert len(planned) >= 3
+    assert world.contacts == ()
+    assert all(world.distances_m[k] == pytest.approx(length, rel=0.05) for k, length in planned.items())
