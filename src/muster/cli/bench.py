@@ -18,7 +18,8 @@ from muster.mission.hints import did_you_mean
 @click.option(
     "--only",
     metavar="NAMES",
-    help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up, path, travel, avoidance.",
+    help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up, path, travel, avoidance, "
+    "simulation.",
 )
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option

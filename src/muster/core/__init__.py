@@ -1,12 +1,13 @@
 """The hot loops, in C++20. A verb here has the name of the step that it carries out.
 
-Called from `allocation` and `motion` alone.
+Called from `allocation`, `motion` and `simulation` alone.
 """
 
 from muster.core._core import (
     AirWays,
     Annealing,
     Bidders,
+    CrowdWorld,
     Greedy,
     GridMap,
     Insertion,
@@ -35,6 +36,7 @@ __all__ = [
     "AirWays",
     "Annealing",
     "Bidders",
+    "CrowdWorld",
     "Greedy",
     "GridMap",
     "Insertion",

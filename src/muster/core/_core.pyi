@@ -504,3 +504,59 @@ def closest_approach_in_space(positions: Annotated[NDArray[numpy.float64], dict(
     """
     Of robots that move straight between points of time: for each step the least distance of two centres, and the least distance less the radii; and the pairs that ever overlap by more than the tolerance.
     """
+
+class CrowdWorld:
+    """A world of moving robots in fixed steps of virtual time."""
+
+    def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, margin: float, arrival: float, corner: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
+
+    def add_walls(self, faces: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], slabs: Sequence[tuple[Sequence[Sequence[float]], float, float]], ground: float) -> int:
+        """
+        Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.
+        """
+
+    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int) -> int:
+        """Returns the number of the robot, from 0."""
+
+    def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
+        """
+        Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.
+        """
+
+    def fail(self, robot: int) -> None: ...
+
+    def recover(self, robot: int) -> None: ...
+
+    def slow(self, robot: int, factor: float) -> None: ...
+
+    def advance(self, until: float) -> list[tuple[float, int, int, int, bool]]:
+        """
+        Steps until a time, or until something happened: time, robot, order, way points passed, whether all.
+        """
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def least_distance(self) -> float: ...
+
+    def contacts(self) -> list[tuple[int, int, float, float]]:
+        """
+        Two robots, when they first touched, and the least distance of their centres.
+        """
+
+    def report(self, robot: int) -> tuple[float, tuple[float, float, float], float, tuple[float, float, float], float, int, int]:
+        """Time, position, heading, velocity, odometry, order, way points passed."""
+
+    def busy(self, robot: int) -> bool: ...
+
+    def positions(self) -> NDArray[numpy.float64]: ...
+
+    def velocities(self) -> NDArray[numpy.float64]: ...
+
+    def headings(self) -> NDArray[numpy.float64]: ...
+
+    def travelled(self) -> NDArray[numpy.float64]: ...

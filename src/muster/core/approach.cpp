@@ -1,23 +1,8 @@
 #include "approach.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace muster {
-
-namespace {
-
-// The least distance, squared, from the origin to the line segment from a to b: what one robot sees of another.
-template <int D>
-double squared_to_origin(const Vec<D>& a, const Vec<D>& b) {
-  const Vec<D> way = b - a;
-  const double length = dot(way, way);
-  const double share = length > 0.0 ? std::clamp(-dot(a, way) / length, 0.0, 1.0) : 0.0;
-  const Vec<D> nearest = a + share * way;
-  return dot(nearest, nearest);
-}
-
-}  // namespace
 
 template <int D>
 Approach closest_approach(const std::vector<Vec<D>>& positions, const std::vector<double>& radii, double tolerance) {

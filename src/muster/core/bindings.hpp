@@ -19,5 +19,6 @@ void bind_ways(nanobind::module_& m);
 void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
+void bind_crowd_world(nanobind::module_& m);
 
 }  // namespace muster

@@ -18,4 +18,5 @@ NB_MODULE(_core, m) {
   muster::bind_air(m);
   muster::bind_tree(m);
   muster::bind_avoidance(m);
+  muster::bind_crowd_world(m);
 }

@@ -40,22 +40,22 @@ HalfSpace<D> outside(const Vec<D>& apart, const Vec<D>& v, double radius, double
 template <int D>
 class Navigator {
  public:
-  Navigator(const Agents<D>& agents, const std::vector<Wall<D>>& walls, const OrcaSettings& settings, double dt,
-            const AgentTree<D>& tree)
+  Navigator(const Agents<D>& agents, const OrcaSettings& settings, double dt, const AgentTree<D>& tree,
+            const std::vector<char>* choosing = nullptr)
       : agents_(agents),
-        walls_(walls),
         settings_(settings),
         dt_(dt),
         tree_(tree),
+        choosing_(choosing),
         largest_radius_(*std::max_element(agents.radii.begin(), agents.radii.end())),
         largest_speed_(*std::max_element(agents.max_speeds.begin(), agents.max_speeds.end())) {}
 
-  Vec<D> velocity(int i) {
+  Vec<D> velocity(int i, const std::vector<Wall<D>>& all_walls) {
     Vec<D> x;
     const double most = agents_.max_speeds[i];
     const Aim<D> aim{agents_.preferred[i], false};
     spaces_.clear();
-    face_walls(i);
+    face_walls(i, all_walls);
     const std::size_t walls = spaces_.size();
     if (settings_.apart) keep_apart(i);
     const std::size_t hard = spaces_.size();
@@ -74,10 +74,10 @@ class Navigator {
     return distance > agents_.radii[i] + settings_.wall_horizon * agents_.max_speeds[i];
   }
 
-  void face_walls(int i) {
+  void face_walls(int i, const std::vector<Wall<D>>& walls) {
     near_walls_.clear();
     const Vec<D>& p = agents_.positions[i];
-    for (const Wall<D>& wall : walls_) {
+    for (const Wall<D>& wall : walls) {
       const double distance = norm(p - closest(wall, p));
       if (out_of_reach(i, distance)) continue;
       near_walls_.push_back(&wall);
@@ -113,17 +113,20 @@ class Navigator {
 
   void face_agents(int i) {
     tree_.near(i, settings_.neighbourhood, found_);
-    for (const int k : found_)
+    for (const int k : found_) {
+      const bool firm = choosing_ != nullptr && !(*choosing_)[k];
+      const double yields = firm ? 1.0 : agents_.yields(i, k), spares = firm ? 1.0 : 1.0 - yields;
       spaces_.push_back(orca_space(agents_.positions[k] - agents_.positions[i], agents_.velocities[i],
                                    agents_.velocities[k], agents_.radii[i] + agents_.radii[k], settings_.horizon, dt_,
-                                   agents_.yields(i, k)));
+                                   yields, spares));
+    }
   }
 
   const Agents<D>& agents_;
-  const std::vector<Wall<D>>& walls_;
   const OrcaSettings& settings_;
   double dt_;
   const AgentTree<D>& tree_;
+  const std::vector<char>* choosing_;  // null: all
   double largest_radius_, largest_speed_;
   Program<D> program_;
   std::vector<HalfSpace<D>> spaces_;
@@ -135,11 +138,11 @@ class Navigator {
 
 template <int D>
 HalfSpace<D> orca_space(const Vec<D>& apart, const Vec<D>& v_a, const Vec<D>& v_b, double radius, double horizon,
-                        double dt, double yields) {
+                        double dt, double yields, double spares) {
   const Vec<D> v = v_a - v_b;
   const HalfSpace<D> free = outside(apart, v, radius, horizon, dt);
   const double u = free.violation(v);  // along the normal: the least change of the relative velocity
-  return {free.normal, dot(free.normal, v_a) + (u > 0.0 ? yields : 1.0 - yields) * u};
+  return {free.normal, dot(free.normal, v_a) + (u > 0.0 ? yields : spares) * u};
 }
 
 template <int D>
@@ -149,17 +152,33 @@ std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<W
   const AgentTree<D> tree(agents.positions);
   std::vector<Vec<D>> result(agents.positions.size());
   in_parts(agents.size(), threads, [&](int begin, int end) {
-    Navigator<D> navigator(agents, walls, settings, dt, tree);
-    for (int i = begin; i < end; ++i) result[i] = navigator.velocity(i);
+    Navigator<D> navigator(agents, settings, dt, tree);
+    for (int i = begin; i < end; ++i) result[i] = navigator.velocity(i, walls);
   });
   return result;
 }
 
-template HalfSpace<2> orca_space(const Vec<2>&, const Vec<2>&, const Vec<2>&, double, double, double, double);
-template HalfSpace<3> orca_space(const Vec<3>&, const Vec<3>&, const Vec<3>&, double, double, double, double);
+template <int D>
+std::vector<Vec<D>> orca_velocities(const Agents<D>& agents, const std::vector<std::vector<Wall<D>>>& walls,
+                                    const std::vector<char>& choosing, const OrcaSettings& settings, double dt) {
+  std::vector<Vec<D>> result = agents.velocities;
+  if (agents.size() == 0) return result;
+  const AgentTree<D> tree(agents.positions);
+  Navigator<D> navigator(agents, settings, dt, tree, &choosing);
+  for (int i = 0; i < agents.size(); ++i)
+    if (choosing[i]) result[i] = navigator.velocity(i, walls[i]);
+  return result;
+}
+
+template HalfSpace<2> orca_space(const Vec<2>&, const Vec<2>&, const Vec<2>&, double, double, double, double, double);
+template HalfSpace<3> orca_space(const Vec<3>&, const Vec<3>&, const Vec<3>&, double, double, double, double, double);
 template std::vector<Vec<2>> orca_velocities(const Agents<2>&, const std::vector<Segment>&, const OrcaSettings&, double,
                                              int);
 template std::vector<Vec<3>> orca_velocities(const Agents<3>&, const std::vector<Box>&, const OrcaSettings&, double,
                                              int);
+template std::vector<Vec<2>> orca_velocities(const Agents<2>&, const std::vector<std::vector<Segment>>&,
+                                             const std::vector<char>&, const OrcaSettings&, double);
+template std::vector<Vec<3>> orca_velocities(const Agents<3>&, const std::vector<std::vector<Box>>&,
+                                             const std::vector<char>&, const OrcaSettings&, double);
 
 }  // namespace muster

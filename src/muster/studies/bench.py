@@ -19,6 +19,7 @@ from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
 from muster.studies.bench_avoidance import compared
 from muster.studies.bench_motion import MOTION_BENCHES
+from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
 
@@ -192,4 +193,5 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "avoidance": avoidance,
     "start-up": start_up,
     **MOTION_BENCHES,
+    **SIMULATION_BENCHES,
 }

@@ -1,0 +1,175 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include "bindings.hpp"
+#include "crowd_world.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muster {
+
+namespace {
+
+using Place = std::array<double, 3>;
+using Faces = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
+using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<nb::numpy, double>;
+using Event = std::tuple<double, int, int, int, bool>;
+using Slabs = std::vector<std::tuple<std::vector<std::array<double, 2>>, double, double>>;
+
+Avoidance avoidance_named(const std::string& name) {
+  if (name == "none") return Avoidance::none;
+  if (name == "orca") return Avoidance::orca;
+  if (name == "rvo") return Avoidance::rvo;
+  if (name == "hrvo") return Avoidance::hrvo;
+  throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
+}
+
+WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
+  WallSet walls{{}, {}, ground};
+  for (std::size_t k = 0; k < faces.shape(0); ++k) {
+    const double* f = faces.data() + 6 * k;
+    walls.faces.push_back({{Vec<2>{{f[0], f[1]}}, Vec<2>{{f[2], f[3]}}}, f[4], f[5]});
+  }
+  for (const auto& [ring, low, high] : slabs) {
+    walls.slabs.push_back({{}, low, high});
+    for (const auto& corner : ring) walls.slabs.back().ring.push_back({corner});
+  }
+  return walls;
+}
+
+std::vector<Waypoint> way_of(const Stops& stops, const std::vector<bool>& labelled) {
+  if (stops.shape(0) != labelled.size()) throw std::invalid_argument("the arrays are of different lengths");
+  std::vector<Waypoint> way;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    const double* s = stops.data() + 5 * k;
+    way.push_back({Vec<3>{{s[0], s[1], s[2]}}, s[3], s[4], labelled[k]});
+  }
+  return way;
+}
+
+// One row a robot.
+template <typename Row>
+Table table(const CrowdWorld& world, std::size_t columns, const Row& row) {
+  auto* values = new std::vector<double>;
+  values->reserve(world.robots().size() * columns + 1);
+  for (const CrowdRobot& robot : world.robots()) row(robot, *values);
+  const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  if (columns == 1) return Table(values->data(), {world.robots().size()}, owner);
+  return Table(values->data(), {world.robots().size(), columns}, owner);
+}
+
+void bind_orders(nb::class_<CrowdWorld>& crowd) {
+  crowd
+      .def(
+          "add_walls",
+          [](CrowdWorld& w, const Faces& faces, const Slabs& slabs, double ground) {
+            return w.add_walls(walls_of(faces, slabs, ground));
+          },
+          "faces"_a, "slabs"_a, "ground"_a,
+          "Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, "
+          "floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.")
+      .def(
+          "add",
+          [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,
+             double acceleration, double priority, bool faces_its_way, bool flies, int walls) {
+            return w.add({radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls}, {position},
+                         heading);
+          },
+          "position"_a, "heading"_a, nb::kw_only(), "radius"_a, "speed"_a, "yaw_rate"_a, "acceleration"_a, "priority"_a,
+          "faces_its_way"_a, "flies"_a, "walls"_a, "Returns the number of the robot, from 0.")
+      .def(
+          "send",
+          [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {
+            w.send(robot, way_of(stops, labelled), order);
+          },
+          "robot"_a, "stops"_a, "labelled"_a, "order"_a,
+          "Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.")
+      .def("fail", &CrowdWorld::fail, "robot"_a)
+      .def("recover", &CrowdWorld::recover, "robot"_a)
+      .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a);
+}
+
+}  // namespace
+
+void bind_crowd_world(nb::module_& m) {
+  nb::class_<CrowdWorld> crowd(m, "CrowdWorld", "A world of moving robots in fixed steps of virtual time.");
+  crowd.def(
+      "__init__",
+      [](CrowdWorld* self, double dt, const std::string& avoidance, bool space, double horizon, double wall_horizon,
+         int neighbours, double margin, double arrival, double corner, double velocity_noise, double slip,
+         double odometry_noise, std::uint64_t seed) {
+        new (self) CrowdWorld({dt, avoidance_named(avoidance), space, horizon, wall_horizon, neighbours, margin,
+                               Tolerances{arrival, corner}, CrowdNoise{velocity_noise, slip, odometry_noise}, seed});
+      },
+      nb::kw_only(), "dt"_a, "avoidance"_a, "space"_a, "horizon"_a, "wall_horizon"_a, "neighbours"_a, "margin"_a,
+      "arrival"_a, "corner"_a, "velocity_noise"_a, "slip"_a, "odometry_noise"_a, "seed"_a);
+  bind_orders(crowd);
+  crowd
+      .def(
+          "advance",
+          [](CrowdWorld& w, double until) {
+            std::vector<CrowdEvent> found;
+            {
+              nb::gil_scoped_release release;
+              found = w.advance(until);
+            }
+            std::vector<Event> events;
+            for (const CrowdEvent& e : found) events.emplace_back(e.time, e.robot, e.order, e.passed, e.idle);
+            return events;
+          },
+          "until"_a,
+          "Steps until a time, or until something happened: time, robot, order, way points passed, whether all.")
+      .def_prop_ro("time", &CrowdWorld::time)
+      .def_prop_ro("steps", &CrowdWorld::steps)
+      .def_prop_ro("least_distance", &CrowdWorld::least_distance)
+      .def(
+          "contacts",
+          [](const CrowdWorld& w) {
+            std::vector<std::tuple<int, int, double, double>> found;
+            for (const auto& [pair, contact] : w.contacts())
+              found.emplace_back(pair.first, pair.second, contact.time, contact.distance);
+            return found;
+          },
+          "Two robots, when they first touched, and the least distance of their centres.")
+      .def(
+          "report",
+          [](const CrowdWorld& w, int robot) {
+            const CrowdRobot& r = w.robots()[robot];
+            return std::tuple(w.time(), std::tuple(r.position[0], r.position[1], r.position[2]), r.heading,
+                              std::tuple(r.velocity[0], r.velocity[1], r.velocity[2]), r.odometry, r.order, r.next);
+          },
+          "robot"_a, "Time, position, heading, velocity, odometry, order, way points passed.")
+      .def(
+          "busy", [](const CrowdWorld& w, int robot) { return w.robots()[robot].phase != Phase::idle; }, "robot"_a)
+      .def("positions",
+           [](const CrowdWorld& w) {
+             return table(w, 3, [](const CrowdRobot& r, auto& to) {
+               to.insert(to.end(), r.position.at.begin(), r.position.at.end());
+             });
+           })
+      .def("velocities",
+           [](const CrowdWorld& w) {
+             return table(w, 3, [](const CrowdRobot& r, auto& to) {
+               to.insert(to.end(), r.velocity.at.begin(), r.velocity.at.end());
+             });
+           })
+      .def("headings",
+           [](const CrowdWorld& w) {
+             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.heading); });
+           })
+      .def("travelled", [](const CrowdWorld& w) {
+        return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.travelled); });
+      });
+}
+
+}  // namespace muster

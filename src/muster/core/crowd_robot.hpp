@@ -1,0 +1,103 @@
+// A robot of a simulated crowd: its body, where it is, what it was told, and what was measured.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "braking.hpp"
+#include "random.hpp"
+#include "upright.hpp"
+#include "vectors.hpp"
+
+namespace muster {
+
+constexpr double kNever = -1.0;  // a time before all others
+
+struct Body {
+  double radius, speed, yaw_rate, acceleration, priority;
+  bool faces_its_way;  // drives only where it looks
+  bool flies;
+  int walls;  // which set of walls stops it
+};
+
+struct Waypoint {
+  Vec<3> at;
+  double heading;  // NaN: as it arrives
+  double hold;
+  bool labelled;
+
+  bool stops() const { return hold > 0.0 || !std::isnan(heading); }
+};
+
+enum class Phase { idle, going, turning, holding };
+
+struct CrowdRobot;
+
+// How long a robot has been held up on its way to a way point, and what it tries.
+struct Patience {
+  double best = std::numeric_limits<double>::infinity();  // least distance to the way point
+  double stuck = 0.0;                                     // seconds since it came much nearer, turned aside
+  double tilt = 0.0;                                      // radians to the left, of the velocity that it wants
+  double until = 0.0;                                     // for which this tilt is tried
+
+  void note(const CrowdRobot& robot, double dt);
+  double tilt_at(double time, const Body& body, Random& random);
+};
+
+// The way back of a robot that others drove away from the straight piece that it follows: a wall may be between by now.
+struct Trail {
+  Vec<3> from;                 // where the piece begins
+  std::vector<Vec<3>> crumbs;  // places since it was left
+  bool back = false;           // whether the robot is on its way back
+
+  void note(const CrowdRobot& robot);
+  // Where to go to get back.
+  Vec<3> aim(const CrowdRobot& robot) const;
+};
+
+struct CrowdRobot {
+  Body body;
+  Vec<3> position;
+  Vec<3> velocity;  // of the last step
+  double heading = 0.0;
+  Vec<3> commanded;    // what it drove by: the velocity without noise
+  double ahead = 0.0;  // the same of one that faces its way: speed ahead
+
+  std::vector<Waypoint> way;
+  std::size_t next = 0;  // of `way`; those before are passed
+  int order = 0;
+  Phase phase = Phase::idle;
+  double hold_until = 0.0;
+  double slowed = 1.0;
+  bool failed = false;
+  bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
+
+  double travelled = 0.0, odometry = 0.0;
+
+  bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
+  Patience patience;
+  Trail trail;
+  double asked_until = kNever;  // until then it makes room though it has no order
+  Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
+
+  Random noise{0}, whims{0};  // what the world does to it, and the tilts that it tries
+  std::vector<Upright> near_faces;
+  std::vector<Segment> near_walls;  // the same as avoidance in the plane knows them
+  Vec<3> looked_at;                 // where it was when they were collected
+
+  double top_speed() const { return body.speed * slowed; }
+  bool under_way() const { return velocity != Vec<3>{}; }
+  bool comes_back(double time) const {
+    return phase == Phase::idle && !failed && asked_until < time && position != post;
+  }
+  // It stays where it is whatever comes: at work, out of order, or at its post and not asked to make room.
+  bool stands(double time) const {
+    if (commanded != Vec<3>{}) return false;
+    return failed || phase == Phase::holding || (phase == Phase::idle && asked_until < time && position == post);
+  }
+};
+
+inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }
+
+}  // namespace muster

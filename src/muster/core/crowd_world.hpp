@@ -1,0 +1,101 @@
+// A world of moving robots in fixed steps of virtual time: way points, kinematics, avoidance, and what is measured.
+//
+// In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO), its
+// kinematics bring it as near to that as they can, and the right of way cuts what could end in a contact.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "course.hpp"
+#include "crowd_robot.hpp"
+#include "manners.hpp"
+#include "right_of_way.hpp"
+#include "steering.hpp"
+
+namespace muster {
+
+enum class Avoidance { none, orca, rvo, hrvo };
+
+// What the world does to robots, each a share: of the velocity that they miss (one standard deviation), of the way that
+// they slip (at most), of the way by which odometry errs in a step (one standard deviation).
+struct CrowdNoise {
+  double velocity, slip, odometry;
+};
+
+struct CrowdSettings {
+  double dt;
+  Avoidance avoidance;
+  bool space;  // whether those that fly avoid in space
+  double horizon, wall_horizon;
+  int neighbours;
+  double margin;  // by which those that face their way are taken for larger, as a share of the radius
+  Tolerances tolerances;
+  CrowdNoise noise;
+  std::uint64_t seed;
+};
+
+// A labelled way point was passed, or an order carried out.
+struct CrowdEvent {
+  double time;
+  int robot, order;
+  int passed;  // how many way points of the order
+  bool idle;   // whether that was the last
+};
+
+struct CrowdContact {
+  double time, distance;  // when first, and the least distance of centres ever
+};
+
+class CrowdWorld {
+ public:
+  explicit CrowdWorld(const CrowdSettings& settings) : settings_(settings) {}
+
+  int add_walls(WallSet walls);
+  int add(const Body& body, const Vec<3>& position, double heading);
+
+  void send(int i, std::vector<Waypoint> way, int order);
+  void fail(int i);
+  void recover(int i) { robots_[i].failed = false; }
+  void slow(int i, double factor) { robots_[i].slowed = factor; }
+
+  // Steps until a time, or until the end of the first step in which something happened.
+  std::vector<CrowdEvent> advance(double until);
+
+  double time() const { return settings_.dt * static_cast<double>(steps_); }
+  long steps() const { return steps_; }
+  const std::vector<CrowdRobot>& robots() const { return robots_; }
+  double least_distance() const { return least_distance_; }
+  const std::map<std::pair<int, int>, CrowdContact>& contacts() const { return contacts_; }
+
+ private:
+  void step();
+  void want(const AgentTree<3>& tree);
+  void avoid();
+  template <int D>
+  void avoid_among(const std::vector<int>& group);
+  void steer();
+  void move(const AgentTree<3>& tree);
+  void drive(CrowdRobot& robot);
+  void measure(const AgentTree<3>& tree);
+  void measure(int i, int k);
+  void take_note(int i);
+  void settle(CrowdRobot& robot) const;
+  void next_way_point(int i);
+  void collect_walls(CrowdRobot& robot) const;
+
+  CrowdSettings settings_;
+  std::vector<CrowdRobot> robots_;
+  std::vector<WallSet> walls_;
+  long steps_ = 0;
+  std::vector<Vec<3>> before_;                    // places at the beginning of the step
+  std::vector<Vec<3>> course_, wanted_, chosen_;  // velocities: alone, with manners, with avoidance
+  std::vector<Steering> steerings_;
+  std::vector<Choice> choices_;
+  std::vector<CrowdEvent> events_;
+  double least_distance_ = std::numeric_limits<double>::infinity();
+  std::map<std::pair<int, int>, CrowdContact> contacts_;
+};
+
+}  // namespace muster

@@ -1,0 +1,94 @@
+"""The port of a simulated robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from muster import core
+from muster.mission.errors import ParameterError
+from muster.mission.model import Robot
+from muster.motion.frames import wrapped
+from muster.motion.port import Telemetry, Waypoint
+from muster.simulation.noise import Noise
+
+
+class SimulatedPort:
+    """One robot of a world; a `RobotPort`.
+
+    Of a silent robot telemetry stays what it last was; it goes on, and orders still reach it.
+    """
+
+    def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
+        self._robot = robot.id
+        self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
+        self._number = number
+        self._crowd = crowd
+        self._noise = noise
+        self._seed = (seed, number)
+        self._orders = 0
+        self._sent: dict[int, tuple[Waypoint, ...]] = {}
+        self._last_word: Telemetry | None = None
+
+    @property
+    def robot(self) -> str:
+        return self._robot
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`. A robot out of order does not take it: the order in its telemetry stays.
+
+        Raises
+        ------
+        ParameterError
+            if a number of a way point is not finite, or it holds for less than 0 s.
+        """
+        for point in waypoints:
+            _check(point)
+        stops = [(*p.position, math.nan if p.heading is None else p.heading, p.hold_s) for p in waypoints]
+        self._orders += 1
+        self._sent = {self._orders: tuple(waypoints)}
+        labelled = [bool(p.label) for p in waypoints]
+        self._crowd.send(self._number, np.array(stops, dtype=np.float64).reshape(-1, 5), labelled, self._orders)
+        return self._orders
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self.send(())
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        return self._now() if self._last_word is None else self._last_word
+
+    def fall_silent(self) -> None:
+        """From now on telemetry stays what it is."""
+        self._last_word = self.telemetry()
+
+    def speak(self) -> None:
+        """Telemetry goes on."""
+        self._last_word = None
+
+    def label(self, order: int, passed: int) -> str:
+        """Of the way point by which so many of an order were passed."""
+        points = self._sent.get(order, ())
+        return points[passed - 1].label if 0 < passed <= len(points) else ""
+
+    def _now(self) -> Telemetry:
+        said = Telemetry(*self._crowd.report(self._number))
+        noise = self._noise
+        if noise.position_m == 0 and noise.heading_rad == 0:
+            return said
+        random = np.random.default_rng((*self._seed, self._crowd.steps))
+        off = random.normal(0.0, [noise.position_m] * 3 + [noise.heading_rad])
+        x, y, z = np.array(said.position) + off[:3] * self._axes
+        return replace(said, position=(float(x), float(y), float(z)), heading=float(wrapped(said.heading + off[3])))
+
+
+def _check(point: Waypoint) -> None:
+    heading = 0.0 if point.heading is None else point.heading
+    if len(point.position) != 3 or not all(map(math.isfinite, (*point.position, heading))):
+        raise ParameterError(f"way point: {point.position}, heading {point.heading}; expected three finite numbers")
+    if not 0 <= point.hold_s < math.inf:
+        raise ParameterError(f"hold_s: {point.hold_s}; expected a number of at least 0")

@@ -1,0 +1,63 @@
+"""The map's walls as the faces that stop simulated robots: of polygons their sides, of an image the cells' borders."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from muster.motion.grid import Bools, Floats, Grid
+from muster.motion.world import Body, World
+
+Slab = tuple[list[tuple[float, float]], float, float]
+"""Corners, lowest and highest z of a zone over or under which robots fly."""
+
+
+def faces_and_slabs(world: World, body: Body) -> tuple[Floats, list[Slab]]:
+    """What stops a body on a map.
+
+    Returns
+    -------
+    upright faces (k, 6), each x, y of one end, x, y of the other, lowest and highest z; and the zones with a height.
+    Metres in the map frame; infinite where a wall has no end.
+    """
+    three_d = world.dimensions == 3
+    if world.image is not None:
+        ends = borders_of(world.blocked(body, three_d))
+        return np.column_stack([ends, np.full(len(ends), -math.inf), np.full(len(ends), math.inf)]), []
+    assert world.boundary is not None
+    faces = _sides(list(world.boundary.exterior.coords), -math.inf, math.inf)
+    slabs: list[Slab] = []
+    for area in world.stopping(body, three_d):
+        flies = three_d and body.kind == "air"
+        low, high = (area.floor_m, area.ceiling_m) if flies else (-math.inf, math.inf)
+        ring = [(float(x), float(y)) for x, y in area.polygon.exterior.coords]
+        faces += _sides(ring, low, high)
+        if math.isfinite(low) or math.isfinite(high):
+            slabs.append((ring[:-1], low, high))
+    return np.array(faces, dtype=np.float64).reshape(-1, 6), slabs
+
+
+def _sides(ring: list[tuple[float, ...]] | list[tuple[float, float]], low: float, high: float) -> list[list[float]]:
+    return [[*map(float, a[:2]), *map(float, b[:2]), low, high] for a, b in itertools.pairwise(ring)]
+
+
+def borders_of(grid: Grid) -> Floats:
+    """The borders between free and blocked cells, in pieces as long as they go: (k, 4), both ends in the map frame.
+
+    What lies outside the grid is blocked.
+    """
+    fenced = np.pad(grid.blocked, 1, constant_values=True)
+    level = _runs(fenced[1:, :] != fenced[:-1, :])  # between rows
+    upright = _runs((fenced[:, 1:] != fenced[:, :-1]).T)
+    ends = np.concatenate([level, upright[:, [1, 0, 3, 2]]])
+    return np.concatenate([grid.to_map(ends[:, :2]), grid.to_map(ends[:, 2:])], axis=1)
+
+
+def _runs(borders: Bools) -> Floats:
+    """Runs of true in each row: (k, 4) of (from, row, to, row); columns count from the frame's, which is -1."""
+    steps = np.diff(np.pad(borders.astype(np.int8), ((0, 0), (1, 1))), axis=1)
+    lines, begins = np.nonzero(steps == 1)
+    _, ends = np.nonzero(steps == -1)
+    return np.column_stack([begins - 1, lines, ends - 1, lines]).astype(np.float64)
