@@ -6,10 +6,12 @@ brings along in the extra `bench`) runs it without a window, with its own recipr
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import math
 import os
 import statistics
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -65,7 +67,8 @@ def ir_sim_rate(count: int) -> float:
     os.environ["MPLBACKEND"] = "Agg"  # no window
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     try:
-        import irsim
+        with contextlib.redirect_stdout(sys.stderr):  # it tells about windows that it cannot open
+            import irsim
     except ImportError:
         raise MissingExtraError("bench", "the comparison with IR-SIM") from None
     with tempfile.TemporaryDirectory() as folder:
