@@ -126,7 +126,7 @@ class Problem:
         if self.mission.travel_rule == "map":
             n, m = len(self.tasks), len(self.robots)
             places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
-            known = self._measured.part(robots, places, tasks)
+            known = self.measured.part(robots, places, tasks)
         return replace(
             self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, known=known
         )
@@ -264,7 +264,7 @@ class Problem:
     @cached_property
     def core(self) -> core.Problem:
         """The problem as the core holds it."""
-        measured = self._measured
+        measured = self.measured
         return core.Problem(
             objective=self.objective,
             usage_is_time=self.in_time,
@@ -294,15 +294,15 @@ class Problem:
         The table is (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no
         way.
         """
-        return self._measured.table, self._measured.classes
+        return self.measured.table, self.measured.classes
 
     @property
     def work_classes(self) -> npt.NDArray[np.int32]:
         """(m,) of one class are robots for which every task costs the same metres."""
-        return self._measured.work_classes
+        return self.measured.work_classes
 
     @cached_property
-    def _measured(self) -> Measured:
+    def measured(self) -> Measured:
         if self.known is not None:
             return self.known
         doings, none = self._doings, np.empty(0, dtype=np.int32)
@@ -397,7 +397,7 @@ class Problem:
         return np.where(np.isnan(in_time), self._work_metres(i) / robot.speed_mps, in_time)
 
     def _work_metres(self, i: int) -> Floats:
-        measured = self._measured
+        measured = self.measured
         return np.asarray(measured.costs[measured.work_classes[i]])
 
     def shortcuts(self) -> Indices:

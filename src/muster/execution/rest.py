@@ -105,7 +105,8 @@ def posed(rest: Rest, travel: Travel) -> Posed:
     problem = Problem.compile(mission, ignored=rest.ignored)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     table = travel.table(problem, spots, {s.robot.id: s.spot for s in rest.crew})
-    problem = replace(problem, tabled=problem.travel if table is None else table)
+    known = problem.measured
+    problem = replace(problem, known=known if table is None else replace(known, table=table[0], classes=table[1]))
     problem = _bearable(problem, past)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return Posed(keeping(problem, Plan(routes=routes)), hopeless)

@@ -17,10 +17,11 @@ import numpy as np
 
 from muster.allocation.allocator import Outcome, Routes, admissible_routes, finished_plan
 from muster.allocation.feasibility import ROUNDING
-from muster.allocation.problem import Floats, Problem, duration_s
+from muster.allocation.problem import Floats, Problem
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Plan
+from muster.motion.actions import duration_of
 
 _LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
 
@@ -150,6 +151,6 @@ class _Schedule:
         """(m, n) seconds that each task takes each robot."""
         rows = []
         for robot in self.problem.robots:
-            lasts = [(task.actuation_cost / robot.speed_mps, duration_s(task)) for task in self.problem.tasks]
+            lasts = [(task.actuation_cost / robot.speed_mps, duration_of(task)) for task in self.problem.tasks]
             rows.append([bare if given is None else given / robot.efficiency for bare, given in lasts])
         return np.array(rows).reshape(len(self.problem.robots), len(self.problem.tasks))
