@@ -7,7 +7,7 @@ plan = muster.solve(mission, time_limit=1.0)
 assert muster.verify(mission, plan).valid
 """
 
-from muster._api import load, plot, solve, verify
+from muster._api import load, plot, simulate, solve, verify
 from muster.mission.errors import (
     Finding,
     InputError,
@@ -39,6 +39,7 @@ __all__ = [
     "load",
     "plot",
     "read_plan",
+    "simulate",
     "solve",
     "verify",
 ]

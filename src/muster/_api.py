@@ -15,6 +15,7 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress
+    from muster.execution import Report
     from muster.verification import Verdict
 
 
@@ -163,6 +164,32 @@ def _require_mission(mission: object) -> None:
         raise ParameterError(
             f"mission: {shown(mission)}; expected a Mission: muster.load makes one from a file or name"
         )
+
+
+def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path | None = None) -> Report:
+    """Carry a plan out with moving robots, in virtual time; the mission's events happen.
+
+    Parameters
+    ----------
+    seed
+        of the world and of planning anew.
+    record
+        a file (.mcap) that is to hold what happened; needs the extra `record`.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have.
+    """
+    from muster._carrying_out import carry_out
+
+    _require_mission(mission)
+    if record is None:
+        return carry_out(mission, plan, seed=seed)
+    from muster.report.record import RecordWriter
+
+    with RecordWriter(record, mission) as recorder:
+        return carry_out(mission, plan, seed=seed, recorder=recorder)
 
 
 def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:

@@ -49,9 +49,9 @@ class Watcher:
             self.out.add(data["subject"])
         elif kind == "robot-returns":
             self.out.discard(data["subject"])
-        elif kind == "task-begins":
+        elif kind == "starts":
             self._begins(data["task"], data["robot"], now)
-        elif kind == "task-ends":
+        elif kind == "ends":
             self._ends(data["task"], data["robot"])
         elif kind == "replanned":
             self._replanned(data)

@@ -155,7 +155,7 @@ def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
     assert noticed == pytest.approx(7, abs=0.21)
     assert "robot-returns" in kinds(executor)
     assert sorted(executor.ledger.ends_s) == ["0", "1"]
-    assert kinds(executor).count("task-ends") == 2
+    assert kinds(executor).count("ends") == 2
 
 
 def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():

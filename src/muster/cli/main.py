@@ -17,7 +17,7 @@ import click
 from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
 from muster.mission.errors import MusterError
 
-VERBS = ("missions", "init", "check", "solve", "verify", "explain", "path", "replay", "study", "bench")
+VERBS = ("missions", "init", "check", "solve", "verify", "explain", "path", "simulate", "replay", "study", "bench")
 
 
 class _OutputClosedError(Exception):
@@ -64,6 +64,7 @@ _SUMMARIES = {
     "verify": "Judge a plan from scratch.",
     "explain": "Say why a task is done by this robot, not by that one, or left out.",
     "path": "Find a way over the map of a mission, from one point to another.",
+    "simulate": "Carry a plan out with moving robots, and say what it took.",
     "replay": "Show a record of a mission that was carried out.",
     "study": "Repeat a published experiment beside its published numbers.",
     "bench": "Measure speed on this machine, or quality against other solvers.",

@@ -131,13 +131,13 @@ class Dispatch:
         hand.usage_to_task = hand.used - hand.used_before + self._planned_usage(hand, task)
         work = self._work_waypoints(hand, task) if hand.works else []
         hand.send(now, Activity.DRIVING, [*there, *work])
-        self._tell("robot-leaves", {"robot": hand.robot.id, "task": task})
+        self._tell("sets_out", {"robot": hand.robot.id, "task": task})
 
     def _arrive(self, hand: Hand, now: float) -> None:
         task = hand.route[0]
         self._ledger.arrive(task, now)
         hand.stuck_before = False
-        self._tell("robot-arrives", {"robot": hand.robot.id, "task": task})
+        self._tell("arrives", {"robot": hand.robot.id, "task": task})
         if hand.works:
             self._begin(hand, task, now)
             hand.turn_to(now, Activity.WORKING)
@@ -155,7 +155,7 @@ class Dispatch:
 
     def _begin(self, hand: Hand, task: str, now: float) -> None:
         self._ledger.begin(task, now)
-        self._tell("task-begins", {"task": task, "robot": hand.robot.id})
+        self._tell("starts", {"task": task, "robot": hand.robot.id})
 
     def _end_work(self, hand: Hand, now: float) -> None:
         """The work has ended, unless it was delayed meanwhile: then the robot stays for that."""
@@ -175,7 +175,7 @@ class Dispatch:
         hand.route.pop(0)
         hand.done.append(task)
         hand.turn_to(now, Activity.IDLE)
-        self._tell("task-ends", {"task": task, "robot": hand.robot.id})
+        self._tell("ends", {"task": task, "robot": hand.robot.id})
 
     def _work_waypoints(self, hand: Hand, task: str) -> list[Waypoint]:
         if hand.doing is None:

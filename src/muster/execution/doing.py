@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from muster.mission.model import Point, Robot, Task
+from muster.motion import actions
 from muster.motion.port import Place, Waypoint
 
 
@@ -77,6 +78,16 @@ def plain(task: Task, robot: Robot) -> Doing | Impossible:
     if out != entry:
         waypoints.append(Waypoint(out, label=task.id))
     return PlainDoing(tuple(waypoints), entry, out, task.actuation_cost)
+
+
+def acted(task: Task, robot: Robot) -> Doing | Impossible:
+    """The work of any task: that of its action where this has geometry (see `motion.actions`), else the plain one."""
+    if task.action is None or not task.action.has_geometry:
+        return plain(task, robot)
+    found = actions.plan(task, robot)
+    if isinstance(found, actions.Impossible):
+        return Impossible(found.reason)
+    return PlainDoing(found.waypoints, place(found.entry), place(found.exit), found.cost_m)
 
 
 def plain_work_s(task: Task, robot: Robot) -> float:

@@ -1,0 +1,117 @@
+"""`muster simulate`: plans carried out by moving robots."""
+
+import json
+import re
+
+import pytest
+
+import muster as package
+from muster.library import mission_names
+from muster.mission.plan import read_plan
+
+EVENTFUL = """
+schema: muster/1
+name: eventful
+robots:
+  - {id: a, position: [0, 0], radius_m: 0.2}
+  - {id: b, position: [0, 5], radius_m: 0.2}
+tasks:
+  - {id: far, position: [30, 0]}
+  - {id: near, position: [5, 5], prerequisites: [far]}
+  - {id: gone, position: [0, 30]}
+events:
+  - {at_s: 3, robot_fails: a}
+  - {at_s: 4, new_task: {id: late, position: [10, 10]}}
+  - {at_s: 5, cancel_task: gone}
+"""
+
+
+@pytest.fixture
+def eventful(tmp_path):
+    file = tmp_path / "eventful.yaml"
+    file.write_text(EVENTFUL, encoding="utf-8")
+    return str(file)
+
+
+def answer(muster, *arguments):
+    code, out, err = muster("simulate", *arguments, "--iterations", "300", "--format", "json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+@pytest.mark.parametrize("name", [name for name in mission_names() if name not in ("eil51", "berlin52", "eil76")])
+def test_shipped_missions_are_carried_out(name):
+    """Every planned task is done, no contact, and nothing starts before what it waits for has ended."""
+    mission = package.load(name)
+    plan = package.solve(mission, "greedy")
+    report = package.simulate(mission, plan)
+    planned = {task for route in plan.routes for task in route.tasks}
+    assert set(report.tasks_done) == planned
+    assert len(report.tasks_done) == len(planned)
+    assert report.contacts == 0
+    for task in mission.tasks:
+        for before in task.prerequisites if task.id in planned else ():
+            assert report.starts_s[task.id] >= report.ends_s[before] - 1e-9
+
+
+def test_what_is_printed_for_programs(muster):
+    data = answer(muster, "31T-6R50")
+    assert list(data) == [
+        "mission_time_s", "tasks_done", "tasks_lost", "contacts", "min_distance_m", "waiting_s", "reallocations",
+        "robots", "starts_s", "ends_s",
+    ]  # fmt: skip
+    assert len(data["tasks_done"]) == 31
+    assert data["tasks_lost"] == []
+    for robot in data["robots"]:
+        assert robot["usage_flown"] == pytest.approx(robot["usage_planned"], rel=0.02)
+    assert answer(muster, "31T-6R50") == data
+
+
+def test_events_happen_and_nothing_is_lost(muster, eventful):
+    data = answer(muster, eventful)
+    assert sorted(data["tasks_done"]) == ["far", "late", "near"]
+    assert [lost["task"] for lost in data["tasks_lost"]] == ["gone"]
+    assert data["reallocations"] >= 2
+    assert data["starts_s"]["near"] >= data["ends_s"]["far"]
+
+
+def test_for_people(muster):
+    code, out, err = muster("simulate", "16T-3R", "--iterations", "300")
+    assert (code, err) == (0, "")
+    assert "tasks done        16 of 16" in out
+    assert re.search(r"mission time +\d+\.\d s", out)
+
+
+def test_a_plan_record_page_and_picture(muster, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert muster("solve", "16T-3R", "--iterations", "100", "-o", "plan.json", "-q")[0] == 0
+    files = ("--record", "run.mcap", "--html", "run.html", "--plot", "run.svg")
+    assert muster("simulate", "16T-3R", "--plan", "plan.json", *files)[0] == 0
+    code, out, _ = muster("replay", "run.mcap", "--format", "json")
+    assert code == 0
+    replayed = json.loads(out)
+    assert replayed["complete"]
+    assert replayed["report"]["tasks_done"]
+    kinds = {event["kind"] for event in replayed["events"]}
+    assert {"sets_out", "arrives", "starts", "ends"} <= kinds
+    assert "<html" in (tmp_path / "run.html").read_text(encoding="utf-8")
+    assert "<svg" in (tmp_path / "run.svg").read_text(encoding="utf-8")
+    assert read_plan("plan.json").tasks_completed == 16
+
+
+def test_lost_tasks_can_be_an_error(muster, eventful):
+    assert muster("simulate", eventful, "--iterations", "100", "--require-complete")[0] == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--plan", "none.json"), "none.json"),
+        (("--dt", "0"), "--dt"),
+        (("--world", "physics"), "--world"),
+    ],
+)
+def test_bad_input(muster, arguments, message):
+    code, out, err = muster("simulate", "16T-3R", *arguments)
+    assert (code, out) == (2, "")
+    assert message in err
