@@ -19,4 +19,4 @@ LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.s
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
     "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance \
-    tests/motion
+    tests/motion tests/simulation
