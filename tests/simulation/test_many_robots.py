@@ -10,8 +10,8 @@ import muster
 from muster.mission.model import Map, Zone
 from muster.motion.path import Path
 from muster.motion.port import Waypoint
-from muster.motion.roads import Roads, body_of
-from muster.motion.world import World
+from muster.motion.roads import Roads
+from muster.motion.world import World, body_of
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive")

@@ -16,8 +16,8 @@ from muster.allocation.travel import require_room
 from muster.mission.model import Mission, Robot
 from muster.motion.actions.action import Leg
 from muster.motion.path import NoPath
-from muster.motion.roads import Roads, body_of
-from muster.motion.world import Body
+from muster.motion.roads import Roads
+from muster.motion.world import Body, body_of
 
 Floats = npt.NDArray[np.float64]
 

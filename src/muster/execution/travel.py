@@ -14,7 +14,8 @@ from muster.execution.doing import Way, place, straight
 from muster.mission.model import Mission, Robot, TravelTable
 from muster.motion.path import NoPath
 from muster.motion.port import Place
-from muster.motion.roads import Roads, body_of
+from muster.motion.roads import Roads
+from muster.motion.world import body_of
 
 Table = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 """(classes, n + 2m, n + 2m) metres between tasks, starts and ends of a problem, and (m,) each robot's class."""

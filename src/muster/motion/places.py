@@ -14,7 +14,7 @@ from muster.mission.model import Mission, Point, Robot, Task, findings
 from muster.motion.grid import Grid
 from muster.motion.maps.inside import free
 from muster.motion.spaces import PrismSpace
-from muster.motion.world import Area, Body, World
+from muster.motion.world import Area, Body, World, body_of
 
 if TYPE_CHECKING:
     import shapely
@@ -54,7 +54,7 @@ def blocked_places(world: World, mission: Mission) -> tuple[BlockedPlace, ...]:
     """
     found: list[BlockedPlace] = []
     for k, robot in enumerate(mission.robots):
-        found += _blocked(world, _places_of_robot(k, robot), f"robot {robot.id}", [_body(robot)])
+        found += _blocked(world, _places_of_robot(k, robot), f"robot {robot.id}", [body_of(robot)])
     for k, task in enumerate(mission.tasks):
         found += _blocked(world, _places_of_task(k, task), f"task {task.id}", _bodies(mission, task))
     return tuple(found)
@@ -93,14 +93,10 @@ def _expected(body: Body) -> str:
     return f"a place that is free for its robot ({body.kind}, radius {body.radius_m:g} m)"
 
 
-def _body(robot: Robot) -> Body:
-    return Body(robot.radius_m, robot.kind)
-
-
 def _bodies(mission: Mission, task: Task) -> list[Body]:
     """The different bodies of the robots that may do a task, in mission order."""
     allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
-    return list(dict.fromkeys(map(_body, allowed)))
+    return list(dict.fromkeys(map(body_of, allowed)))
 
 
 def _places_of_robot(k: int, robot: Robot) -> Iterator[tuple[Path, Point]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Mission, Point, Robot
+from muster.mission.model import Mission, Point
 from muster.motion.curve import Curve
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import WayFinder
@@ -91,8 +91,3 @@ def with_heights(found: Path, start: Sequence[float], goal: Sequence[float]) -> 
     if len(share) == 1 and start[2] != goal[2]:  # straight up
         return Path(np.array([start, goal], dtype=np.float64))
     return Path(np.column_stack([found.points, start[2] + share * (goal[2] - start[2])]))
-
-
-def body_of(robot: Robot) -> Body:
-    """What a map knows of a robot."""
-    return Body(robot.radius_m, robot.kind)

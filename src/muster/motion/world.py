@@ -20,7 +20,7 @@ import numpy as np
 from muster.mission.consistency import positions
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.kinds import Fault
-from muster.mission.model import Map, Mission, Zone, findings
+from muster.mission.model import Map, Mission, Robot, Zone, findings
 from muster.motion.grid import Floats, Grid
 from muster.motion.maps.distances import clearance_to_blocked, inflated
 from muster.motion.maps.extra import require_map_extra
@@ -40,6 +40,11 @@ class Body:
 
     radius_m: float
     kind: str
+
+
+def body_of(robot: Robot) -> Body:
+    """What a map knows of a robot."""
+    return Body(robot.radius_m, robot.kind)
 
 
 @dataclass(frozen=True, eq=False)

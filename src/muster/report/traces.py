@@ -59,7 +59,8 @@ def way_in(mission: Mission) -> Way:
     """How robots go from place to place: along the paths of the map where travel is by it, else straight."""
     if mission.travel_rule != "map":
         return lambda robot, start, goal: (start, goal)
-    from muster.motion.roads import Roads, body_of
+    from muster.motion.roads import Roads
+    from muster.motion.world import body_of
 
     roads = Roads.of(mission)
 

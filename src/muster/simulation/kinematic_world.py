@@ -20,7 +20,7 @@ from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
-from muster.motion.world import Body, World
+from muster.motion.world import Body, World, body_of
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import faces_and_slabs
@@ -207,7 +207,7 @@ class KinematicWorld:
             priority=robot.avoidance_priority,
             faces_its_way=kinematics.faces_its_way,
             flies=robot.kind == "air",
-            walls=self._walls_for(Body(robot.radius_m, robot.kind)),
+            walls=self._walls_for(body_of(robot)),
         )
         self._numbers[robot.id] = number
         self._ports[robot.id] = SimulatedPort(robot, number, self._crowd, self._noise, self._seed)
