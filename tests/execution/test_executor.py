@@ -6,7 +6,7 @@ from tests.execution.world import World, carry_out
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.changes import FAILED, SILENT, STUCK
-from muster.execution.doing import Impossible, plain
+from muster.execution.doing import plain
 from muster.execution.executor import Executor
 from muster.execution.hand import Activity
 from muster.execution.monitor import Limits
@@ -16,6 +16,7 @@ from muster.library import mission_names
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
+from muster.motion.actions import Impossible
 from muster.motion.roads import Roads
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from muster.execution.changes import Change
-from muster.execution.doing import Doer, Doing, Impossible, Way, path_length
+from muster.execution.doing import Doer, Doing, Way, path_length
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.monitor import exceeds
+from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
 Tell = Callable[[str, Mapping[str, Any]], None]

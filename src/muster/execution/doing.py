@@ -13,6 +13,7 @@ from typing import Protocol
 
 from muster.mission.model import Point, Robot, Task
 from muster.motion import actions
+from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
 
@@ -52,13 +53,6 @@ class PlainDoing:
     cost_m: float
 
 
-@dataclass(frozen=True)
-class Impossible:
-    """Why a robot cannot do a task."""
-
-    reason: str
-
-
 Doer = Callable[[Task, Robot], Doing | Impossible]
 """What a task makes a robot do, or why the robot cannot do it."""
 
@@ -85,14 +79,14 @@ def acted(task: Task, robot: Robot) -> Doing | Impossible:
     if task.action is None or not task.action.has_geometry:
         return plain(task, robot)
     found = actions.plan(task, robot)
-    if isinstance(found, actions.Impossible):
-        return Impossible(found.reason)
+    if isinstance(found, Impossible):
+        return found
     return PlainDoing(found.waypoints, place(found.entry), place(found.exit), found.cost_m)
 
 
 def plain_work_s(task: Task, robot: Robot) -> float:
     """Seconds that a plain task takes a robot."""
-    given = task.action.duration_s if task.action and task.action.duration_s is not None else task.duration_s
+    given = actions.duration_of(task)
     return task.actuation_cost / robot.speed_mps if given is None else given / robot.efficiency
 
 
