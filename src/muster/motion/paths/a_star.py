@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.motion.path import NoPath, Path
-from muster.motion.paths.on_grid import Parameters, question
+from muster.motion.paths.on_grid import Parameters, between_centres
 from muster.motion.paths.planner import Planner, in_plane
 from muster.motion.spaces import Space
 
@@ -15,10 +15,7 @@ Floats = npt.NDArray[np.float64]
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
     """As short as Dijkstra's: the octile distance never exceeds what is left."""
-    asked = question(in_plane(space, "a-star"), start, goal, params)
-    if isinstance(asked, NoPath):
-        return asked
-    return asked.path(asked.way(heuristic=True), start, goal)
+    return between_centres(in_plane(space, "a-star"), start, goal, params, heuristic=True)
 
 
 A_STAR = Planner(

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.motion.path import NoPath, Path
-from muster.motion.paths.on_grid import Parameters, question
+from muster.motion.paths.on_grid import Parameters, between_centres
 from muster.motion.paths.planner import Planner, in_plane
 from muster.motion.spaces import Space
 
@@ -15,10 +15,7 @@ Floats = npt.NDArray[np.float64]
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
     """No shorter way leads along the eight directions; corners of blocked cells are not cut."""
-    asked = question(in_plane(space, "dijkstra"), start, goal, params)
-    if isinstance(asked, NoPath):
-        return asked
-    return asked.path(asked.way(heuristic=False), start, goal)
+    return between_centres(in_plane(space, "dijkstra"), start, goal, params, heuristic=False)
 
 
 DIJKSTRA = Planner(

@@ -75,6 +75,14 @@ def question(space: GridSpace | PolygonSpace, start: Floats, goal: Floats, param
     return reason
 
 
+def between_centres(
+    space: GridSpace | PolygonSpace, start: Floats, goal: Floats, params: Parameters, *, heuristic: bool
+) -> Path | NoPath:
+    """The shortest path along the eight directions, with or without a heuristic."""
+    asked = question(space, start, goal, params)
+    return asked if isinstance(asked, NoPath) else asked.path(asked.way(heuristic=heuristic), start, goal)
+
+
 def core_grid(grid: Grid) -> core.GridMap:
     """The grid in the core.
 

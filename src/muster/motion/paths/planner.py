@@ -100,6 +100,11 @@ def disconnected(start: Floats, goal: Floats) -> NoPath:
     return NoPath("disconnected", f"no free way leads from {shown(start)} to {shown(goal)}")
 
 
+def pair(point: Floats) -> tuple[float, float]:
+    """A point of the plane as the core takes it."""
+    return float(point[0]), float(point[1])
+
+
 def shown(point: Floats) -> str:
     return "(" + ", ".join(f"{value:g}" for value in point) + ")"
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import Parameters, Question, question
-from muster.motion.paths.planner import Planner, in_plane
+from muster.motion.paths.planner import Planner, in_plane, pair
 from muster.motion.spaces import Space
 
 Floats = npt.NDArray[np.float64]
@@ -32,13 +32,9 @@ def pulled(asked: Question, way: Floats) -> Floats:
     """The way (k, 2) in cells without the points that the one before can do without: it sees the one after."""
     kept = list(way[:1])
     for point, after in pairwise(way[1:]):
-        if not asked.cells.sees(_pair(kept[-1]), _pair(after)):
+        if not asked.cells.sees(pair(kept[-1]), pair(after)):
             kept.append(point)
     return np.array([*kept, *way[-1:]]) if len(way) > 1 else way
-
-
-def _pair(point: Floats) -> tuple[float, float]:
-    return float(point[0]), float(point[1])
 
 
 def _length(way: Floats) -> float:

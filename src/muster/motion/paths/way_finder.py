@@ -14,7 +14,7 @@ from muster.motion.grid import Grid, Indices
 from muster.motion.maps.inside import free
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions
-from muster.motion.paths.planner import blocked, disconnected, point_of, points_of
+from muster.motion.paths.planner import blocked, disconnected, pair, point_of, points_of
 from muster.motion.paths.rings import rings_of
 from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
@@ -109,10 +109,10 @@ class _InRegion:
         self._ways = core.Ways.on_region(rings_of(space.region))
 
     def sees(self, a: Floats, b: Floats) -> bool:
-        return self._ways.sees(_pair(a), _pair(b))
+        return self._ways.sees(pair(a), pair(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
-        return self._ways.way(_pair(start), _pair(goal))
+        return self._ways.way(pair(start), pair(goal))
 
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
         return _plane_lengths(self._ways, exits, entries, threads)
@@ -139,7 +139,7 @@ class _OnGrid:
         return in_cells * self._grid.resolution_m
 
     def _cell(self, point: Floats) -> tuple[float, float]:
-        return _pair(self._grid.to_grid(point[np.newaxis])[0])
+        return pair(self._grid.to_grid(point[np.newaxis])[0])
 
 
 def _plane_lengths(ways: core.Ways, exits: Floats, entries: Floats, threads: int) -> Floats:
@@ -234,10 +234,6 @@ def _joined(rows: list[Floats], shape: tuple[int, int], *, mutual: bool) -> Floa
         below = np.tril_indices(shape[0], -1)
         table[below] = table.T[below]
     return table
-
-
-def _pair(point: Floats) -> tuple[float, float]:
-    return float(point[0]), float(point[1])
 
 
 def _triple(point: Floats) -> tuple[float, float, float]:
