@@ -41,16 +41,22 @@ def answer(muster, *arguments):
 
 @pytest.mark.parametrize("name", [name for name in mission_names() if name not in ("eil51", "berlin52", "eil76")])
 def test_shipped_missions_are_carried_out(name):
-    """Every planned task is done, no contact, and nothing starts before what it waits for has ended."""
+    """Every planned task is done, once, no contact, and nothing starts before what it waits for has ended.
+
+    Where detours would take a robot beyond its capacity the rest is planned again, maybe better than greedy had it.
+    """
     mission = package.load(name)
     plan = package.solve(mission, "greedy")
     report = package.simulate(mission, plan)
     planned = {task for route in plan.routes for task in route.tasks}
-    assert set(report.tasks_done) == planned
-    assert len(report.tasks_done) == len(planned)
+    assert set(report.tasks_done) >= planned
+    assert len(report.tasks_done) == len(set(report.tasks_done))
+    assert set(report.tasks_done) == planned or report.reallocations
+    for robot, flown in zip(mission.robots, report.robots, strict=True):
+        assert robot.work_capacity is None or flown.usage_flown <= robot.work_capacity
     assert report.contacts == 0
     for task in mission.tasks:
-        for before in task.prerequisites if task.id in planned else ():
+        for before in task.prerequisites if task.id in report.tasks_done else ():
             assert report.starts_s[task.id] >= report.ends_s[before] - 1e-9
 
 
@@ -63,7 +69,7 @@ def test_what_is_printed_for_programs(muster):
     assert len(data["tasks_done"]) == 31
     assert data["tasks_lost"] == []
     for robot in data["robots"]:
-        assert robot["usage_flown"] == pytest.approx(robot["usage_planned"], rel=0.02)
+        assert robot["usage_flown"] == pytest.approx(robot["usage_planned"], rel=0.05)  # they make way for each other
     assert answer(muster, "31T-6R50") == data
 
 

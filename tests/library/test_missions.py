@@ -189,6 +189,19 @@ def test_16t_3r_as_tables_a5_and_a6_print_it():
     assert [r.type for r in mission.robots] == ["alpha", "delta", "rho"]
 
 
+@pytest.mark.parametrize("name", ["6T-2R", "11T-2R", "24T-5R", "31T-6R", *CAPACITIES])
+def test_ground_robots_as_table_a2_prints_them(name):
+    for robot in shipped(name).robots:
+        body = (robot.kind, robot.kinematics, robot.radius_m, robot.speed_mps, robot.yaw_rate_radps)
+        assert body == ("ground", "differential-drive", 0.3, 0.26, 1.82)
+
+
+def test_flying_robots_as_table_a2_prints_them():
+    for robot in shipped("16T-3R").robots:
+        body = (robot.kind, robot.kinematics, robot.radius_m, robot.speed_mps, robot.yaw_rate_radps)
+        assert body == ("air", "quadcopter", 0.7, 0.5, 2.5)
+
+
 def test_24t_5r_as_tables_a7_and_a8_print_it():
     mission = shipped("24T-5R")
     assert types("24T-5R") == "DDEFDDEFDDEFDDEFDDEFDDEF"
