@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from muster.execution import Executor, Reallocation, report_of, travel_of, way_of
-from muster.execution.doing import acted
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.port import Telemetry
@@ -91,7 +90,6 @@ def carry_out(
         mission,
         plan,
         world.ports,
-        doing=acted,
         way=way_of(mission, roads),
         travel=travel,
         replan=Reallocation(travel=travel, seed=seed),
@@ -102,7 +100,7 @@ def carry_out(
     begin = time.monotonic()
     executor.tick(world.time_s)
     while not executor.done:
-        world.advance(min([world.time_s + LOOK_S, *(event.at_s for event in ahead[:1])]))
+        world.advance(max(world.time_s + dt_s, min(world.time_s + LOOK_S, executor.due_s)))
         while ahead and ahead[0].at_s <= world.time_s + 1e-9:
             _happens(world, ahead.pop(0))
         executor.tick(world.time_s)

@@ -6,7 +6,6 @@ from tests.execution.world import World, carry_out
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.changes import FAILED, SILENT, STUCK
-from muster.execution.doing import plain
 from muster.execution.executor import Executor
 from muster.execution.hand import Activity
 from muster.execution.monitor import Limits
@@ -16,6 +15,7 @@ from muster.library import mission_names
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
+from muster.motion import actions
 from muster.motion.actions import Impossible
 from muster.motion.roads import Roads
 
@@ -272,7 +272,7 @@ def test_what_a_robot_cannot_do_goes_to_another():
     mission = line(5.0, robots=2)
 
     def doing(task, robot):
-        return Impossible("no camera") if robot.id == "r_0" else plain(task, robot)
+        return Impossible("no camera") if robot.id == "r_0" else actions.plan(task, robot)
 
     executor = carried_out(mission, plan_of(r_0=["0"]), doing=doing)
     assert executor.crew["r_1"].done == ["0"]

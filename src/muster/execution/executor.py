@@ -7,13 +7,14 @@ to be done, and the rest is planned again (`reallocation`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes, new_hand
 from muster.execution.dispatch import Dispatch
-from muster.execution.doing import Doer, Way, plain, straight
+from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
@@ -25,6 +26,7 @@ from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.motion import actions
 from muster.motion.port import RobotPort
 
 
@@ -47,9 +49,9 @@ class Executor:
     ports
         for each robot how it is reached. A robot that joins has its port here by then.
     doing
-        what a task makes a robot do.
+        what a task makes a robot do; by its action by default.
     way
-        the places a robot passes from one place to another.
+        the places a robot passes from one place to another, between the way points of an action too.
     travel
         how travel is measured when the rest is planned again; by the mission's rule by default.
     replan
@@ -73,7 +75,7 @@ class Executor:
         plan: Plan,
         ports: Mapping[str, RobotPort],
         *,
-        doing: Doer = plain,
+        doing: Doer = actions.plan,
         way: Way = straight,
         travel: Travel | None = None,
         replan: Callable[[Rest], Revision] | None = None,
@@ -116,6 +118,13 @@ class Executor:
     def done(self) -> bool:
         """Whether the mission is over."""
         return self.ended_s is not None
+
+    @property
+    def due_s(self) -> float:
+        """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
+        available = [hand.robot.available_from_s for hand in self._present if hand.route]
+        times = [*(event.at_s for event in self._script[:1]), *available]
+        return min((time for time in times if time > self.now_s), default=math.inf)
 
     def report(self, event: Event) -> None:
         """Let something happen that the mission file did not foresee; its `at_s` does not count.
