@@ -112,7 +112,9 @@ DELAYED = [
 def test_a_delay_comes_on_top_of_what_the_work_takes(one, at_s):
     """Told before the work begins, or while it is under way; the usage stays."""
     robot = (one.only_robots or ("rover",))[0]
-    mission = over_walls(one, task("then", (3, 15)), robots=tuple(r for r in (ROVER, DRONE) if r.id == robot))
+    mission = over_walls(
+        one, task("then", (3, 15), prerequisites=(one.id,)), robots=tuple(r for r in (ROVER, DRONE) if r.id == robot)
+    )
     plan = Plan(routes=(Route(robot, (one.id, "then")),))
     as_planned = flown(mission, plan)[1]
     at_s = as_planned.starts_s[one.id] + 1 if at_s is None else at_s
