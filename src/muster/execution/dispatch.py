@@ -136,7 +136,7 @@ class Dispatch:
 
     def _arrive(self, hand: Hand, now: float) -> None:
         task = hand.route[0]
-        self._ledger.arrive(task, now)
+        self._ledger.arrive(task, hand.used, now)
         hand.stuck_before = False
         self._tell("arrives", {"robot": hand.robot.id, "task": task})
         if hand.works:
