@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
-from muster.execution import Executor, Reallocation, report_of, travel_of, way_of
+from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.execution.doing import acted
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.port import Telemetry
 from muster.motion.roads import Roads
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 from muster.verification import verify
@@ -25,31 +24,11 @@ LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
 
 
-class Recorder(Protocol):
-    """Who keeps what happens; see `muster.report.record.RecordWriter`."""
+class Recorder(Observer, Protocol):
+    """Who keeps what happens, and where the bodies truly are; see `muster.report.record.RecordWriter`."""
 
-    def on_plan(self, now: float, plan: Plan) -> None: ...
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None: ...
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None: ...
     def on_report(self, report: dict[str, Any]) -> None: ...
-
-
-class _Told:
-    """Passes on what the executor tells; telemetry is in the world's steps already."""
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        self._recorder.on_event(now, kind, dict(data))
-        for task, reason in data.get("lost", {}).items() if kind == "mission-ended" else ():
-            self._recorder.on_event(now, "lost", {"task": task, "reason": reason})
-
-    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        pass
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        self._recorder.on_plan(now, plan)
 
 
 class Simulation:
@@ -104,7 +83,7 @@ class Simulation:
             way=way_of(mission, roads),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
-            observer=None if recorder is None else _Told(recorder),
+            observer=recorder,
             now=self._world.time_s,
         )
         self._recorder = recorder
