@@ -38,7 +38,7 @@ def task_states(browser):
     )
 
 
-@pytest.mark.parametrize("name", ["31T-6R", "floor", "yard"])
+@pytest.mark.parametrize("name", ["31T-6R", "floor", "yard", "depot"])
 @pytest.mark.parametrize("size", [WIDE, NARROW])
 @pytest.mark.parametrize("dark", [False, True])
 def test_it_loads_without_complaint_and_without_network(name, size, dark, browser, page):
@@ -50,7 +50,7 @@ def test_it_loads_without_complaint_and_without_network(name, size, dark, browse
     paper = browser.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (paper == "rgb(255, 255, 255)") != dark
     assert browser.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    assert browser.evaluate("document.getElementById('heights').hidden") == (name != "yard")
+    assert browser.evaluate("document.getElementById('heights').hidden") == (name not in ("yard", "depot"))
     assert browser.evaluate("document.querySelectorAll('#map image').length") == (name == "floor")
 
 
@@ -151,14 +151,16 @@ def test_pointing_into_a_chart_goes_there(browser, page):
 
 
 def test_the_time_chart_has_a_bar_for_each_span(browser, page, recorded):
-    from muster.report.page.spans import spans
+    from muster.report.spans import spans
 
     recording = recorded("31T-6R", more=MORE)
     browser.open(page("31T-6R", more=MORE), *WIDE)
     expected = spans(recording.events, recording.duration_s)
     for kind in ("travel", "waiting", "work"):
         seen = browser.evaluate(f"[...document.querySelectorAll('#gantt rect.{kind}')].map(bar => bar.dataset.task)")
-        assert sorted(seen) == sorted(span.task for span in expected if span.kind == kind)
+        assert sorted(seen) == sorted(
+            span.task for span in expected if span.kind == kind and span.until_s > span.from_s
+        )
     fills = browser.evaluate("[...document.querySelectorAll('#gantt rect.waiting')].map(b => b.getAttribute('fill'))")
     assert fills
     assert all(fill.startswith("url(#hatch-") for fill in fills)
