@@ -192,3 +192,19 @@ def test_one_that_returns_before_it_is_available_waits_until_then():
     mission = over_walls(task("there", (5, 3)), robots=(late,), events=events)
     report = carry_out(mission, muster.solve(mission, iterations=100))
     assert report.starts_s["there"] == pytest.approx(17, abs=0.5)
+
+
+def test_depot_is_carried_out_as_planned_and_whole_whatever_happens():
+    """All actions over a map in space, several robots at once; then with a robot that fails and a task that appears."""
+    mission = muster.load("depot")
+    plan = muster.solve(mission, iterations=2000)
+    assert plan.complete
+    calm = carry_out(replace(mission, events=()), plan)
+    assert (set(calm.tasks_done), calm.contacts, calm.reallocations) == ({t.id for t in mission.tasks}, 0, 0)
+    for route, robot in zip(muster.verify(mission, plan).routes, calm.robots, strict=True):
+        assert robot.usage_flown == pytest.approx(route.usage, rel=0.02)
+    report = carry_out(mission, plan)
+    assert set(report.tasks_done) == {t.id for t in mission.tasks} | {"open-gate"}
+    assert (report.contacts, report.tasks_lost) == (0, ())
+    for robot, flown in zip(mission.robots, report.robots, strict=True):
+        assert flown.usage_flown <= robot.work_capacity
