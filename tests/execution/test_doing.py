@@ -82,7 +82,7 @@ def test_headings_are_kept():
 def test_without_a_way_from_one_way_point_to_the_next_it_is_impossible():
     delivery = Task(id="t", position=(0, 0), action=Action(name="delivery", pickup=(3, 0)))
     found = work(delivery, Robot(id="r", position=(0, 0)), lambda robot, start, goal: None)
-    assert found == Impossible("unreachable: there is no way along the way points of its action")
+    assert found == Impossible("unreachable: there is no way from (3, 0, 0) to (0, 0, 0)")
 
 
 def test_the_straight_way_is_the_goal():

@@ -302,7 +302,8 @@ class Problem:
         """Travel between the places by roads, whatever the mission's rule."""
         from muster.allocation.map_travel import MapTravel
 
-        doings = Doings.of(self.robots, self.tasks, by_body=True)
+        by_body = self.mission.travel_rule == "map"
+        doings = self._doings if by_body else Doings.of(self.robots, self.tasks, by_body=True)
         exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
         return MapTravel.of(roads, self.robots, doings, exits, entries)
 

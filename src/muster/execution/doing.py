@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 from muster.mission.model import Point, Robot, Task
@@ -44,7 +45,7 @@ class Work:
     def exit(self) -> Place:
         return self.waypoints[-1].position
 
-    @property
+    @cached_property
     def way_m(self) -> float:
         """Metres from the entry to the exit."""
         return path_length(self.entry, self.waypoints)
@@ -73,7 +74,7 @@ def work_of(task: Task, robot: Robot, doing: Doer, way: Way) -> Work | Impossibl
     for before, waypoint in pairwise(found.waypoints):
         places = way(robot, before.position, waypoint.position)
         if places is None:
-            return Impossible("unreachable: there is no way along the way points of its action")
+            return Impossible(f"unreachable: there is no way from {_told(before)} to {_told(waypoint)}")
         waypoints += [*map(Waypoint, places[:-1]), waypoint]
     way_m, straight_m = (path_length(points[0].position, points) for points in (waypoints, found.waypoints))
     if duration_of(task) is not None or found.typed_cost is not None:
@@ -87,6 +88,10 @@ def _staying_less(waypoints: Sequence[Waypoint], by_s: float) -> Iterator[Waypoi
         less = min(by_s, waypoint.hold_s)
         by_s -= less
         yield replace(waypoint, hold_s=waypoint.hold_s - less)
+
+
+def _told(waypoint: Waypoint) -> str:
+    return f"({', '.join(f'{c:g}' for c in waypoint.position)})"
 
 
 def straight(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
