@@ -52,9 +52,9 @@ class MapTravel:
         """(classes, n) metres along the way points of actions, else the typed costs; inf where there is no way."""
         costs = self.doings.costs.copy()
         for (k, j), doing in self.doings.moving.items():
-            costs[k, j] = sum(self._metres(self.bodies[k], leg) for leg in doing.legs)
+            costs[k, j] = sum(self.roads.leg_m(self.bodies[k], *leg) for leg in doing.legs)
         for k, j in self._crossed:
-            if math.isinf(self._metres(self.bodies[k], self._across(k, j))):
+            if math.isinf(self.roads.leg_m(self.bodies[k], *self._across(k, j))):
                 costs[k, j] = math.inf
         return costs
 
@@ -101,7 +101,3 @@ class MapTravel:
     def _across(self, k: int, j: int) -> Leg:
         d = self.roads.world.dimensions
         return tuple(self.entries[k, j, :d].tolist()), tuple(self.exits[k, j, :d].tolist())
-
-    def _metres(self, body: Body, leg: Leg) -> float:
-        found = self.roads.path(body, *leg)
-        return math.inf if isinstance(found, NoPath) else found.length_m
