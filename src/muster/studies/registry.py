@@ -18,6 +18,7 @@ from muster.studies.repetition import OnDone
 from muster.studies.rvo import RVO
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import THESIS_3_3
+from muster.studies.thesis_6 import THESIS_6
 
 
 class Study(Protocol):
@@ -44,6 +45,7 @@ class Illustrated(Protocol):
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
     THESIS_3_3,
+    THESIS_6,
     AUCTION_5,
     MARKET_RESCUE,
     Allocators(),
