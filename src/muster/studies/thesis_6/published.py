@@ -79,8 +79,12 @@ def plans(number: str) -> tuple[PublishedPlan, ...]:
 
 
 def excess(value: float, base: float) -> float:
-    """By how much a value is more than another, per cent."""
-    return 100 * (value / base - 1)
+    """By how much a value is more than another, per cent; 0 for what would be printed as -0.00 or 0.00."""
+    off = 100 * (value / base - 1)
+    return off if abs(off) >= _PRINTED else 0.0
+
+
+_PRINTED = 0.005
 
 
 def _names(tasks: Any) -> tuple[str, ...]:

@@ -110,13 +110,13 @@ def _thesis_cells(
     there, right = _figures(printed(record)), _figures(corrected(record))
     sums = own if kind is None else dict(zip(("C", "F"), total_and_greatest(plan.usages(kind)), strict=True))
     base = {} if kind is None else dict(zip(("C", "F"), total_and_greatest(plan.usages()), strict=True))
-    texts = [f"{plan.figure} {plan.allocator}: {text}." for text in errata(record)]
+    numbers = " ".join(notes.number(f"{plan.figure} {plan.allocator}: {text}.") for text in errata(record))
     return {
         "values": "thesis" if kind is None else f"thesis, {MEASURED[kind]}",
         **there,
         **{f"{column} %": excess(right[column], base[column]) for column in base},
         "s": record.get("elapsed_s"),
-        "mark": differences(right, sums, ("C", "F")) + "".join(f" {ERRATUM} {notes.number(text)}" for text in texts),
+        "mark": differences(right, sums, ("C", "F")) + (f" {ERRATUM} {numbers}" if numbers else ""),
     }
 
 

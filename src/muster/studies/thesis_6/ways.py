@@ -65,7 +65,7 @@ class Ways:
             best = best_of(own, found)
             flight = next(one for one in own if found[one] is best)
             cells = _cells(best, found[_alone(flight)], slice(None))
-            rows.append(row(self.columns, {"plan": f"{ALLOCATOR}, {flight.mission}", "robot": ALL, **cells}))
+            rows.append(row(self.columns, {"plan": f"{ALLOCATOR}, {plan.figure}", "robot": ALL, **cells}))
         return Table(self.number, "Tasks as ways: planned and flown", self.columns, tuple(rows), _NOTES)
 
 
@@ -73,6 +73,7 @@ _NOTES = (
     "places: planned as the thesis does, to the middle of a task and a typed cost there; planned: by the ways of the "
     "tasks, from entry to exit. alone: flown without avoidance, so that no robot is in another's way; flown: with it "
     f"(ORCA). alone %, flown %: against planned. mark: {EQUAL} if alone is within {WITHIN:g} % of planned.",
+    f"{ALLOCATOR}: the own plan of Tables 6.3, 6.7, 6.10 and 6.11 for the tasks of that figure.",
     "places %: flown against places, to be held against Gazebo % and real %, which are what the thesis measured "
     "against what it calculated.",
     "The thesis prints no layout of tasks but patrols of 4 L: those of rasters and observations are assumed "
