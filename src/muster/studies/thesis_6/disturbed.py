@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from statistics import fmean
 
 from muster.simulation import NO_NOISE, Noise
@@ -11,7 +12,7 @@ from muster.studies.effort import Effort
 from muster.studies.tables import Cell, Table
 from muster.studies.thesis_6.flights import ALLOCATOR, Flight, Flown
 from muster.studies.thesis_6.published import PublishedPlan, excess, plans
-from muster.studies.thesis_6.totals import search_iterations
+from muster.studies.thesis_6.totals import search_flights, search_iterations, total_and_greatest
 
 NOISES: Mapping[str, Noise] = {
     "none": NO_NOISE,
@@ -87,22 +88,9 @@ class CapacityReserve:
 
     def _rows(self, effort: Effort) -> Iterator[tuple[tuple[str, str, float], list[Flight]]]:
         """What a row is about, and its flights with all seeds."""
-        for mission in self.missions:
-            for noise in self.noises:
-                for reserve in self.reserves:
-                    yield (
-                        (mission, noise, reserve),
-                        [
-                            Flight(
-                                mission=mission,
-                                iterations=search_iterations(effort),
-                                reserve=reserve,
-                                noise=NOISES[noise],
-                                seed=seed,
-                            )
-                            for seed in range(effort.seed_count)
-                        ],
-                    )
+        for mission, noise, reserve in product(self.missions, self.noises, self.reserves):
+            own = search_flights(effort, mission)
+            yield (mission, noise, reserve), [replace(one, reserve=reserve, noise=NOISES[noise]) for one in own]
 
     def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
         columns = ("mission", "noise", "reserve", "runs", "planned", "again", "moved", "lost in", "lost", "F", "over")
@@ -119,7 +107,6 @@ class CapacityReserve:
 
 
 def _reserve_cells(runs: Sequence[Flown]) -> tuple[Cell, ...]:
-    values = [value for flown in runs if (value := flown.planned.value("total+max")) is not None]
     return (
         len(runs),
         fmean(flown.planned.tasks_completed for flown in runs),
@@ -127,6 +114,6 @@ def _reserve_cells(runs: Sequence[Flown]) -> tuple[Cell, ...]:
         sum(flown.moved for flown in runs),
         sum(flown.lost > 0 for flown in runs),
         sum(flown.lost for flown in runs),
-        fmean(values),
+        fmean(total_and_greatest([route.usage for route in flown.planned.routes])[1] for flown in runs),
         sum(flown.over for flown in runs),
     )

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any
 
 from muster._api import solve
-from muster._carrying_out import carry_out
+from muster._carrying_out import Recorder, carry_out
 from muster.execution.report import Report
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
@@ -89,7 +89,7 @@ class Flown:
         )
 
 
-def fly(flight: Flight, recorder: Any = None) -> Flown:
+def fly(flight: Flight) -> Flown:
     """Carry a plan out.
 
     Raises
@@ -97,14 +97,24 @@ def fly(flight: Flight, recorder: Any = None) -> Flown:
     MusterError
         if the judge rejects the plan.
     """
-    mission = mission_with(flight)
-    plan, verdict, planning_s = _planned(replace(flight, avoidance="none", noise=NO_NOISE))
-    changes = _Changes() if recorder is None else recorder
-    report = carry_out(
-        mission, plan, seed=flight.seed, avoidance=flight.avoidance, noise=flight.noise, recorder=changes
-    )
-    capacities = tuple(None if "capacity" in flight.ignored else robot.work_capacity for robot in mission.robots)
-    return Flown(verdict, report, capacities, changes.moved if recorder is None else 0, planning_s)
+    changes = _Changes()
+    report = carried_out(flight, changes)
+    _, verdict, planning_s = _planned(_on_paper(flight))
+    free = "capacity" in flight.ignored
+    capacities = tuple(None if free else robot.work_capacity for robot in mission_named(flight.mission).robots)
+    return Flown(verdict, report, capacities, changes.moved, planning_s)
+
+
+def carried_out(flight: Flight, recorder: Recorder) -> Report:
+    """Carry a plan out, and have it recorded.
+
+    Raises
+    ------
+    MusterError
+        if the judge rejects the plan.
+    """
+    mission, (plan, _, _) = mission_with(flight), _planned(_on_paper(flight))
+    return carry_out(mission, plan, seed=flight.seed, avoidance=flight.avoidance, noise=flight.noise, recorder=recorder)
 
 
 def mission_with(flight: Flight) -> Mission:
@@ -113,9 +123,14 @@ def mission_with(flight: Flight) -> Mission:
     return replace(mission, rules=replace(mission.rules, capacity_reserve=flight.reserve))
 
 
+def _on_paper(flight: Flight) -> Flight:
+    """A flight without what makes no difference to its plan."""
+    return replace(flight, avoidance="none", noise=NO_NOISE)
+
+
 @lru_cache(maxsize=1000)
 def _planned(flight: Flight) -> tuple[Plan, Verdict, float]:
-    """The plan of a flight, and what the judge says of it; how it is flown makes no difference."""
+    """The plan of a flight, what the judge says of it, and the processor time of planning; made once."""
     mission, begin = mission_with(flight), time.process_time()
     if flight.routes is None:
         plan = solve(mission, ALLOCATOR, seed=flight.seed, iterations=flight.iterations, ignore=flight.ignored)

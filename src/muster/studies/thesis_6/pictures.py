@@ -9,7 +9,7 @@ from muster.report import save_figure
 from muster.report.flown import plot_flown
 from muster.report.record import RecordWriter, read_record
 from muster.studies.effort import Effort
-from muster.studies.thesis_6.flights import Flight, fly, mission_with
+from muster.studies.thesis_6.flights import Flight, carried_out, mission_with
 from muster.studies.thesis_6.published import plans
 from muster.studies.thesis_6.ways import Ways
 
@@ -33,5 +33,5 @@ def _draw(flight: Flight, path: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "record.mcap"
         with RecordWriter(record, mission_with(flight)) as recorder:
-            fly(flight, recorder)
+            carried_out(flight, recorder)
         save_figure(plot_flown(read_record(record)), path)
