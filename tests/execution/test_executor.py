@@ -6,7 +6,7 @@ from tests.execution.world import World, carry_out
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.changes import FAILED, SILENT, STUCK
-from muster.execution.doing import plain
+from muster.execution.doing import acted, plain
 from muster.execution.executor import Executor
 from muster.execution.hand import Activity
 from muster.execution.monitor import Limits
@@ -55,7 +55,7 @@ def test_shipped_missions_are_carried_out_as_planned(name):
     world, step = World(mission), verdict.makespan_s / 2000
     roads = None if mission.map is None else Roads.of(mission)
     travel = None if roads is None else OverMap(roads)
-    executor = Executor(mission, plan, world.ports, way=way_of(mission, roads), travel=travel)
+    executor = Executor(mission, plan, world.ports, doing=acted, way=way_of(mission, roads), travel=travel)
     carry_out(executor, world, step=step, until=3 * verdict.makespan_s + 100)
     ledger = executor.ledger
     assert executor.done

@@ -19,8 +19,11 @@ from muster.mission.yaml_writer import yaml_text
 INSTANCES = {"berlin52": 52, "eil51": 51, "eil76": 76}
 COUNTS = {  # robots, tasks
     "6T-2R": (2, 6),
+    "6T-2R-actions": (2, 6),
     "11T-2R": (2, 11),
+    "11T-2R-actions": (2, 11),
     "16T-3R": (3, 16),
+    "16T-3R-actions": (3, 16),
     "24T-5R": (5, 24),
     "31T-2R65-4R25": (6, 31),
     "31T-2R65-4R25-as-run": (6, 31),
@@ -29,6 +32,7 @@ COUNTS = {  # robots, tasks
     "31T-6R": (6, 31),
     "31T-6R-as-run": (6, 31),
     "31T-6R50": (6, 31),
+    "31T-6R50-actions": (6, 31),
     "31T-6R50-as-run": (6, 31),
     "auction-1": (2, 6),
     "auction-2": (5, 20),

@@ -84,7 +84,7 @@ def test_comparison(market_tables):
 
 
 def test_given_iterations_are_those_of_all_allocators():
-    cases = [case for case in Comparison().cases(Effort(iterations=7)) if case.random]
+    cases = [case for case in Comparison().jobs(Effort(iterations=7)) if case.random]
     assert [(case.allocator, case.iterations) for case in cases] == [
         ("market", 7),
         ("greedy+genetic", 7),

@@ -44,7 +44,7 @@ class Allocation:
     number: str = "Figure 5"
     columns: tuple[str, ...] = ("robot", "values", "survivors", "runs", "mark")
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         yield _case(effort)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
@@ -80,7 +80,7 @@ class TimeChart:
     number: str = "Figure 6"
     columns: tuple[str, ...] = ("robot", "values", "A", "B", "A + B", "chart", "mark")
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         yield _case(effort)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
