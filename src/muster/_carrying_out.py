@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from muster.execution import Executor, Reallocation, report_of, travel_of, way_of
 from muster.execution.doing import acted
@@ -31,11 +31,19 @@ class Recorder(Protocol):
     def on_report(self, report: dict[str, Any]) -> None: ...
 
 
+@runtime_checkable
+class Listener(Protocol):
+    """A recorder that hears, besides, what robots say of themselves; where they truly are is in the steps."""
+
+    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None: ...
+
+
 class _Told:
-    """Passes on what the executor tells; telemetry is in the world's steps already."""
+    """Passes on what the executor tells."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
+        self._listener = recorder if isinstance(recorder, Listener) else None
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         self._recorder.on_event(now, kind, dict(data))
@@ -43,7 +51,8 @@ class _Told:
             self._recorder.on_event(now, "lost", {"task": task, "reason": reason})
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        pass
+        if self._listener is not None:
+            self._listener.on_telemetry(now, robot, telemetry)
 
     def on_plan(self, now: float, plan: Plan) -> None:
         self._recorder.on_plan(now, plan)

@@ -27,14 +27,16 @@ def paper() -> Mapping[str, Any]:
     return published("market-rescue")
 
 
-def _allocation() -> Mapping[str, tuple[str, ...]]:
+def printed_allocation() -> Mapping[str, tuple[str, ...]]:
+    """By robot the survivors that the paper's Figure 5 gives it."""
     routes = paper()["tables"]["Figure 5"]["plans"][0]["routes"]
     return {robot: tuple(route["tasks"]) for robot, route in routes.items()}
 
 
-def _case(effort: Effort) -> Case:
+def market_case(effort: Effort, mission: str = "market-rescue") -> Case:
+    """The market on a mission of the scenario."""
     iterations = ITERATIONS if effort.iterations is None else effort.iterations
-    return Case(mission="market-rescue", allocator="market", objective="max", iterations=iterations)
+    return Case(mission=mission, allocator="market", objective="max", iterations=iterations)
 
 
 @dataclass(frozen=True)
@@ -42,15 +44,16 @@ class Allocation:
     """Figure 5: which survivors each robot does."""
 
     number: str = "Figure 5"
+    mission: str = "market-rescue"
     columns: tuple[str, ...] = ("robot", "values", "survivors", "runs", "mark")
 
     def cases(self, effort: Effort) -> Iterator[Case]:
-        yield _case(effort)
+        yield market_case(effort, self.mission)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
-        sample, rows = samples[_case(effort)], []
+        sample, rows = samples[market_case(effort, self.mission)], []
         for route in sample.best.verdict.routes:
-            there = _allocation()[route.robot]
+            there = printed_allocation()[route.robot]
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "survivors": there}))
             runs = sum(set(_tasks(outcome.verdict.routes, route.robot)) == set(there) for outcome in sample.outcomes)
             cells: dict[str, Cell] = {
@@ -81,12 +84,12 @@ class TimeChart:
     columns: tuple[str, ...] = ("robot", "values", "A", "B", "A + B", "chart", "mark")
 
     def cases(self, effort: Effort) -> Iterator[Case]:
-        yield _case(effort)
+        yield market_case(effort)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
-        verdict, rows = samples[_case(effort)].best.verdict, []
+        verdict, rows = samples[market_case(effort)].best.verdict, []
         for route in verdict.routes:
-            there = _execution_s(route.robot)
+            there = execution_s(route.robot)
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "B": there}))
             cells: dict[str, Cell] = {"A": route.travel, "B": route.work, "A + B": route.usage, "chart": chart(route)}
             mark = EQUAL if equal(there, route.work) else f"B {route.work - there:+.2f}"
@@ -107,10 +110,10 @@ class TimeChart:
         return Table(self.number, "Time chart of the allocation", self.columns, tuple(rows), notes)
 
 
-def _execution_s(robot: str) -> float:
+def execution_s(robot: str) -> float:
     """B of the paper's allocation, from its execution times and aging factor."""
     model = paper()["tables"]["Figure 3"]
-    minutes = sum(model["tasks"][task]["time_required_min"] for task in _allocation()[robot])
+    minutes = sum(model["tasks"][task]["time_required_min"] for task in printed_allocation()[robot])
     return float(60 * minutes / model["robots"][robot]["aging_factor"])
 
 
