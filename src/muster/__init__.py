@@ -7,6 +7,8 @@ plan = muster.solve(mission, time_limit=1.0)
 assert muster.verify(mission, plan).valid
 """
 
+from typing import TYPE_CHECKING, Any
+
 from muster._api import load, plot, simulate, solve, verify
 from muster.mission.errors import (
     Finding,
@@ -18,10 +20,14 @@ from muster.mission.errors import (
     ParameterError,
     PlanError,
 )
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route, read_plan
 
+if TYPE_CHECKING:
+    from muster._carrying_out import Simulation
+
 __all__ = [
+    "Event",
     "Finding",
     "InputError",
     "MissingExtraError",
@@ -35,6 +41,7 @@ __all__ = [
     "Robot",
     "Route",
     "Rules",
+    "Simulation",
     "Task",
     "load",
     "plot",
@@ -45,7 +52,11 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> str:
+def __getattr__(name: str) -> Any:
+    if name == "Simulation":  # carrying out is imported when it is wanted
+        from muster._carrying_out import Simulation
+
+        return Simulation
     if name == "__version__":
         from importlib.metadata import version
 

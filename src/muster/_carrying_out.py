@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Protocol
 
-from muster.execution import Executor, Reallocation, report_of, travel_of, way_of
+from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.execution.doing import acted
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.port import Telemetry
 from muster.motion.roads import Roads
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
+from muster.verification import verify
 
 if TYPE_CHECKING:
+    from muster.execution.executor import Happening
     from muster.execution.report import Report
     from muster.motion.grid import Floats
 
@@ -22,54 +24,15 @@ LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
 
 
-class Recorder(Protocol):
-    """Who keeps what happens; see `muster.report.record.RecordWriter`."""
+class Recorder(Observer, Protocol):
+    """Who keeps what happens, and where the bodies truly are; see `muster.report.record.RecordWriter`."""
 
-    def on_plan(self, now: float, plan: Plan) -> None: ...
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None: ...
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None: ...
     def on_report(self, report: dict[str, Any]) -> None: ...
 
 
-@runtime_checkable
-class Listener(Protocol):
-    """A recorder that hears, besides, what robots say of themselves; where they truly are is in the steps."""
-
-    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None: ...
-
-
-class _Told:
-    """Passes on what the executor tells."""
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-        self._listener = recorder if isinstance(recorder, Listener) else None
-
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        self._recorder.on_event(now, kind, dict(data))
-        for task, reason in data.get("lost", {}).items() if kind == "mission-ended" else ():
-            self._recorder.on_event(now, "lost", {"task": task, "reason": reason})
-
-    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        if self._listener is not None:
-            self._listener.on_telemetry(now, robot, telemetry)
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        self._recorder.on_plan(now, plan)
-
-
-def carry_out(
-    mission: Mission,
-    plan: Plan,
-    *,
-    seed: int = 0,
-    dt_s: float = 0.1,
-    avoidance: str = "orca",
-    noise: Noise = NO_NOISE,
-    speed: float | None = None,
-    recorder: Recorder | None = None,
-) -> Report:
-    """Carry a plan out in the kinematic world, with the mission's events, until all robots are done.
+class Simulation:
+    """A plan that is being carried out in the kinematic world, with the mission's events, as far as time is let go on.
 
     Parameters
     ----------
@@ -77,59 +40,141 @@ def carry_out(
         of the world and of planning anew.
     dt_s
         step of the world in seconds.
-    speed
-        how many times as fast as the wall clock; None: as fast as it goes.
+    avoidance
+        how robots pass each other: orca, rvo, hrvo or none.
+    noise
+        of motion and telemetry.
+    recorder
+        is told all that happens.
 
     Raises
     ------
     ParameterError
         if the plan names what the mission does not have, or a parameter is out of range.
     """
-    roads = Roads.of(mission) if mission.travel_rule == "map" else None
-    travel = travel_of(mission, roads)
-    world = KinematicWorld(
-        mission,
-        seed=seed,
-        dt_s=dt_s,
-        avoidance=avoidance,
-        noise=noise,
-        observer=None if recorder is None else recorder.on_step,
-        observe_s=0.0 if recorder is None else 0.1,
-    )
-    executor = Executor(
-        mission,
-        plan,
-        world.ports,
-        doing=acted,
-        way=way_of(mission, roads),
-        travel=travel,
-        replan=Reallocation(travel=travel, seed=seed),
-        observer=None if recorder is None else _Told(recorder),
-        now=world.time_s,
-    )
-    ahead = sorted(mission.events, key=lambda event: event.at_s)
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        *,
+        seed: int = 0,
+        dt_s: float = 0.1,
+        avoidance: str = "orca",
+        noise: Noise = NO_NOISE,
+        recorder: Recorder | None = None,
+    ) -> None:
+        roads = Roads.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, roads)
+        self._world = KinematicWorld(
+            mission,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
+            observer=None if recorder is None else recorder.on_step,
+            observe_s=0.0 if recorder is None else 0.1,
+        )
+        self._executor = Executor(
+            mission,
+            _with_objective(mission, plan),
+            self._world.ports,
+            doing=acted,
+            way=way_of(mission, roads),
+            travel=travel,
+            replan=Reallocation(travel=travel, seed=seed),
+            observer=recorder,
+            now=self._world.time_s,
+        )
+        self._recorder = recorder
+        self._ahead = sorted(mission.events, key=lambda event: event.at_s)
+        self._executor.tick(self.time_s)
+
+    @property
+    def time_s(self) -> float:
+        """The mission's clock."""
+        return self._world.time_s
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self._executor.done
+
+    @property
+    def plan(self) -> Plan:
+        """The plan of the whole mission as it is now, without figures: what each robot did, does and will do."""
+        return self._executor.plan
+
+    @property
+    def positions(self) -> dict[str, tuple[float, ...]]:
+        """Where robots say that they are, metres: those that were heard."""
+        heard = {name: port.telemetry() for name, port in self._world.ports.items()}
+        return {name: said.position for name, said in heard.items() if said is not None}
+
+    def advance(self, until_s: float) -> Sequence[Happening]:
+        """Go on until something happens, until the mission is over, or up to a time; returns what happened."""
+        first = len(self._executor.happenings)
+        while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
+            self._world.advance(min([until_s, self.time_s + LOOK_S, *(event.at_s for event in self._ahead[:1])]))
+            while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
+                self._befalls(self._ahead.pop(0))
+            self._executor.tick(self.time_s)
+            if self.done and self._recorder is not None:
+                self._recorder.on_report(self.result().as_dict())
+        return self._executor.happenings[first:]
+
+    def report(self, event: Event) -> None:
+        """Let something happen now that the mission file did not foresee; its `at_s` does not count.
+
+        Raises
+        ------
+        ParameterError
+            if the event names a robot or task that there is not, or one anew that there is.
+        """
+        if event.robot_joins is not None:
+            self._befalls(event)  # the executor asks for its port
+            self._executor.report(event)
+        else:
+            self._executor.report(event)
+            self._befalls(event)
+
+    def result(self) -> Report:
+        """What it took, so far or in all."""
+        world = self._world
+        return report_of(self._executor, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+
+    def _befalls(self, event: Event) -> None:
+        """What an event does to bodies; what it does to the plan is the executor's affair."""
+        if event.robot_fails is not None:
+            self._world.fail(event.robot_fails)
+        elif event.robot_silent is not None:
+            self._world.silence(event.robot_silent)
+        elif event.robot_returns is not None:
+            self._world.recover(event.robot_returns)
+        elif event.robot_joins is not None:
+            self._world.join(event.robot_joins)
+
+
+def _with_objective(mission: Mission, plan: Plan) -> Plan:
+    """A plan from elsewhere may not tell its objective: then as the judge has it."""
+    if plan.objective_value is not None:
+        return plan
+    verdict = verify(mission, plan)
+    return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
+
+
+def carry_out(mission: Mission, plan: Plan, *, speed: float | None = None, **how: Any) -> Report:
+    """Carry a plan out to its end; see `Simulation`.
+
+    Parameters
+    ----------
+    speed
+        how many times as fast as the wall clock; None: as fast as it goes.
+    """
+    simulation = Simulation(mission, plan, **how)
     begin = time.monotonic()
-    executor.tick(world.time_s)
-    while not executor.done:
-        world.advance(min([world.time_s + LOOK_S, *(event.at_s for event in ahead[:1])]))
-        while ahead and ahead[0].at_s <= world.time_s + 1e-9:
-            _happens(world, ahead.pop(0))
-        executor.tick(world.time_s)
+    while not simulation.done:
+        simulation.advance(simulation.time_s + LOOK_S)
         if speed is not None:
-            time.sleep(max(0.0, begin + world.time_s / speed - time.monotonic()))
-    report = report_of(executor, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-    if recorder is not None:
-        recorder.on_report(report.as_dict())
-    return report
-
-
-def _happens(world: KinematicWorld, event: Event) -> None:
-    """What an event does to bodies; what it does to the plan is the executor's affair."""
-    if event.robot_fails is not None:
-        world.fail(event.robot_fails)
-    elif event.robot_silent is not None:
-        world.silence(event.robot_silent)
-    elif event.robot_returns is not None:
-        world.recover(event.robot_returns)
-    elif event.robot_joins is not None:
-        world.join(event.robot_joins)
+            time.sleep(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+    return simulation.result()

@@ -2,6 +2,9 @@
 
 import json
 import re
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -65,6 +68,7 @@ def test_what_is_printed_for_programs(muster):
     assert list(data) == [
         "mission_time_s", "tasks_done", "tasks_lost", "contacts", "min_distance_m", "waiting_s", "reallocations",
         "robots", "starts_s", "ends_s",
+        "objective", "tasks",
     ]  # fmt: skip
     assert len(data["tasks_done"]) == 31
     assert data["tasks_lost"] == []
@@ -85,7 +89,7 @@ def test_for_people(muster):
     code, out, err = muster("simulate", "16T-3R", "--iterations", "300")
     assert (code, err) == (0, "")
     assert "tasks done        16 of 16" in out
-    assert re.search(r"mission time +\d+\.\d s", out)
+    assert re.search(r"mission time +\d+\.\d\d s", out)
 
 
 def test_a_plan_record_page_and_picture(muster, tmp_path, monkeypatch):
@@ -121,3 +125,71 @@ def test_bad_input(muster, arguments, message):
     code, out, err = muster("simulate", "16T-3R", *arguments)
     assert (code, out) == (2, "")
     assert message in err
+
+
+def test_noise_wears_robots_down_by_its_seed(muster):
+    noisy = [answer(muster, "6T-2R", "--noise", "slip=0.2", "--seed", seed) for seed in ("1", "1", "2")]
+    assert noisy[0] == noisy[1] != noisy[2]
+    for robot in noisy[0]["robots"]:
+        assert robot["usage_flown"] > 1.05 * robot["usage_planned"]
+
+
+@pytest.mark.parametrize(
+    ("noise", "message"),
+    [
+        (["slip=x"], "--noise: slip=x; expected a number after slip="),
+        (
+            ["wind=1"],
+            "--noise: wind=1; expected each of velocity, slip, odometry, position_m, heading_rad",
+        ),
+        (["slip=0", "slip=0"], "--noise: slip=0; expected each of"),
+        (["slip=2"], "slip: 2.0; expected at most 1"),
+    ],
+)
+def test_noise_that_is_none(muster, noise, message):
+    code, out, err = muster("simulate", "6T-2R", *(part for text in noise for part in ("--noise", text)))
+    assert (code, out) == (2, "")
+    assert message in err
+
+
+def test_each_task_when_asked_for(muster):
+    code, out, _ = muster("simulate", "6T-2R", "--iterations", "300", "-v")
+    rows = [line.split() for line in out.splitlines()]
+    assert code == 0
+    assert sorted(row[0] for row in rows if len(row) == 9 and row[1].startswith("r_")) == list("012345")
+
+
+def test_the_record_of_events_is_read_again(muster, eventful, tmp_path):
+    """Robots that join and tasks that appear are in the record as the executor tells of them."""
+    joins = EVENTFUL + "  - {at_s: 6, robot_joins: {id: c, position: [0, 9]}}\n"
+    mission = tmp_path / "joins.yaml"
+    mission.write_text(joins, encoding="utf-8")
+    record = str(tmp_path / "r.mcap")
+    report = answer(muster, str(mission), "--record", record)
+    code, out, err = muster("replay", record, "--format", "json")
+    assert (code, err) == (0, "")
+    data = json.loads(out)
+    assert data["report"] == report
+    kinds = [event["kind"] for event in data["events"]]
+    assert {"robot_fails", "new_task", "cancel_task", "robot_joins", "replanned", "lost"} <= set(kinds)
+    assert [row["robot"] for row in data["robots"]] == ["a", "b", "c"]
+
+
+@pytest.mark.parametrize("after_s", [0.5, 1.0, 1.7])
+def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, after_s):
+    """The point of the record: what was carried out up to there can be looked at."""
+    record = tmp_path / "killed.mcap"
+    command = [sys.executable, "-m", "muster.cli", "simulate", "6T-2R", "--speed", "4", "--record", str(record)]
+    process = subprocess.Popen([*command, "--iterations", "10"], stdout=subprocess.DEVNULL)
+    begin = time.monotonic()
+    while not (record.exists() and record.stat().st_size > 2000) and time.monotonic() < begin + 60:
+        time.sleep(0.02)
+    time.sleep(after_s)
+    process.kill()
+    process.wait()
+    code, out, err = muster("replay", str(record), "--format", "json")
+    data = json.loads(out)
+    assert (code, data["complete"], data["report"]) == (0, False, None)
+    assert data["duration_s"] >= 4 * (after_s - 1.5)
+    assert "breaks off" in err
+    assert [row["poses"] > 0 for row in data["robots"]] == [True, True]

@@ -15,6 +15,6 @@ def test_missions_are_carried_out_whatever_happens(first):
     assert [f"seed {report.seed}: {failure}" for report in reports for failure in report.failures] == []
     counts = sum((report.counts for report in reports), Counter())
     assert counts["missions"] == PART
-    told = ("ends", "replanned", "moved", "lost", "new-task", "cancel-task", "move-task", "delay-task")
-    for kind in (*told, "robot-failed", "robot-silent", "robot-returns", "robot-joins"):
+    told = ("ends", "replanned", "moved", "lost", "new_task", "cancel_task", "move_task", "delay_task")
+    for kind in (*told, "robot_fails", "robot_silent", "robot_returns", "robot_joins"):
         assert counts[kind] > 0, kind

@@ -45,10 +45,10 @@ class Watcher:
     def on_event(self, now, kind, data):
         self.report.counts[kind] += 1
         self.report.happened.append(f"{now:8.2f}  {kind}  {data}")
-        if kind in ("robot-failed", "robot-silent", "robot-stuck"):
-            self.out.add(data["subject"])
-        elif kind == "robot-returns":
-            self.out.discard(data["subject"])
+        if kind in ("robot_fails", "robot_silent", "robot_stuck"):
+            self.out.add(data["robot"])
+        elif kind == "robot_returns":
+            self.out.discard(data["robot"])
         elif kind == "starts":
             self._begins(data["task"], data["robot"], now)
         elif kind == "ends":
@@ -116,7 +116,7 @@ def _afterwards(report, mission, executor, watcher):
     ledger, lost = executor.ledger, executor.lost()
     report.check(executor.done, f"not over after {LONGEST_S} s")
     known = {task.id for task in mission.tasks} | {e.new_task.id for e in mission.events if e.new_task}
-    refused = report.counts["event-refused"]
+    refused = report.counts["event_refused"]
     report.check(set(ledger.tasks) == known or refused, f"tasks {known - set(ledger.tasks)} never appeared")
     report.check(set(ledger.ends_s) | set(lost) == set(ledger.tasks), "a task is neither done nor lost")
     report.check(not set(ledger.ends_s) & set(lost), f"{set(ledger.ends_s) & set(lost)} both done and lost")
@@ -136,6 +136,5 @@ def _afterwards(report, mission, executor, watcher):
     report.counts["missions"] += 1
     report.counts["tasks"] += len(ledger.tasks)
     report.counts["done"] += len(ledger.ends_s)
-    report.counts["lost"] += len(lost)
     for why in lost.values():
         report.counts[f"lost: {why.split(':')[0].split(' at ')[0][:30]}"] += 1

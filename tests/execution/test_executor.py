@@ -152,9 +152,9 @@ def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
     events = [Event(at_s=2, robot_silent="r_0"), Event(at_s=20, robot_returns="r_0")]
     mission = line(40.0, 60.0, robots=2, events=events)
     executor = carried_out(mission, plan_of(r_0=["0", "1"]), limits=Limits(silent_after_s=5))
-    noticed = next(h.at_s for h in executor.happenings if h.kind == f"robot-{SILENT}")
+    noticed = next(h.at_s for h in executor.happenings if h.kind == SILENT)
     assert noticed == pytest.approx(7, abs=0.21)
-    assert "robot-returns" in kinds(executor)
+    assert "robot_returns" in kinds(executor)
     assert sorted(executor.ledger.ends_s) == ["0", "1"]
     assert kinds(executor).count("ends") == 2
 
@@ -166,7 +166,7 @@ def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():
     executor = Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=10))
     carry_out(executor, world)
     assert executor.crew["r_0"].out == STUCK
-    assert [h.at_s for h in executor.happenings if h.kind == "robot-sent-again"] == [pytest.approx(10.5, abs=0.6)]
+    assert [h.at_s for h in executor.happenings if h.kind == "robot_sent_again"] == [pytest.approx(10.5, abs=0.6)]
     assert executor.crew["r_1"].done == ["0"]
 
 
@@ -204,7 +204,7 @@ def test_what_no_longer_fits_after_detours_goes_to_another_or_is_lost():
     executor = carry_out(Executor(mission, plan_of(r_0=["0", "1"]), world.ports), world)
     assert executor.crew["r_0"].done == ["0"]
     assert executor.crew["r_1"].done == ["1"]
-    assert "robot-runs-low" in kinds(executor)
+    assert "robot_runs_low" in kinds(executor)
     alone = Mission(robots=robots[:1], tasks=tasks)
     world = Detours(alone)
     executor = carry_out(Executor(alone, plan_of(r_0=["0", "1"]), world.ports), world)

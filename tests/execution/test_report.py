@@ -8,10 +8,10 @@ from tests.execution.world import World, carry_out
 from muster import Mission, Plan, Robot, Route, Task
 from muster.execution.executor import Executor
 from muster.execution.report import report_of
-from muster.mission.model import Event
+from muster.mission.model import OBJECTIVES, Event
 
 
-def reported(events=(), **numbers):
+def reported(events=(), objective=None, **numbers):
     mission = Mission(
         robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(0, 5))),
         tasks=(
@@ -21,7 +21,7 @@ def reported(events=(), **numbers):
         ),
         events=events,
     )
-    plan = Plan(routes=(Route("a", ("x",)), Route("b", ("y",))))
+    plan = Plan(objective=objective, routes=(Route("a", ("x",)), Route("b", ("y",))))
     world = World(mission)
     executor = carry_out(Executor(mission, plan, world.ports), world, step=0.01)
     return report_of(executor, **({"contacts": 0, "min_distance_m": 3.2} | numbers))
@@ -40,6 +40,8 @@ def test_it_prints_what_the_command_promises():
         "robots",
         "starts_s",
         "ends_s",
+        "objective",
+        "tasks",
     ]
     assert data["tasks_done"] == ["x", "y"]
     assert data["tasks_lost"] == [{"task": "z", "reason": "left out by the plan"}]
@@ -52,6 +54,28 @@ def test_it_prints_what_the_command_promises():
     assert data["ends_s"] == {"x": pytest.approx(8, abs=0.02), "y": pytest.approx(8, abs=0.04)}
     assert data["mission_time_s"] == pytest.approx(8, abs=0.04)
     assert data["waiting_s"] == pytest.approx(5, abs=0.03)
+    assert data["objective"] == {"name": "total+max", "planned": None, "flown": pytest.approx(8 + 3 + 8)}
+    assert data["tasks"] == [
+        {"task": "x", "robot": "a", "usage_planned": 8, "usage_flown": pytest.approx(8), "waiting_s": 0},
+        {
+            "task": "y",
+            "robot": "b",
+            "usage_planned": 3,
+            "usage_flown": pytest.approx(3),
+            "waiting_s": pytest.approx(5, abs=0.03),
+        },
+    ]
+
+
+def test_the_objective_as_it_was_flown():
+    """By hand: a comes to x with 6, b to y with 3; a has used 8 in the end, b 3, and both are done after 8 s."""
+    flown = {name: reported(objective=name).objective for name in OBJECTIVES}
+    assert {name: objective.name for name, objective in flown.items()} == {name: name for name in OBJECTIVES}
+    assert flown["total+max"].flown == pytest.approx(19)
+    assert flown["total"].flown == pytest.approx(11)
+    assert flown["max"].flown == pytest.approx(8)
+    assert flown["average"].flown == pytest.approx(4.5, abs=0.03)
+    assert flown["makespan"].flown == pytest.approx(8, abs=0.04)
 
 
 def test_one_robot_has_no_distance():

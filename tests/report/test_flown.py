@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.report.voyages import carry_out
+from tests.report.voyages import carry_out, shipped
 
 import muster
 from muster.report.flown import plot_flown
@@ -15,7 +15,7 @@ pytest.importorskip("shapely")
 
 @pytest.mark.parametrize("name", ["31T-6R", "floor", "yard"])
 def test_tracks_tasks_and_map(name, tmp_path, drawn):
-    mission = muster.load(name)
+    mission = shipped(name)
     with RecordWriter(tmp_path / "r.mcap", mission) as writer:
         carry_out(mission, muster.solve(mission, "greedy"), writer, dt=0.5, until=10.0)
     recording = read_record(tmp_path / "r.mcap")

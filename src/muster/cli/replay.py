@@ -10,6 +10,8 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import format_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.report_tables import print_report
+from muster.cli.tables import counted, number, print_table
 
 if TYPE_CHECKING:
     from muster.report.record import Recording
@@ -22,21 +24,43 @@ _FILE = click.Path(path_type=Path)
 @click.argument("record", type=_FILE)
 @click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
+@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
 @format_option
 @quiet_option
-def command(record: Path, html: Path | None, plot: Path | None, form: str, quiet: bool, verbose: bool) -> int:
+def command(
+    record: Path, html: Path | None, plot: Path | None, gantt: Path | None, form: str, quiet: bool, verbose: bool
+) -> int:
     """Show the RECORD of a mission that was carried out (MCAP).
 
     A record that breaks off, because what wrote it was killed, is shown up to there. With -v all events are listed.
     """
     from muster.report.record import read_record
 
-    require_writable(None, (html, plot), (record,), ())
-    require_drawable(plot)
+    require_writable(None, (html, plot, gantt), (record,), ())
+    require_drawable(plot, gantt)
     recording = read_record(record)
     if not recording.complete and not quiet:
         until = f"breaks off at {recording.duration_s:.1f} s"
         click.echo(f"warning: {record}: {until}; what is whole is shown", err=True)
+    _show(recording, html, plot, gantt)
+    if form == "json":
+        from muster.mission.plan import json_text
+
+        click.echo(json_text(_answer(recording)), nl=False)
+    else:
+        _print(recording, all_events=verbose)
+    return DONE
+
+
+def show_record(file: Path, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
+    """Write what is wanted of a record's page, picture and time chart."""
+    from muster.report.record import read_record
+
+    if html is not None or plot is not None or gantt is not None:
+        _show(read_record(file), html, plot, gantt)
+
+
+def _show(recording: Recording, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
     if html is not None:
         from muster.report.page import write_page
 
@@ -46,13 +70,11 @@ def command(record: Path, html: Path | None, plot: Path | None, form: str, quiet
         from muster.report.flown import plot_flown
 
         save_figure(plot_flown(recording), plot)
-    if form == "json":
-        from muster.mission.plan import json_text
+    if gantt is not None:
+        from muster.report.files import save_figure
+        from muster.report.flown_gantt import plot_flown_gantt
 
-        click.echo(json_text(_answer(recording)), nl=False)
-    else:
-        _print(recording, all_events=verbose)
-    return DONE
+        save_figure(plot_flown_gantt(recording), gantt)
 
 
 def _answer(recording: Recording) -> dict[str, Any]:
@@ -89,7 +111,6 @@ def _robots(recording: Recording) -> list[dict[str, Any]]:
 
 
 def _print(recording: Recording, *, all_events: bool) -> None:
-    from muster.cli.tables import counted, print_table
     from muster.report.record.messages import event_line
 
     name, duration = recording.mission.name, f"{recording.duration_s:.1f} s"
@@ -102,40 +123,13 @@ def _print(recording: Recording, *, all_events: bool) -> None:
         print_table(("time [s]", "event"), rows, right=("time [s]",))
     if len(shown) < len(recording.events):
         click.echo(f"... and {counted(len(recording.events) - len(shown), 'event')} more; -v lists all\n")
-    _print_report(recording)
+    if recording.report is None:
+        click.echo("no report: the mission did not come to its end")
+    else:
+        print_report(recording.report, recording.mission, with_tasks=all_events)
 
 
 def _print_robots(recording: Recording) -> None:
-    from muster.cli.tables import number, print_table
-
-    usage = {row["robot"]: row for row in (recording.report or {}).get("robots", [])}
-    columns = ("robot", "poses", "travelled [m]", "usage planned", "usage flown")
-    rows = [
-        (
-            row["robot"],
-            str(row["poses"]),
-            number(row["travelled_m"]),
-            number(usage.get(row["robot"], {}).get("usage_planned")),
-            number(usage.get(row["robot"], {}).get("usage_flown")),
-        )
-        for row in _robots(recording)
-    ]
+    columns = ("robot", "poses", "travelled [m]")
+    rows = [(row["robot"], str(row["poses"]), number(row["travelled_m"])) for row in _robots(recording)]
     print_table(columns, rows, right=columns[1:])
-
-
-def _print_report(recording: Recording) -> None:
-    """The figures of the report that are one number or a count."""
-    if recording.report is None:
-        click.echo("no report: the mission did not come to its end")
-        return
-    from muster.cli.tables import number
-
-    for key, value in recording.report.items():
-        if isinstance(value, list) and key.startswith("tasks"):
-            click.echo(f"{key}: {len(value)}")
-            for lost in [one for one in value if isinstance(one, dict)]:
-                click.echo(f"  {lost.get('task')}: {lost.get('reason')}")
-        elif isinstance(value, float):
-            click.echo(f"{key}: {number(value)}")
-        elif value is None or isinstance(value, int | str):
-            click.echo(f"{key}: {'-' if value is None else value}")

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import tempfile
 from contextlib import nullcontext
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE
 from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, require_complete_option
 from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.replay import show_record
+from muster.cli.report_tables import print_report
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
     from muster.execution.report import Report
+    from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
@@ -40,9 +45,13 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option(
     "--speed", type=click.FloatRange(min=0, min_open=True), metavar="X", help="X times real time.  [default: at once]"
 )
+@click.option(
+    "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
+)
 @click.option("--record", type=_FILE, metavar="FILE", help="Write a record of it (.mcap), for `muster replay`.")
 @click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
+@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
 @require_complete_option
 @format_option
 @quiet_option
@@ -60,9 +69,11 @@ def command(
     avoidance: str,
     dt: float,
     speed: float | None,
+    noises: tuple[str, ...],
     record: Path | None,
     html: Path | None,
     plot: Path | None,
+    gantt: Path | None,
     require_complete: bool,
     form: str,
     quiet: bool,
@@ -72,19 +83,20 @@ def command(
 
     Robots keep their speeds and go around each other; the mission's events happen, and what is left is planned again.
     """
-    require_writable(None, (record, html, plot), (mission, robots, suitability), (plan,))
-    require_drawable(plot)
+    require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
+    require_drawable(plot, gantt)
+    noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     planned = _plan(loaded, plan, seed, time_limit, iterations)
-    with tempfile.TemporaryDirectory() if record is None and (html or plot) else nullcontext() as folder:
+    with tempfile.TemporaryDirectory() if record is None and (html or plot or gantt) else nullcontext() as folder:
         file = record if folder is None else Path(folder) / "record.mcap"
-        report = _carried_out(loaded, planned, file, seed=seed, dt_s=dt, avoidance=avoidance, speed=speed)
+        report = _carried_out(loaded, planned, file, seed=seed, dt_s=dt, avoidance=avoidance, noise=noise, speed=speed)
         if file is not None:
-            _show(file, html, plot)
+            show_record(file, html, plot, gantt)
     if form == "json":
         click.echo(json_text(report.as_dict()), nl=False)
     else:
-        _print(loaded, report)
+        print_report(report.as_dict(), loaded, with_tasks=verbose)
     return INCOMPLETE if require_complete and report.tasks_lost else DONE
 
 
@@ -96,64 +108,28 @@ def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, ite
     return solve(mission, seed=seed, time_limit=None if iterations is not None else time_limit, iterations=iterations)
 
 
-def _carried_out(
-    mission: Mission, plan: Plan, file: Path | None, *, seed: int, dt_s: float, avoidance: str, speed: float | None
-) -> Report:
+def _noise(noises: tuple[str, ...]) -> Noise:
+    from muster.simulation import Noise
+
+    kinds = [field.name for field in fields(Noise)]
+    amounts: dict[str, float] = {}
+    for text in noises:
+        kind, _, amount = text.partition("=")
+        if kind not in kinds or kind in amounts:
+            raise ParameterError(f"--noise: {text}; expected each of {', '.join(kinds)} at most once, =AMOUNT")
+        try:
+            amounts[kind] = float(amount)
+        except ValueError:
+            raise ParameterError(f"--noise: {text}; expected a number after {kind}=") from None
+    return Noise(**amounts)
+
+
+def _carried_out(mission: Mission, plan: Plan, file: Path | None, **how: Any) -> Report:
     from muster._carrying_out import carry_out
 
     if file is None:
-        return carry_out(mission, plan, seed=seed, dt_s=dt_s, avoidance=avoidance, speed=speed)
+        return carry_out(mission, plan, **how)
     from muster.report.record import RecordWriter
 
     with RecordWriter(file, mission) as recorder:
-        return carry_out(mission, plan, seed=seed, dt_s=dt_s, avoidance=avoidance, speed=speed, recorder=recorder)
-
-
-def _show(file: Path, html: Path | None, plot: Path | None) -> None:
-    from muster.report.record import read_record
-
-    if html is None and plot is None:
-        return
-    recording = read_record(file)
-    if html is not None:
-        from muster.report.page import write_page
-
-        write_page(html, recording)
-    if plot is not None:
-        from muster.report.files import save_figure
-        from muster.report.flown import plot_flown
-
-        save_figure(plot_flown(recording), plot)
-
-
-def _print(mission: Mission, report: Report) -> None:
-    from muster.cli.tables import counted, print_table
-
-    unit = "s" if mission.rules.usage == "time" else "m"
-    rows = [
-        (
-            robot.robot,
-            f"{robot.usage_planned:.2f}",
-            f"{robot.usage_flown:.2f}",
-            _excess(robot.usage_planned, robot.usage_flown),
-        )
-        for robot in report.robots
-    ]
-    columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
-    print_table(columns, rows, title=f"{mission.name}: carried out", right=columns[1:])
-    least = "-" if report.min_distance_m is None else f"{report.min_distance_m:.2f} m"
-    done, lost = len(report.tasks_done), len(report.tasks_lost)
-    for name, value in (
-        ("mission time", f"{report.mission_time_s:.1f} s"),
-        ("tasks done", f"{done} of {done + lost}"),
-        ("waiting", f"{report.waiting_s:.1f} s"),
-        ("least distance", f"{least}, {counted(report.contacts, 'contact')}"),
-        ("planned again", counted(report.reallocations, "time")),
-    ):
-        click.echo(f"{name:<17} {value}")
-    if report.tasks_lost:
-        print_table(("task lost", "reason"), report.tasks_lost)
-
-
-def _excess(planned: float, flown: float) -> str:
-    return f"{100 * (flown / planned - 1):+.1f} %" if planned > 0 else "-"
+        return carry_out(mission, plan, recorder=recorder, **how)

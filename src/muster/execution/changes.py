@@ -13,22 +13,27 @@ from muster.execution.travel import Travel
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.yaml_writer import plain
 from muster.motion.port import RobotPort
 
-FAILED, SILENT, STUCK = "failed", "silent", "stuck"
+FAILED, SILENT, STUCK = "robot_fails", "robot_silent", "robot_stuck"
 """Why a robot is out."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Something that asks for a new plan: what, and of which robot or task."""
+    """Something that asks for a new plan.
+
+    Parameters
+    ----------
+    kind
+        what: as in a mission file's `events`, or what else it is.
+    data
+        of which robot or task, as in a mission file, and plain.
+    """
 
     kind: str
-    subject: str
-    detail: str = ""
-
-    def as_dict(self) -> dict[str, Any]:
-        return {"kind": self.kind, "subject": self.subject, "detail": self.detail}
+    data: Mapping[str, Any]
 
 
 @dataclass
@@ -82,14 +87,14 @@ class Changes:
         if hand.route:
             self.ledger.give_up(hand.route[0])
         hand.stop(now)
-        yield Change(f"robot-{why}", hand.robot.id, detail)
+        yield Change(why, {"robot": hand.robot.id} | ({"reason": detail} if detail else {}))
 
     def take_back(self, hand: Hand, now: float) -> Iterator[Change]:
         """A robot takes part again, from where it is."""
         if hand.out:
             hand.out, hand.heard_s, hand.stuck_before = "", now, False
             hand.stop(now)
-            yield Change("robot-returns", hand.robot.id)
+            yield Change("robot_returns", {"robot": hand.robot.id})
 
     def _join(self, robot: Robot, now: float) -> Change:
         if robot.id in self.crew:
@@ -97,13 +102,13 @@ class Changes:
         if not self.travel.knows(robot.id):
             raise ParameterError(f"robot_joins: {shown(robot.id)}; expected a robot with rows in the travel tables")
         self.crew[robot.id] = new_hand(self.mission, robot, self.ports, now)
-        return Change("robot-joins", robot.id)
+        return Change("robot_joins", {"robot": plain(robot)})
 
     def _add(self, task: Task) -> Change:
         if task.id in self.ledger.tasks:
             raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
         self.ledger.tasks[task.id] = task
-        return Change("new-task", task.id)
+        return Change("new_task", {"task": plain(task)})
 
     def _cancel(self, task: str, now: float) -> Iterator[Change]:
         if task in self.ledger.ends_s or task in self.ledger.cancelled:
@@ -112,7 +117,7 @@ class Changes:
         self.ledger.withdraw(task, now)
         for hand in self.crew.values():
             hand.route = [name for name in hand.route if name != task]
-        yield Change("cancel-task", task)
+        yield Change("cancel_task", {"task": task})
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
         """Work under way goes on where it is."""
@@ -125,12 +130,12 @@ class Changes:
         self.ledger.move(task, to)
         self.ledger.give_up(task)
         self.ledger.refusals.pop(task, None)
-        yield Change("move-task", task)
+        yield Change("move_task", {"task": task, "position": list(to)})
 
     def _delay(self, task: str, by_s: float) -> Iterator[Change]:
         if task not in self.ledger.ends_s and task not in self.ledger.cancelled:
             self.ledger.delay(task, by_s)
-            yield Change("delay-task", task, f"{by_s:g} s")
+            yield Change("delay_task", {"task": task, "by_s": by_s})
 
     def _leave(self, task: str, now: float) -> None:
         """Stop the robot that is at a task or on the way to it."""

@@ -50,7 +50,7 @@ class Dispatch:
         if hand.activity is Activity.RETURNING and hand.arrived:
             hand.at_home, hand.stuck_before = True, False
             hand.turn_to(now, Activity.IDLE)
-            self._tell("robot-at-end", {"robot": hand.robot.id})
+            self._tell("robot_at_end", {"robot": hand.robot.id})
 
     def send_on(self, hand: Hand, now: float) -> Iterator[Change]:
         """Send a robot on that is available, or may begin; yields why it cannot, which asks for a new plan."""
@@ -62,9 +62,10 @@ class Dispatch:
             way = self.way(hand, hand.home)
             if way is None:
                 hand.at_home = True
-                self._tell("no-way-to-end", {"robot": hand.robot.id})
+                self._tell("no_way_to_end", {"robot": hand.robot.id})
             else:
                 hand.send(now, Activity.RETURNING, [Waypoint(point) for point in way])
+                self._tell("returns", {"robot": hand.robot.id})
 
     def goes_home(self, hand: Hand) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
@@ -96,7 +97,7 @@ class Dispatch:
         self._ledger.give_up(task)
         if hand.activity is not Activity.IDLE:
             hand.stop(now)
-        yield Change("task-refused", task, f"{hand.robot.id}: {reason}")
+        yield Change("task_refused", {"task": task, "robot": hand.robot.id, "reason": reason})
 
     def way(self, hand: Hand, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
@@ -136,7 +137,7 @@ class Dispatch:
 
     def _arrive(self, hand: Hand, now: float) -> None:
         task = hand.route[0]
-        self._ledger.arrive(task, now)
+        self._ledger.arrive(task, hand.used, now)
         hand.stuck_before = False
         self._tell("arrives", {"robot": hand.robot.id, "task": task})
         if hand.works:

@@ -105,7 +105,7 @@ class Executor:
             self.crew[robot].route = list(tasks)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
-        self._observer.on_plan(now, self.plan)
+        self._observer.on_plan(now, plan)
 
     @property
     def plan(self) -> Plan:
@@ -164,7 +164,7 @@ class Executor:
             try:
                 self.report(event)
             except ParameterError as error:
-                self._tell("event-refused", {"reason": str(error)})
+                self._tell("event_refused", {"reason": str(error)})
 
     def _notice(self) -> None:
         """The monitor: missed telemetry, no progress, capacity."""
@@ -184,7 +184,7 @@ class Executor:
         if hand.stuck_before:
             self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
         else:
-            self._tell("robot-sent-again", {"robot": hand.robot.id, "reason": "no progress"})
+            self._tell("robot_sent_again", {"robot": hand.robot.id, "reason": "no progress"})
             self._dispatch.again(hand, self.now_s)
 
     def _notice_capacity(self, hand: Hand) -> None:
@@ -195,7 +195,7 @@ class Executor:
             self._ask(self._dispatch.refuse(hand, task, reason, self.now_s))
         elif hand.warned_of != task and exceeds(after + self._dispatch.ahead[hand.robot.id].get(task, 0.0), capacity):
             hand.warned_of = task
-            self._ask([Change("robot-runs-low", hand.robot.id, f"of {capacity:.2f} for its route")])
+            self._ask([Change("robot_runs_low", {"robot": hand.robot.id, "capacity": capacity})])
 
     def _capacity(self, hand: Hand) -> float | None:
         return None if "capacity" in self.planned.ignored else hand.robot.work_capacity
@@ -209,7 +209,8 @@ class Executor:
         )
         if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
             self._stood_still_at = len(self.ledger.ends_s)
-            self._ask([Change("standstill", waiting[0], f"waits for {', '.join(self.ledger.missing(waiting[0]))}")])
+            missing = self.ledger.missing(waiting[0])
+            self._ask([Change("standstill", {"task": waiting[0], "waits_for": missing})])
             self._go_on()
 
     def _go_on(self) -> None:
@@ -226,13 +227,13 @@ class Executor:
         """Have the rest planned again because of changes."""
         for change in changes:
             self._asked.append(change)
-            self._tell(change.kind, change.as_dict())
+            self._tell(change.kind, change.data)
 
     def _rest(self) -> Rest:
         return rest_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
 
     def _plan_again(self) -> None:
-        causes, self._asked = [change.as_dict() for change in self._asked], []
+        causes, self._asked = [{"kind": change.kind, **change.data} for change in self._asked], []
         revision = self._replan(self._rest())
         for hand in self._present:
             self._dispatch.take_route(hand, revision.routes.get(hand.robot.id, ()), self.now_s)
@@ -250,7 +251,9 @@ class Executor:
         if not self.done and not busy and not any(map(self._matters, self._script)):
             self.ended_s = max(self.ledger.ends_s.values(), default=self.begun_s)
             self.ended_s = max([self.ended_s, *(hand.begun_s for hand in self._present if hand.done)])
-            self._tell("mission-ended", {"lost": self.lost()})
+            for task, reason in self.lost().items():
+                self._tell("lost", {"task": task, "reason": reason})
+            self._tell("mission_ended", {})
 
     def _matters(self, event: Event) -> bool:
         """Whether an event to come can bring work, or a robot for what is open."""

@@ -24,6 +24,7 @@ class Ledger:
     needs_order: bool
     delays_s: dict[str, float] = field(default_factory=dict)
     arrivals_s: dict[str, float] = field(default_factory=dict)
+    arrival_usage: dict[str, float] = field(default_factory=dict)  # of the robot, when it came to the task
     starts_s: dict[str, float] = field(default_factory=dict)
     ends_s: dict[str, float] = field(default_factory=dict)
     done_by: dict[str, str] = field(default_factory=dict)
@@ -43,7 +44,11 @@ class Ledger:
     @property
     def waiting_s(self) -> float:
         """Seconds that robots waited at tasks that were begun."""
-        return sum(start - self.arrivals_s[task] for task, start in self.starts_s.items())
+        return sum(map(self.waited_s, self.starts_s))
+
+    def waited_s(self, task: str) -> float:
+        """Seconds that a robot waited at a task that was begun."""
+        return self.starts_s[task] - self.arrivals_s[task]
 
     def may_begin(self, task: str) -> bool:
         """Whether all prerequisites have ended."""
@@ -53,8 +58,8 @@ class Ledger:
         """Prerequisites that have not ended."""
         return [name for name in self.tasks[task].prerequisites if self.needs_order and name not in self.ends_s]
 
-    def arrive(self, task: str, now: float) -> None:
-        self.arrivals_s[task] = now
+    def arrive(self, task: str, used: float, now: float) -> None:
+        self.arrivals_s[task], self.arrival_usage[task] = now, used
 
     def begin(self, task: str, now: float) -> None:
         self.starts_s[task] = now
@@ -63,6 +68,7 @@ class Ledger:
         """The robot that was at it is no more."""
         if task not in self.ends_s:
             self.arrivals_s.pop(task, None)
+            self.arrival_usage.pop(task, None)
             self.starts_s.pop(task, None)
 
     def end(self, task: str, robot: str, now: float) -> None:

@@ -19,12 +19,25 @@ class RobotReport:
 
 @dataclass(frozen=True)
 class TaskReport:
-    """Usage for one task done and the way to it: by the plan when its robot left for it, and measured."""
+    """Usage for one task done and the way to it: by the plan when its robot left for it, and measured.
+
+    `waiting_s` is for how long its robot waited there, for prerequisites.
+    """
 
     task: str
     robot: str
     usage_planned: float
     usage_flown: float
+    waiting_s: float
+
+
+@dataclass(frozen=True)
+class ObjectiveReport:
+    """The objective by the plan that the mission began with, None where that does not tell, and as measured."""
+
+    name: str
+    planned: float | None
+    flown: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,8 +57,10 @@ class Report:
         seconds that robots waited at tasks, in all.
     reallocations
         how often the rest was planned again.
+    objective
+        of the plan; `average` is of the usages with which robots came to tasks, `makespan` the mission time.
     tasks
-        of tasks done, in order of completion; not in `as_dict`.
+        of tasks done, in order of completion.
     """
 
     mission_time_s: float
@@ -58,14 +73,14 @@ class Report:
     robots: tuple[RobotReport, ...]
     starts_s: dict[str, float]
     ends_s: dict[str, float]
-    tasks: tuple[TaskReport, ...] = ()
+    objective: ObjectiveReport
+    tasks: tuple[TaskReport, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """What `muster simulate --format json` prints."""
-        data = asdict(self)
-        del data["tasks"]
-        data["tasks_lost"] = [{"task": task, "reason": reason} for task, reason in self.tasks_lost]
-        return data | {"tasks_done": list(self.tasks_done), "robots": list(data["robots"])}
+        lost = [{"task": task, "reason": reason} for task, reason in self.tasks_lost]
+        rows = {name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks")}
+        return asdict(self) | {"tasks_done": list(self.tasks_done), "tasks_lost": lost, **rows}
 
 
 def report_of(executor: Executor, *, contacts: int, min_distance_m: float | None) -> Report:
@@ -92,5 +107,23 @@ def report_of(executor: Executor, *, contacts: int, min_distance_m: float | None
         ),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
-        tasks=tuple(TaskReport(task, ledger.done_by[task], *ledger.usage[task]) for task in done),
+        objective=_objective(executor, end - executor.begun_s),
+        tasks=tuple(
+            TaskReport(task, ledger.done_by[task], *ledger.usage[task], ledger.waited_s(task)) for task in done
+        ),
     )
+
+
+def _objective(executor: Executor, mission_time_s: float) -> ObjectiveReport:
+    plan, ledger = executor.planned, executor.ledger
+    name = plan.objective or executor.mission.rules.objective
+    usages = [hand.used for hand in executor.crew.values()]
+    arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
+    flown = {
+        "total+max": sum(usages) + max(usages, default=0.0),
+        "total": sum(usages),
+        "max": max(usages, default=0.0),
+        "average": sum(arrivals) / len(arrivals) if arrivals else 0.0,
+        "makespan": mission_time_s,
+    }
+    return ObjectiveReport(name, plan.objective_value, flown[name])

@@ -59,12 +59,27 @@ def plot_flown(recording: Recording) -> Axes:
     return ax  # type: ignore[no-any-return]
 
 
+def outcome(recording: Recording) -> list[str]:
+    """What came of a mission, in words."""
+    situation = Situation(recording.mission)
+    for event in recording.events:
+        situation.take(event.kind, event.data)
+    states = list(situation.states.values())
+    facts = [f"tasks {states.count(DONE)}/{len(states)}"]
+    report = recording.report or {}
+    if report.get("min_distance_m") is not None:
+        facts.append(f"least distance {report['min_distance_m']:.2f} m")
+    if report.get("contacts"):
+        facts.append(f"contacts {report['contacts']}")
+    return facts
+
+
 def _draw(ax: Any, recording: Recording, names: Names) -> None:
     chart, spatial = recording.mission.map, recording.mission.dimensions == 3
     ground = [] if chart is None else draw_map(ax, chart, recording.image, spatial=spatial)
     entries = [*_draw_tracks(ax, recording, names), *_draw_tasks(ax, recording, names), *ground, *note_entries(names)]
     add_legend(ax, entries)
-    facts = [f"{recording.duration_s:.1f} s", f"{len(recording.events)} events"]
+    facts = [f"{recording.duration_s:.1f} s", *outcome(recording)]
     add_title(ax, names.title(recording.mission.name), facts, "" if recording.complete else "the record breaks off")
 
 

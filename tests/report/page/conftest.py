@@ -2,7 +2,7 @@
 
 import pytest
 from tests.report.page.browser import Browser, browser_found
-from tests.report.voyages import carry_out
+from tests.report.voyages import carry_out, shipped
 
 import muster
 from muster.report.page import write_page
@@ -27,7 +27,7 @@ def recorded(tmp_path_factory):
         key = (name, *sorted(how))
         if key not in made:
             file = tmp_path_factory.mktemp("records") / f"{name}.mcap"
-            mission = muster.load(name)
+            mission = shipped(name)
             with RecordWriter(file, mission) as writer:
                 carry_out(mission, muster.solve(mission, "greedy"), writer, **how)
             made[key] = read_record(file)

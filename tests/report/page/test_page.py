@@ -17,8 +17,8 @@ from muster.report.page import data as data_of_page
 from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
-from muster.report.page.spans import Span, spans
 from muster.report.record import Happening, Recording, Tracks
+from muster.report.spans import Span, spans
 
 pytest.importorskip("mcap")
 

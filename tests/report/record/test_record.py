@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.report.voyages import carry_out
+from tests.report.voyages import carry_out, shipped
 
 import muster
 from muster.mission.clock import VirtualClock
@@ -26,7 +26,7 @@ pytest.importorskip("mcap")
 
 @pytest.fixture(scope="module")
 def mission():
-    return muster.load("31T-6R")
+    return shipped("31T-6R")
 
 
 @pytest.fixture(scope="module")

@@ -15,10 +15,10 @@ import numpy.typing as npt
 from muster.mission.model import Map, Zone
 from muster.motion.grid import Grid
 from muster.report.page.distances import nearest
-from muster.report.page.spans import spans
 from muster.report.record import Recording, Tracks
 from muster.report.record.messages import event_line
 from muster.report.record.situation import OPEN, Situation
+from muster.report.spans import spans
 from muster.report.styles import PALETTE
 
 Floats = npt.NDArray[np.float64]
@@ -26,8 +26,8 @@ Floats = npt.NDArray[np.float64]
 MOST_SAMPLES = 200_000
 """Moments times robots; where a record has more, moments are left out evenly."""
 
-_ALARMING = ("lost", "robot_fails", "robot_silent", "contact")
-_GONE, _BACK = ("robot_fails", "robot_silent"), ("robot_returns",)
+_ALARMING = ("lost", "robot_fails", "robot_silent", "robot_stuck", "contact")
+_GONE, _BACK = ("robot_fails", "robot_silent", "robot_stuck"), ("robot_returns",)
 
 
 def page_data(recording: Recording) -> dict[str, Any]:
@@ -49,7 +49,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "spans": [
             [order[bar.robot], bar.task, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
             for bar in bars
-            if bar.robot in order
+            if bar.robot in order and bar.until_s > bar.from_s
         ],
         "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events],
         "nearest": _nearest(recording, tracks),

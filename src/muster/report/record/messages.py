@@ -115,13 +115,13 @@ def log(now: float, level: int, message: str) -> dict[str, Any]:
 
 def event_line(kind: str, data: Mapping[str, Any]) -> str:
     """An event in a line for people: `starts: robot r_0, task 7`."""
-    parts = [f"{key} {_short(value)}" for key, value in data.items()]
+    parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
 
 
 def _short(value: Any) -> str:
     if isinstance(value, Mapping):
-        return str(value.get("id", "..."))
+        return str(value["id"]) if "id" in value else "; ".join(f"{key} {_short(of)}" for key, of in value.items())
     if isinstance(value, float):
         return f"{value:.2f}"
     if isinstance(value, list | tuple):

@@ -6,8 +6,9 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 | kind | data |
 |---|---|
 | `sets_out`, `arrives`, `starts`, `ends` | `robot`, `task` |
+| `returns`, `robot_at_end` | `robot`, on the way to where its route ends |
 | `lost` | `task`, `reason` |
-| `robot_fails`, `robot_silent`, `robot_returns` | `robot` |
+| `robot_fails`, `robot_silent`, `robot_stuck`, `robot_returns` | `robot` |
 | `robot_joins` | `robot`: a robot as in a mission file, or the id of one in the mission's `events` |
 | `new_task` | `task`: a task, likewise |
 | `cancel_task` | `task` |
@@ -61,7 +62,7 @@ class Situation:
             place = tuple(float(value) for value in data["position"])
             self.tasks[name] = replace(self.tasks[name], position=place, entry=None, exit=None)
             return str(name)
-        if kind not in _BECOMES:
+        if kind not in _BECOMES or self.states[name] == CANCELLED:
             return None
         self.states[name] = _BECOMES[kind]
         return str(name)

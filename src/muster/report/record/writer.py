@@ -28,7 +28,7 @@ from muster.report.record.situation import Situation
 
 Floats = npt.NDArray[np.float64]
 
-_ALARMING = ("lost", "robot_fails", "robot_silent", "contact")
+_ALARMING = ("lost", "robot_fails", "robot_silent", "robot_stuck", "contact")
 
 
 class RecordWriter:
@@ -128,6 +128,9 @@ class RecordWriter:
         changed = self._situation.take(kind, data)
         if changed is not None:
             self._write("/scene", now, scene.update([self._entity(now, kind, changed)]))
+
+    def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
+        """What robots say of themselves is not written: where they are is in the steps."""
 
     def on_plan(self, now: float, plan: Plan) -> None:
         """Write a plan, with the bids that led to it where they are known, and the routes as lines."""

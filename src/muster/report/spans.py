@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from muster.report.record import Happening
 
 TRAVEL, WAITING, WORK = "travel", "waiting", "work"
-_BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK}
-_BREAKS_OFF = ("robot_fails", "cancel_task", "lost")
+_BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK, "returns": TRAVEL}
+_ENDS = ("ends", "robot_at_end")
+_BREAKS_OFF = ("robot_fails", "robot_silent", "robot_stuck", "cancel_task", "lost")
 
 
 @dataclass(frozen=True)
 class Span:
-    """What a robot does, for which task, from when until when, seconds."""
+    """What a robot does, for which task, from when until when, seconds; no task on the way to where its route ends."""
 
     robot: str
     task: str
@@ -24,7 +25,7 @@ class Span:
 
 
 def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
-    """The spans in a record's events, in the order of their ends; those of no length are left out.
+    """The spans in a record's events, in the order of their ends; of those of no length only work is told.
 
     A span ends when the robot begins something else, ends the task or fails, when the task is cancelled or lost, and at
     the latest with the record.
@@ -35,15 +36,15 @@ def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
     def close(robot: str, until_s: float) -> None:
         if robot in doing:
             task, kind, from_s = doing.pop(robot)
-            if until_s > from_s:
+            if until_s > from_s or kind == WORK:
                 found.append(Span(robot, task, kind, from_s, until_s))
 
     for event in events:
         robot, task = event.data.get("robot"), event.data.get("task")
         if event.kind in _BEGINS:
             close(str(robot), event.time_s)
-            doing[str(robot)] = (str(task), _BEGINS[event.kind], event.time_s)
-        elif event.kind == "ends":
+            doing[str(robot)] = ("" if task is None else str(task), _BEGINS[event.kind], event.time_s)
+        elif event.kind in _ENDS:
             close(str(robot), event.time_s)
         elif event.kind in _BREAKS_OFF:
             for one in [name for name, (of, *_) in doing.items() if name == robot or (robot is None and of == task)]:

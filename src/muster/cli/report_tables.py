@@ -1,0 +1,75 @@
+"""Tables of what carrying a mission out took, as its report tells it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import click
+
+from muster.cli.tables import counted, number, print_table
+from muster.mission.model import Mission
+
+Report = Mapping[str, Any]
+"""As `muster.execution.Report.as_dict` makes it, or as a record has it: what an older or other program wrote may lack
+all but the ids."""
+
+
+def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
+    """Print usage of robots beside what was planned, figures, tasks lost, and each task done if wanted."""
+    unit = "s" if mission.rules.usage == "time" else "m"
+    columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
+    rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
+    print_table(columns, rows, title=f"{mission.name}: carried out", right=columns[1:])
+    _print_figures(report, unit)
+    if with_tasks:
+        _print_tasks(report, unit)
+    lost = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
+    if lost:
+        print_table(("task lost", "reason"), lost)
+
+
+def _print_figures(report: Report, unit: str) -> None:
+    done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
+    least = report.get("min_distance_m")
+    distance = "-" if least is None else f"{number(least)} m"
+    for name, value in (
+        ("mission time", f"{number(report.get('mission_time_s'))} s"),
+        ("tasks done", f"{done} of {done + lost}"),
+        ("objective", _objective(report.get("objective"), unit)),
+        ("waiting", f"{number(report.get('waiting_s'))} s"),
+        ("least distance", f"{distance}, {counted(report.get('contacts', 0), 'contact')}"),
+        ("planned again", counted(report.get("reallocations", 0), "time")),
+    ):
+        click.echo(f"{name:<17} {value}")
+
+
+def _objective(objective: Report | None, unit: str) -> str:
+    if objective is None:
+        return "-"
+    unit = "s" if objective["name"] == "makespan" else unit
+    planned, flown = (number(objective[key]) for key in ("planned", "flown"))
+    return f"{flown} {unit}, planned {planned} {unit}  ({objective['name']})"
+
+
+def _print_tasks(report: Report, unit: str) -> None:
+    usages = (f"planned [{unit}]", f"flown [{unit}]", "difference")
+    columns = ("task", "robot", "starts [s]", "ends [s]", *usages, "waited [s]")
+    starts, ends = report.get("starts_s", {}), report.get("ends_s", {})
+    rows = [
+        (
+            row["task"],
+            row["robot"],
+            number(starts.get(row["task"])),
+            number(ends.get(row["task"])),
+            *_usage(row),
+            number(row["waiting_s"]),
+        )
+        for row in report.get("tasks", ())
+    ]
+    print_table(columns, rows, right=columns[2:])
+
+
+def _usage(row: Report) -> tuple[str, str, str]:
+    planned, flown = row["usage_planned"], row["usage_flown"]
+    return number(planned), number(flown), f"{100 * (flown / planned - 1):+.1f} %" if planned > 0 else "-"

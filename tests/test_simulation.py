@@ -1,0 +1,72 @@
+"""`muster.Simulation`: a mission carried out as far as one lets it, and told what the mission file did not foresee."""
+
+import pytest
+
+import muster
+from muster import Event, Mission, ParameterError, Robot, Task
+
+
+@pytest.fixture
+def mission():
+    return Mission(
+        robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(0, 5))),
+        tasks=(Task(id="x", position=(10, 0)), Task(id="y", position=(12, 5))),
+    )
+
+
+@pytest.fixture
+def simulation(mission):
+    return muster.Simulation(mission, muster.solve(mission, iterations=100))
+
+
+def test_it_stops_where_something_happens(simulation):
+    happened = simulation.advance(until_s=100)
+    assert {one.kind for one in happened} >= {"arrives", "starts", "ends"}
+    assert simulation.time_s == pytest.approx(10, abs=0.11)
+
+
+def test_it_goes_no_further_than_told(simulation):
+    assert list(simulation.advance(until_s=3.0)) == []
+    assert simulation.time_s == pytest.approx(3.0)
+    assert simulation.positions["a"] == pytest.approx((3, 0, 0), abs=1e-6)
+    assert not simulation.done
+
+
+def test_to_the_end_it_is_what_simulate_does(mission, simulation):
+    while not simulation.done:
+        simulation.advance(until_s=1000)
+    assert simulation.result() == muster.simulate(mission, muster.solve(mission, iterations=100))
+    assert simulation.advance(until_s=2000) == []
+
+
+def test_events_from_outside_change_plan_and_world(simulation):
+    simulation.advance(until_s=3.0)
+    simulation.report(Event(at_s=0, robot_fails="a"))
+    simulation.report(Event(at_s=0, new_task=Task(id="z", position=(0, 9))))
+    simulation.report(Event(at_s=0, robot_joins=Robot(id="c", position=(0, 10))))
+    while not simulation.done:
+        simulation.advance(until_s=1000)
+    report = simulation.result()
+    assert sorted(report.tasks_done) == ["x", "y", "z"]
+    assert simulation.positions["a"] == pytest.approx((3, 0, 0), abs=0.11)
+    assert [robot.robot for robot in report.robots] == ["a", "b", "c"]
+    assert {route.robot: route.tasks for route in simulation.plan.routes}["a"] == ()
+
+
+def test_events_that_do_not_fit_change_nothing(simulation):
+    for wrong, message in (
+        (Event(at_s=0, robot_fails="ghost"), "ghost"),
+        (Event(at_s=0, robot_joins=Robot(id="a", position=(0, 0))), "a"),
+        (Event(at_s=0, new_task=Task(id="x", position=(0, 0))), "new_task"),
+    ):
+        with pytest.raises(ParameterError, match=message):
+            simulation.report(wrong)
+    while not simulation.done:
+        simulation.advance(until_s=1000)
+    assert simulation.result().reallocations == 0
+
+
+def test_a_plan_from_elsewhere_is_told_its_objective(mission):
+    plan = muster.Plan(routes=(muster.Route("a", ("x",)), muster.Route("b", ("y",))))
+    objective = muster.simulate(mission, plan).objective
+    assert (objective.name, objective.planned) == ("total+max", pytest.approx(10 + 12 + 12))
