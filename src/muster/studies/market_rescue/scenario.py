@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -12,13 +12,13 @@ from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL, equal
 from muster.studies.runs import Case, Sample
 from muster.studies.tables import Cell, Table, row
-from muster.verification import RouteFigures
+from muster.verification import RouteFigures, Visit
 
 ITERATIONS = 100
 """Of the market; the paper states no number."""
 
 TRAVEL, EXECUTION = "-", "#"
-_CHARACTER_S = 2
+CHARACTER_S = 2
 
 
 @cache
@@ -91,7 +91,7 @@ class TimeChart:
         for route in verdict.routes:
             there = execution_s(route.robot)
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "B": there}))
-            cells: dict[str, Cell] = {"A": route.travel, "B": route.work, "A + B": route.usage, "chart": chart(route)}
+            cells: dict[str, Cell] = {"A": route.travel, "B": route.work, "A + B": route.usage, "chart": chart(route.visits)}
             mark = EQUAL if equal(there, route.work) else f"B {route.work - there:+.2f}"
             rows.append(row(self.columns, {"robot": route.robot, "values": "own", **cells, "mark": mark}))
         mission_s = float(paper()["simulated_mission_s"])
@@ -105,7 +105,7 @@ class TimeChart:
             "The paper's mission time, 1 min 23 s, is that of its simulation, with obstacles, turns and survivors at "
             "places that it does not print. Own places are chosen, in its arena of 2 m x 2 m, and own travel is "
             "straight and at full speed: the two times do not compare.",
-            f"chart: a character is {_CHARACTER_S} s; {TRAVEL} travel, {EXECUTION} execution, by the judge's schedule.",
+            f"chart: a character is {CHARACTER_S} s; {TRAVEL} travel, {EXECUTION} execution, by the judge's schedule.",
         )
         return Table(self.number, "Time chart of the allocation", self.columns, tuple(rows), notes)
 
@@ -117,10 +117,10 @@ def execution_s(robot: str) -> float:
     return float(60 * minutes / model["robots"][robot]["aging_factor"])
 
 
-def chart(route: RouteFigures) -> str:
+def chart(visits: Iterable[Visit]) -> str:
     """A robot's time as a line of characters."""
     drawn = ""
-    for visit in route.visits:
-        arrives, starts, ends = (round(s / _CHARACTER_S) for s in (visit.arrives_s, visit.starts_s, visit.ends_s))
+    for visit in visits:
+        arrives, starts, ends = (round(s / CHARACTER_S) for s in (visit.arrives_s, visit.starts_s, visit.ends_s))
         drawn = drawn.ljust(arrives, TRAVEL).ljust(starts).ljust(ends, EXECUTION)
     return drawn
