@@ -370,4 +370,5 @@ def test_market_rescue_arena_is_market_rescue_with_bodies_and_obstacles():
         assert replace(other, **{name: getattr(one, name) for name in bodies}) == one
         assert other.kinematics == "differential-drive"
         assert other.radius_m >= 0.065  # a Khepera-III is 0.13 m wide
-    assert arena.map is not None and len(arena.map.zones) == 5
+    assert arena.map is not None
+    assert len(arena.map.zones) == 5

@@ -14,6 +14,7 @@ from muster.studies.auction_5 import Auction5
 from muster.studies.effort import Effort
 from muster.studies.market_rescue import MarketRescue
 from muster.studies.peers import Peers
+from muster.studies.rescue import Rescue
 from muster.studies.rvo import CollisionAvoidance
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import Thesis33
@@ -46,6 +47,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     Allocators(),
     Peers(),
     CollisionAvoidance(),
+    Rescue(),
 )
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})

@@ -91,7 +91,12 @@ class TimeChart:
         for route in verdict.routes:
             there = execution_s(route.robot)
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "B": there}))
-            cells: dict[str, Cell] = {"A": route.travel, "B": route.work, "A + B": route.usage, "chart": chart(route.visits)}
+            cells: dict[str, Cell] = {
+                "A": route.travel,
+                "B": route.work,
+                "A + B": route.usage,
+                "chart": chart(route.visits),
+            }
             mark = EQUAL if equal(there, route.work) else f"B {route.work - there:+.2f}"
             rows.append(row(self.columns, {"robot": route.robot, "values": "own", **cells, "mark": mark}))
         mission_s = float(paper()["simulated_mission_s"])
