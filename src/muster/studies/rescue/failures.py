@@ -94,7 +94,7 @@ def _why_lost(mission: Mission, without: Mapping[str, Sequence[str]], flown: Flo
 _NOTES = (
     "Each robot fails at as many moments as there are runs, evenly over the time for which the plan has it busy; no "
     "noise. done, lost, re-plans, moved: sums over the runs. moved: tasks that went to another robot. planning ms: "
-    "processor time of all re-planning, of the slowest run. mission s: until the last task done, of the longest run.",
+    "processor time of all re-planning, of the slowest run. mission s: of the longest run.",
     "two a skill: the arena with a second robot of each kind. A robot that fails on or beside a survivor stays there, "
     "and no other gets to that place; points have no bodies, so that this alone makes the difference.",
     "market-rescue-20: robots are points; some survivors need two skills at once, which one robot alone has.",

@@ -111,7 +111,9 @@ class Figure8:
             for metric in METRICS
             for robot, each in found.items()
         ]
-        return Table(self.number, f"Metrics over {repetitions(effort)} flights", self.columns, tuple(rows), NOTES, 4)
+        return Table(
+            self.number, f"Metrics, flights with noise: {repetitions(effort)}", self.columns, tuple(rows), NOTES, 4
+        )
 
 
 def _cells(metric: Metric, robot: str, values: Sequence[float]) -> dict[str, Cell]:

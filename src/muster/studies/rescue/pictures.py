@@ -53,7 +53,7 @@ def _tracked(name: str, flown: Flown, reference: Sequence[Floats]) -> Tracked:
 def _metrics(effort: Effort) -> Figure:
     found = measured(effort, {flight: flight.perform() for flight in noisy(effort)})
     measures = [_measure(metric, found) for metric in METRICS]
-    return plot_measures(measures, f"Metrics, mean and spread over {repetitions(effort)} flights (as Figure 8)")
+    return plot_measures(measures, f"Metrics, mean and spread; flights with noise: {repetitions(effort)} (as Figure 8)")
 
 
 def _measure(metric: Metric, found: Mapping[str, Sequence[Tracking]]) -> Measure:
