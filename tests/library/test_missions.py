@@ -51,6 +51,7 @@ COUNTS = {  # robots, tasks
     "floor": (5, 23),
     "market-rescue": (3, 5),
     "market-rescue-20": (5, 20),
+    "market-rescue-arena": (3, 5),
     "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]
@@ -363,3 +364,15 @@ def test_market_rescue_fits_its_arena():
     places = [*(r.position for r in mission.robots), *(t.position for t in mission.tasks)]
     assert all(0 <= x <= 2 and 0 <= y <= 2 for x, y in places)
     assert min(math.dist(a, b) for k, a in enumerate(places) for b in places[:k]) >= 0.3
+
+
+def test_market_rescue_arena_is_market_rescue_with_bodies_and_obstacles():
+    plain, arena = shipped("market-rescue"), shipped("market-rescue-arena")
+    assert (arena.tasks, arena.rules) == (plain.tasks, plain.rules)
+    bodies = {"kinematics", "radius_m", "heading_deg", "yaw_rate_radps", "acceleration_mps2"}
+    for one, other in zip(plain.robots, arena.robots, strict=True):
+        assert replace(other, **{name: getattr(one, name) for name in bodies}) == one
+        assert other.kinematics == "differential-drive"
+        assert other.radius_m >= 0.065  # a Khepera-III is 0.13 m wide
+    assert arena.map is not None
+    assert len(arena.map.zones) == 5

@@ -36,7 +36,7 @@ def squares(**more):
         legend=(),
         reproductions=(Squares("1", (1, 2)), Squares("2", (2, 3)), Squares("3", (4,))),
         perform=one_by_one(square),
-        seeded=False,
+        seeds=lambda _: None,
         **more,
     )
     return study, done

@@ -15,6 +15,7 @@ from muster.studies.effort import Effort
 from muster.studies.market_rescue import MARKET_RESCUE
 from muster.studies.peers import Peers
 from muster.studies.repetition import OnDone
+from muster.studies.rescue import RESCUE
 from muster.studies.rvo import RVO
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import THESIS_3_3
@@ -51,6 +52,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     Allocators(),
     Peers(),
     RVO,
+    RESCUE,
 )
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})

@@ -57,8 +57,8 @@ class Repetition(Generic[Job, Found]):
         the tables, in order.
     perform
         does the jobs.
-    seeded
-        whether anything is random.
+    seeds
+        how many seeds there are for an effort; None where nothing is random.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Repetition(Generic[Job, Found]):
     legend: tuple[str, ...]
     reproductions: tuple[Reproduction[Job, Found], ...]
     perform: Performer[Job, Found]
-    seeded: bool = True
+    seeds: Callable[[Effort], int | None] = lambda effort: effort.seed_count
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class Repetition(Generic[Job, Found]):
         return Report(
             study=self.name,
             document=self.document,
-            seeds=effort.seed_count if self.seeded else None,
+            seeds=self.seeds(effort),
             runs=done.runs,
             cpu_s=done.cpu_s,
             legend=self.legend,

@@ -62,6 +62,6 @@ AUCTION_5 = Repetition(
     legend=_LEGEND,
     reproductions=_TABLES,
     perform=one_by_one(hold),
-    seeded=False,
+    seeds=lambda _: None,
 )
 """Sequential single-item auction of tasks among drones, bid by bid and under each rule."""

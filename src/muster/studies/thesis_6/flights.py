@@ -10,6 +10,7 @@ from typing import Any
 
 from muster._api import solve
 from muster._carrying_out import Recorder, carry_out
+from muster.execution.record import NoObserver
 from muster.execution.report import Report
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
@@ -145,14 +146,11 @@ def _planned(flight: Flight) -> tuple[Plan, Verdict, float]:
     return plan, verdict, planning_s
 
 
-class _Changes:
+class _Changes(NoObserver):
     """Hears what happens, and counts the tasks that go from one robot to another."""
 
     def __init__(self) -> None:
         self.moved = 0
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        pass
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "replanned":
