@@ -112,12 +112,12 @@ class Simulation:
     def advance(self, until_s: float) -> Sequence[Happening]:
         """Go on until something happens, until the mission is over, or up to a time; returns what happened.
 
-        By whole steps: up to the end of that in which the time is.
+        It goes on by whole steps: what falls into a step, an event or `until_s`, comes at its end.
         """
         first = len(self._executor.happenings)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
-            due = min(until_s, self.time_s + LOOK_S, self._executor.due_s)
-            self._world.advance(max(due, self.time_s + self._world.dt_s))
+            due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s)
+            self._world.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._executor.tick(self.time_s)

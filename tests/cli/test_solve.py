@@ -275,3 +275,13 @@ def test_a_mission_after_bound_alone_gets_a_hint(muster):
     assert (code, out) == (2, "")
     assert "'6T-2R' is not one of 'quick', 'exact'; --bound alone stands after the mission, or as --bound=quick" in err
     assert "lower bound" in muster("solve", "--bound=quick", "6T-2R", "--iterations", 5)[1]
+
+
+def test_rewired_robots_wait_less(muster):
+    waits = []
+    for more in ((), ("--rewire",)):
+        code, out, err = muster("solve", "31T-6R50", "--iterations", "2000", *more, "-q")
+        assert (code, err) == (0, "")
+        assert "tasks completed   31 of 31" in out
+        waits.append(float(re.search(r"waiting +([0-9.]+) s", out).group(1)))
+    assert waits[1] < waits[0]

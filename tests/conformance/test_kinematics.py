@@ -10,8 +10,9 @@ from tests.mission.strategies import examples
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.motion.kinematics.kinematics import Limits, approach
+from muster.motion.kinematics.kinematics import approach
 from muster.motion.kinematics.registry import KINEMATICS, kinematics_named, limits_of
+from muster.motion.limits import Limits
 
 every_kind = pytest.mark.parametrize("kind", KINEMATICS.values(), ids=KINEMATICS)
 metres, angle, rate = st.floats(-50, 50), st.floats(-4, 4), st.floats(-5, 5)
@@ -150,7 +151,14 @@ def test_names_are_those_of_missions():
         kinematics_named("quadrocopter")
 
 
-@pytest.mark.parametrize("wrong", [{"speed_mps": 0}, {"yaw_rate_radps": math.inf}, {"climb_mps": -1}])
+@pytest.mark.parametrize("wrong", [{"speed_mps": 0}, {"yaw_rate_radps": -1}, {"climb_mps": -1}])
 def test_limits_out_of_range(wrong):
     with pytest.raises(ParameterError, match="expected a number above 0"):
         Limits(**wrong)
+
+
+def test_laws_steer_by_a_finite_yaw_rate():
+    for kinematics in KINEMATICS.values():
+        state = np.zeros((1, 4))
+        with pytest.raises(ParameterError, match="yaw_rate_radps"):
+            kinematics.inputs(state, np.ones((1, 3)), np.ones(1), Limits(speed_mps=1))

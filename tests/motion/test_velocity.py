@@ -10,10 +10,11 @@ from tests.mission.strategies import examples
 
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
+from muster.motion.limits import Limits
 from muster.motion.path import Path
 from muster.motion.smoothing import smoothed
 from muster.motion.trajectory import Trajectory, joined
-from muster.motion.velocity import Limits, timed
+from muster.motion.velocity import timed
 from muster.motion.wheels import body_speeds, fastest_translation, wheel_speeds
 
 coordinates = st.integers(-60, 60).map(lambda k: k / 10)

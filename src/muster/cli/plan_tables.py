@@ -56,6 +56,7 @@ def print_figures(verdict: Verdict) -> None:
     click.echo(f"total cost        {number(verdict.total_cost, unit)}")
     click.echo(f"greatest usage    {number(verdict.max_usage, unit)}")
     click.echo(f"makespan          {number(verdict.makespan_s, 's')}")
+    click.echo(f"waiting           {number(verdict.waiting_s, 's')}")
     click.echo(f"equality index    {number(verdict.equality_index)}")
 
 

@@ -33,6 +33,7 @@ from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
+    from muster.allocation.problem import Problem
     from muster.allocation.stop import Stop
     from muster.verification import Verdict
 
@@ -84,6 +85,7 @@ _FILE = click.Path(path_type=Path)
 @click.option(
     "--fixed", type=_FILE, metavar="PLAN", help="A plan whose routes stay, as the beginnings of the new ones."
 )
+@click.option("--rewire", is_flag=True, help="Fill waiting with later tasks of the same robot: sooner, for some usage.")
 @require_complete_option
 @format_option
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
@@ -112,6 +114,7 @@ def command(
     settings: tuple[str, ...],
     start: Path | None,
     fixed: Path | None,
+    rewire: bool,
     require_complete: bool,
     form: str,
     output: Path | None,
@@ -157,6 +160,8 @@ def command(
         stop = Stop(iterations=iterations, time_limit=limit, on_progress=on_progress)
         with _ctrl_c_interrupts(stop):
             plan = chosen.solve(problem, stop, seed=seed, params=params, start=first)
+            if rewire and not stop.interrupted:
+                plan = _rewired(problem, plan)
             proof = None
             if bound is not None and not stop.interrupted:
                 proof = prove(problem, plan, bound, stop, time_limit)
@@ -174,6 +179,12 @@ def command(
     if proof is not None and (verbose if plan.lower_bound is not None else not quiet):
         click.echo(f"{'no ' if plan.lower_bound is None else ''}lower bound: {proof.why}", err=True)
     return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _rewired(problem: Problem, plan: Plan) -> Plan:
+    from muster.execution.rewiring import rewire
+
+    return rewire(problem, plan).plan
 
 
 def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:

@@ -9,7 +9,6 @@ that must face its way turns on the spot at corners.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +16,7 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
 from muster.motion.frames import wrapped
+from muster.motion.limits import Limits
 from muster.motion.trajectory import Trajectory, joined
 from muster.motion.wheels import fastest_translation
 
@@ -27,38 +27,6 @@ _CORNER = 1e-6  # radians; a smaller turn between two segments is rounding
 _TURN_STEP = 0.05  # radians between two moments on a bend
 _LEAST_PIECES = 4  # of a bent segment
 _BENDS_SHARE = math.sqrt(0.5)  # of the acceleration, that a bend may take; so as much is left along the way
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """What a robot can do at most; `inf` where nothing limits it.
-
-    Parameters
-    ----------
-    acceleration_mps2
-        of the velocity as a vector: along the way and across it together.
-    track_m
-        distance between the wheels of a differential drive; above 0 no rim goes faster than `speed_mps`.
-    """
-
-    speed_mps: float
-    acceleration_mps2: float = math.inf
-    yaw_rate_radps: float = math.inf
-    yaw_acceleration_radps2: float = math.inf
-    track_m: float = 0.0
-
-    def __post_init__(self) -> None:
-        for f in fields(self):
-            value = getattr(self, f.name)
-            if not (value > 0 or (f.name == "track_m" and value == 0)):
-                raise ParameterError(f"{f.name}: {value}; expected a number above 0")
-        if not (math.isfinite(self.speed_mps) and math.isfinite(self.track_m)):
-            raise ParameterError(f"speed_mps, track_m: {self.speed_mps}, {self.track_m}; expected finite numbers")
-
-    @property
-    def spot_yaw_rate(self) -> float:
-        """The most rad/s on the spot."""
-        return min(self.yaw_rate_radps, 2 * self.speed_mps / self.track_m if self.track_m else math.inf)
 
 
 def timed(

@@ -18,14 +18,11 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
 from muster.studies.bench_avoidance import compared
+from muster.studies.bench_execution import EXECUTION_BENCHES
 from muster.studies.bench_motion import MOTION_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
-
-
-def _over_runs(name: str, unit: str, values: list[float], aim: str, note: str = "") -> Measurement:
-    return Measurement(name, unit, statistics.median(values), min(values), max(values), len(values), aim, note)
 
 
 def greedy_small(runs: int) -> list[Measurement]:
@@ -37,7 +34,7 @@ def greedy_small(runs: int) -> list[Measurement]:
         plan = ALLOCATORS["greedy"].solve(problem, Stop())
         milliseconds.append(1000 * (time.perf_counter() - begin))
     value = verify(problem.mission, plan).value("total+max")
-    return [_over_runs("greedy, eil51-5-thesis, in process", "ms", milliseconds, "< 10", f"F = {value:.2f}")]
+    return [Measurement.over_runs("greedy, eil51-5-thesis, in process", "ms", milliseconds, "< 10", f"F = {value:.2f}")]
 
 
 def genetic_iterations(runs: int) -> list[Measurement]:
@@ -52,7 +49,9 @@ def genetic_iterations(runs: int) -> list[Measurement]:
             begin = time.process_time()
             evolve(population, Stop(iterations=20_000), params)
             rates.append(20_000 / (time.process_time() - begin))
-        found.append(_over_runs(f"genetic, {name}", "iterations / CPU s", rates, aim, _shares(problem, params)))
+        found.append(
+            Measurement.over_runs(f"genetic, {name}", "iterations / CPU s", rates, aim, _shares(problem, params))
+        )
     return found
 
 
@@ -121,8 +120,8 @@ def _large(allocator: str, tasks: int, robots: int, runs: int, seconds: str, meg
         found.append([float(word) for word in words])
     name = f"{allocator}, {tasks:,} tasks x {robots} robots"
     return [
-        _over_runs(name, "s", [run[0] for run in found], seconds, f"F = {found[0][2]:.2f}"),
-        _over_runs(f"{name}, peak memory", "MB", [run[1] for run in found], megabytes, "the whole process"),
+        Measurement.over_runs(name, "s", [run[0] for run in found], seconds, f"F = {found[0][2]:.2f}"),
+        Measurement.over_runs(f"{name}, peak memory", "MB", [run[1] for run in found], megabytes, "the whole process"),
     ]
 
 
@@ -147,7 +146,7 @@ def _above_best(found: Quality) -> Measurement:
     note = (
         f"median {found.median:.4f}, best known {found.case.best:.4f}, reached by {found.reached} of {len(found.gaps)}"
     )
-    return _over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)
+    return Measurement.over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)
 
 
 def avoidance(runs: int) -> list[Measurement]:
@@ -158,7 +157,7 @@ def avoidance(runs: int) -> list[Measurement]:
         for program, milliseconds in times.items():
             name, ours = f"ORCA step, {count:,} robots, {program}", program != "RVO2"
             note = _beside(milliseconds, times.get("RVO2")) if ours else ""
-            found.append(_over_runs(name, "CPU ms", milliseconds, aim if ours else "", note))
+            found.append(Measurement.over_runs(name, "CPU ms", milliseconds, aim if ours else "", note))
     return found
 
 
@@ -175,7 +174,10 @@ def start_up(runs: int) -> list[Measurement]:
         ("muster --help", [sys.executable, "-m", "muster.cli", "--help"], "< 0.4"),
         ("python alone", [sys.executable, "-c", "pass"], ""),
     )
-    return [_over_runs(name, "s", [_seconds(command) for _ in range(runs)], aim) for name, command, aim in commands]
+    return [
+        Measurement.over_runs(name, "s", [_seconds(command) for _ in range(runs)], aim)
+        for name, command, aim in commands
+    ]
 
 
 def _seconds(command: list[str]) -> float:
@@ -194,4 +196,5 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     "start-up": start_up,
     **MOTION_BENCHES,
     **SIMULATION_BENCHES,
+    **EXECUTION_BENCHES,
 }

@@ -29,6 +29,7 @@ from muster.studies.measurement import Measurement
 RADIUS_M, SPEED_MPS, DT_S, SPACING_M = 0.3, 1.0, 0.1, 1.9
 """The spacing is that of neighbours on the circle."""
 LIMIT_S = 1_000.0
+UNIT = "x real time"
 COMPARED_S = 20.0
 """For so long both run where they are compared: 50 robots meet in the middle after 15 s."""
 
@@ -112,7 +113,11 @@ def simulation(runs: int) -> list[Measurement]:
         rates = [simulated / seconds for simulated, seconds, _ in ways]
         contacts = sum(len(world.contacts) for _, _, world in ways)
         last = statistics.median(simulated for simulated, _, _ in ways)
-        found.append(_over_runs(f"ring swap, {count:,} robots", rates, aim, f"{last:.0f} s long, {contacts} contacts"))
+        found.append(
+            Measurement.over_runs(
+                f"ring swap, {count:,} robots", UNIT, rates, aim, f"{last:.0f} s long, {contacts} contacts"
+            )
+        )
     return found + _compared(min(runs, 3))
 
 
@@ -125,13 +130,9 @@ def _compared(runs: int) -> list[Measurement]:
         ours.append(simulated / seconds)
     name, ratio = f"{COMPARED_S:.0f} s of ring swap, 50 robots", statistics.median(ours) / statistics.median(theirs)
     return [
-        _over_runs(f"{name}, Muster", ours, "", f"{ratio:,.0f} times as fast as IR-SIM"),
-        _over_runs(f"{name}, IR-SIM", theirs, ""),
+        Measurement.over_runs(f"{name}, Muster", UNIT, ours, "", f"{ratio:,.0f} times as fast as IR-SIM"),
+        Measurement.over_runs(f"{name}, IR-SIM", UNIT, theirs, ""),
     ]
-
-
-def _over_runs(name: str, rates: list[float], aim: str, note: str = "") -> Measurement:
-    return Measurement(name, "x real time", statistics.median(rates), min(rates), max(rates), len(rates), aim, note)
 
 
 SIMULATION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"simulation": simulation}

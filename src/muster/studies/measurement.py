@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import statistics
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 
 @dataclass(frozen=True)
@@ -17,3 +20,8 @@ class Measurement:
     runs: int
     aim: str
     note: str = ""
+
+    @classmethod
+    def over_runs(cls, name: str, unit: str, values: Sequence[float], aim: str, note: str = "") -> Self:
+        """Of the values of several runs."""
+        return cls(name, unit, statistics.median(values), min(values), max(values), len(values), aim, note)

@@ -95,6 +95,13 @@ class Verdict:
         """Whether nothing is wrong with the plan."""
         return not self.violations
 
+    @property
+    def waiting_s(self) -> float | None:
+        """How long robots wait at tasks for prerequisites, in all; None where they deadlock."""
+        if self.makespan_s is None:
+            return None
+        return sum(visit.starts_s - visit.arrives_s for route in self.routes for visit in route.visits)
+
     def value(self, name: str | None = None) -> float | None:
         """Return the value of an objective, the plan's own by default; None for the makespan of a plan that deadlocks.
 

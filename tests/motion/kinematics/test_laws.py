@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from muster.motion.kinematics.differential_drive import DifferentialDrive
-from muster.motion.kinematics.kinematics import Limits, approach, turn_towards
+from muster.motion.kinematics.kinematics import approach, turn_towards
 from muster.motion.kinematics.quadcopter import Quadcopter
+from muster.motion.limits import Limits
 
 LIMITS = Limits(speed_mps=2.0, yaw_rate_radps=1.5)
 angle = st.floats(-math.pi, math.pi)

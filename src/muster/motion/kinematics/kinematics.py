@@ -7,7 +7,6 @@ are, each kind says. All functions work on many robots of one kind at once.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -15,34 +14,9 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
+from muster.motion.limits import Limits
 
 Floats = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """The most of each rate; `acceleration_mps2` is inf where nothing limits it.
-
-    Parameters
-    ----------
-    climb_mps
-        up and down, for those that fly; without it `speed_mps`.
-    """
-
-    speed_mps: float = 1.0
-    yaw_rate_radps: float = math.pi / 2
-    acceleration_mps2: float = math.inf
-    climb_mps: float | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("speed_mps", "yaw_rate_radps", "acceleration_mps2", "climb"):
-            value = getattr(self, name)
-            if not value > 0 or (math.isinf(value) and name != "acceleration_mps2"):
-                raise ParameterError(f"{name}: {value}; expected a number above 0")
-
-    @property
-    def climb(self) -> float:
-        return self.speed_mps if self.climb_mps is None else self.climb_mps
 
 
 class Kinematics(Protocol):
@@ -103,6 +77,8 @@ def turn_towards(yaws: Floats, headings: Floats | None, most: float) -> Floats:
 
     Beyond a right angle at the full rate: as printed a robot that looks the wrong way would hardly turn.
     """
+    if not math.isfinite(most):
+        raise ParameterError(f"yaw_rate_radps: {most}; expected a finite number to steer by")
     if headings is None:
         return np.zeros_like(yaws)
     off = wrapped(headings - yaws)

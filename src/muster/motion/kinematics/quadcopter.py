@@ -10,12 +10,12 @@ import numpy as np
 
 from muster.motion.kinematics.kinematics import (
     Floats,
-    Limits,
     moved_along_arc,
     reached,
     shortened,
     turn_towards,
 )
+from muster.motion.limits import Limits
 
 
 class Quadcopter:

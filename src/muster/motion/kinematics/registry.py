@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -10,8 +11,11 @@ from muster.mission.hints import did_you_mean
 from muster.mission.model import Robot
 from muster.motion.kinematics.differential_drive import DifferentialDrive
 from muster.motion.kinematics.holonomic import Holonomic
-from muster.motion.kinematics.kinematics import Kinematics, Limits
+from muster.motion.kinematics.kinematics import Kinematics
 from muster.motion.kinematics.quadcopter import Quadcopter
+from muster.motion.limits import Limits
+
+USUAL_YAW_RATE_RADPS = math.pi / 2
 
 _IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter())
 
@@ -32,6 +36,9 @@ def kinematics_named(name: str) -> Kinematics:
 
 
 def limits_of(robot: Robot) -> Limits:
-    """A robot's limits: what its mission does not say is as `Limits` has it."""
-    given = {"yaw_rate_radps": robot.yaw_rate_radps, "acceleration_mps2": robot.acceleration_mps2}
-    return Limits(speed_mps=robot.speed_mps, **{name: value for name, value in given.items() if value is not None})
+    """A robot's limits; what its mission does not say: a quarter turn a second, and any acceleration."""
+    return Limits(
+        speed_mps=robot.speed_mps,
+        yaw_rate_radps=USUAL_YAW_RATE_RADPS if robot.yaw_rate_radps is None else robot.yaw_rate_radps,
+        acceleration_mps2=math.inf if robot.acceleration_mps2 is None else robot.acceleration_mps2,
+    )

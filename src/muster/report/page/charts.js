@@ -94,13 +94,13 @@ function bar({ robot, task, kind, from, until }, x, row) {
     "data-task": task,
     x: x(from),
     y: (robot + 0.5) * row - height / 2,
-    width: Math.max(x(until) - x(from), 0.6),
+    width: Math.max(x(until) - x(from), kind === "work" ? 1.6 : 0.6),
     height,
     fill: kind === "waiting" ? `url(#hatch-${robot})` : color,
     ...(kind === "waiting" ? { stroke: color, "stroke-width": 0.8 } : {}),
   });
   const doing = { travel: "travels to", waiting: "waits at", work: "works on" }[kind];
-  const title = `${robots[robot].id} ${doing} ${task}: ${seconds(from)} to ${seconds(until)}`;
+  const title = `${robots[robot].id} ${doing} ${task || "its end"}: ${seconds(from)} to ${seconds(until)}`;
   shape.append(svg("title", {}, title));
   return shape;
 }

@@ -49,7 +49,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "spans": [
             [order[bar.robot], bar.task, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
             for bar in bars
-            if bar.robot in order and bar.until_s > bar.from_s
+            if bar.robot in order
         ],
         "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events],
         "nearest": _nearest(recording, tracks),
@@ -232,6 +232,10 @@ def _figures(recording: Recording) -> list[list[str]]:
         if isinstance(report.get(key), int | float):
             value = report[key]
             figures.append([name, f"{value:g}" if isinstance(value, int) else f"{value:.2f}{unit}"])
+    if report.get("objective"):
+        objective = report["objective"]
+        planned = "" if objective["planned"] is None else f", planned {objective['planned']:.2f}"
+        figures.append(["objective", f"{objective['flown']:.2f}{planned}"])
     return figures
 
 

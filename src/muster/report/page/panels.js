@@ -62,7 +62,7 @@ function doing(robot, now) {
   if (isGone(robot, now)) return "is out";
   const goesOn = (until) => until === duration && !data.ended; // beyond where the record breaks off
   const span = spansOf[robot.index].find(({ from, until }) => from <= now && (now < until || goesOn(until)));
-  return span ? `${DOING[span.kind]} ${span.task}` : "is free";
+  return span ? `${DOING[span.kind]} ${span.task || "its end"}` : "is free";
 }
 
 function showEvents(now) {

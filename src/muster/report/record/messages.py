@@ -121,7 +121,11 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
 
 def _short(value: Any) -> str:
     if isinstance(value, Mapping):
-        return str(value["id"]) if "id" in value else "; ".join(f"{key} {_short(of)}" for key, of in value.items())
+        if "id" in value:
+            return str(value["id"])
+        return ", ".join(
+            _short(of) if key in ("kind", "task", "robot") else f"{key} {_short(of)}" for key, of in value.items()
+        )
     if isinstance(value, float):
         return f"{value:.2f}"
     if isinstance(value, list | tuple):

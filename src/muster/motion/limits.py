@@ -1,0 +1,54 @@
+"""What a robot can do at most: for timing its way, and for the laws that drive it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+from muster.mission.errors import ParameterError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """The most of each rate; `inf` where nothing limits it.
+
+    Parameters
+    ----------
+    acceleration_mps2
+        of the velocity as a vector: along the way and across it together.
+    climb_mps
+        up and down, for those that fly; without it `speed_mps`.
+    track_m
+        distance between the wheels of a differential drive; above 0 no rim goes faster than `speed_mps`.
+
+    Raises
+    ------
+    ParameterError
+        if one is not above 0, or a speed or the track is not finite.
+    """
+
+    speed_mps: float = 1.0
+    acceleration_mps2: float = math.inf
+    yaw_rate_radps: float = math.inf
+    yaw_acceleration_radps2: float = math.inf
+    climb_mps: float | None = None
+    track_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if value is None:
+                continue
+            if not (value > 0 or (f.name == "track_m" and value == 0)):
+                raise ParameterError(f"{f.name}: {value}; expected a number above 0")
+            if math.isinf(value) and f.name in ("speed_mps", "climb_mps", "track_m"):
+                raise ParameterError(f"{f.name}: {value}; expected a finite number")
+
+    @property
+    def climb(self) -> float:
+        return self.speed_mps if self.climb_mps is None else self.climb_mps
+
+    @property
+    def spot_yaw_rate(self) -> float:
+        """The most rad/s on the spot."""
+        return min(self.yaw_rate_radps, 2 * self.speed_mps / self.track_m if self.track_m else math.inf)

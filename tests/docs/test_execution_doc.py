@@ -1,0 +1,18 @@
+"""What docs/execution.md says is so."""
+
+import re
+from pathlib import Path
+
+TEXT = (Path(__file__).parents[2] / "docs" / "execution.md").read_text(encoding="utf-8")
+
+
+def test_a_mission_goes_on_as_far_as_it_is_let(capsys):
+    example = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)[0]
+    names = {}
+    exec(example, names)
+    simulation = names["simulation"]
+    assert simulation.done
+    assert "late" in simulation.result().tasks_done
+    ends = simulation.result().ends_s
+    assert all(ends[task.task] <= 30 for task in simulation.result().tasks if task.robot == "r_1")
+    assert "arrives" in capsys.readouterr().out
