@@ -128,9 +128,12 @@ def test_a_failed_robots_tasks_are_done_by_another():
 def test_what_only_the_failed_robot_could_do_is_lost_with_that_reason():
     mission = line(5.0, robots=2, events=[Event(at_s=1, robot_fails="r_0")], only_robots=("r_0",))
     executor = carried_out(mission, plan_of(r_0=["0"]))
-    assert executor.lost() == {"0": "lock: only r_0 may do it, and takes no part any more"}
+    lost = "lock: only r_0 may do it, and takes no part any more; no longer taking part: r_0"
+    assert executor.lost() == {"0": lost}
     alone = line(5.0, events=[Event(at_s=1, robot_fails="r_0")])
-    assert carried_out(alone, plan_of(r_0=["0"])).lost() == {"0": "no robot takes part any more"}
+    assert carried_out(alone, plan_of(r_0=["0"])).lost() == {
+        "0": "no robot takes part any more; no longer taking part: r_0"
+    }
 
 
 def test_a_failed_robot_that_returns_goes_on():
@@ -280,7 +283,7 @@ def test_what_a_robot_cannot_do_goes_to_another():
     executor = carried_out(mission, plan_of(r_0=["0"]), doing=doing)
     assert executor.crew["r_1"].done == ["0"]
     lost = carried_out(line(5.0), plan_of(r_0=["0"]), doing=doing).lost()
-    assert lost == {"0": "r_0: no camera"}
+    assert lost == {"0": "no camera (r_0)"}
 
 
 def test_robots_that_wait_for_each_other_get_a_new_plan():
@@ -324,3 +327,38 @@ def test_what_does_not_fit_is_refused():
     executor = Executor(mission, plan_of(r_0=["0"]), world.ports, now=5.0)
     with pytest.raises(ParameterError, match="time does not go back"):
         executor.tick(4.0)
+
+
+def test_a_task_at_which_a_broken_robot_stands_is_given_up_and_the_robot_goes_on():
+    """r_0 breaks down on task 0; r_1 cannot get there, gives it up, and does task 1."""
+    mission = Mission(
+        robots=(
+            Robot(id="r_0", position=(0, 0), radius_m=0.5),
+            Robot(id="r_1", position=(0, 5), radius_m=0.5),
+        ),
+        tasks=(Task(id="0", position=(10, 0), duration_s=20), Task(id="1", position=(30, 0))),
+        events=(Event(at_s=12, robot_fails="r_0"),),
+    )
+    simulation = muster.Simulation(mission, plan_of(r_0=["0"], r_1=["1"]))
+    while not simulation.done:
+        simulation.advance(1000)
+    report = simulation.result()
+    assert report.tasks_done == ("1",)
+    ((task, reason),) = report.tasks_lost
+    assert task == "0"
+    assert "r_0 stands there" in reason
+    assert "no longer taking part: r_0" in reason
+
+
+def test_a_task_is_tried_again_when_the_broken_robot_returns():
+    mission = Mission(
+        robots=(
+            Robot(id="r_0", position=(0, 0), radius_m=0.5),
+            Robot(id="r_1", position=(0, 5), radius_m=0.5),
+        ),
+        tasks=(Task(id="0", position=(10, 0), duration_s=20), Task(id="1", position=(30, 0))),
+        events=(Event(at_s=12, robot_fails="r_0"), Event(at_s=200, robot_returns="r_0")),
+    )
+    report = muster.simulate(mission, plan_of(r_0=["0"], r_1=["1"]))
+    assert sorted(report.tasks_done) == ["0", "1"]
+    assert report.contacts == 0

@@ -8,7 +8,7 @@ to be done, and the rest is planned again (`reallocation`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.rest import Rest
@@ -189,12 +189,26 @@ class Executor:
                 self._notice_capacity(hand)
 
     def _free_or_put_out(self, hand: Hand) -> None:
-        """A robot that does not get on is sent again, and out the next time."""
-        if hand.stuck_before:
+        """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
+        broken = [other for other in self.crew.values() if other.out]
+        blocking = next((one for one in broken if stands_in_the_way(one, hand.robot, hand.points_left)), None)
+        if blocking is not None and hand.activity is Activity.DRIVING:
+            self._ask(self._give_up_blocked(hand, blocking))
+        elif hand.stuck_before:
             self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
         else:
             self._tell("robot_sent_again", {"robot": hand.robot.id, "reason": "no progress"})
             self._dispatch.again(hand, self.now_s)
+
+    def _give_up_blocked(self, hand: Hand, blocking: Hand) -> Iterator[Change]:
+        """No robot gets to a task at which a broken one stands, if it is as large as the one that tried."""
+        task, points, reason = hand.route[0], hand.points_left, f"unreachable: {blocking.robot.id} stands there, out"
+        for other in self._present:
+            able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
+            if other is not hand and able and stands_in_the_way(blocking, other.robot, points):
+                self.ledger.refuse(task, other.robot.id, reason)
+        self.ledger.blocked_by[task] = blocking.robot.id
+        return self._dispatch.refuse(hand, task, reason, self.now_s)
 
     def _notice_capacity(self, hand: Hand) -> None:
         """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
@@ -272,10 +286,12 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
+        gone = ", ".join(hand.robot.id for hand in self.crew.values() if hand.out)
+        out = f"; no longer taking part: {gone}" if gone else ""
         lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
         for task in self.ledger.open:
             if task.id not in under_way:
-                lost[task.id] = self._left_out.get(task.id, "left out by the plan")
+                lost[task.id] = self._left_out.get(task.id, "left out by the plan") + out
         return {name: lost[name] for name in self.ledger.tasks if name in lost}
 
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:

@@ -141,6 +141,11 @@ class Hand:
         self.nearest_m, self.nearest_s = math.inf, now
 
     @property
+    def points_left(self) -> list[Place]:
+        """The places of the last order that it has not passed."""
+        return [waypoint.position for waypoint in self._waypoints[self.passed :]]
+
+    @property
     def way_left_m(self) -> float:
         """Metres of the last order that it has not travelled."""
         return path_length(self.position, self._waypoints[self.passed :])

@@ -9,7 +9,7 @@ and times are those of the whole mission, and prerequisites that have ended are 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from muster.allocation.fixed import keeping
@@ -171,7 +171,15 @@ def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
     robots = tuple(name for name in meant if name not in refused)
     if task.only_robots is not None and not meant:
         return robots, f"lock: only {', '.join(task.only_robots)} may do it, and takes no part any more"
-    return robots, "; ".join(f"{robot}: {why}" for robot, why in refused.items())
+    return robots, in_one_line(refused.items())
+
+
+def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:
+    """Say why each robot cannot: robots with the same reason together."""
+    robots: dict[str, list[str]] = {}
+    for robot, why in reasons:
+        robots.setdefault(why, []).append(robot)
+    return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())
 
 
 def _delayed(rest: Rest, problem: Problem) -> Problem:

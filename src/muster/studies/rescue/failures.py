@@ -79,14 +79,12 @@ def _cells(team: str, robot: str, found: Sequence[Flown], reasons: Notes) -> dic
 
 
 def _why_lost(mission: Mission, without: Mapping[str, Sequence[str]], flown: Flown) -> Iterator[str]:
-    """Of each task lost by these robots that are left, what lies behind the reason that the report gives."""
+    """Of each task lost by these robots that are left, the reason, in short where no other has the skill."""
     required = {task.id: task.requires for task in mission.tasks}
     for name, reason in flown.report.tasks_lost:
         able = [robot for robot, skills in without.items() if set(required[name]) <= set(skills)]
         if not able:
             yield f"lost: no other robot has {' and '.join(required[name])}."
-        elif set(able) <= set(flown.stuck):
-            yield "lost: the others that could do it did not get on and were put out; a dead body stood in their way."
         else:
             yield f"lost: {reason}."
 

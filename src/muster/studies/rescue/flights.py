@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from muster._carrying_out import carry_out
-from muster.execution.changes import STUCK
 from muster.execution.report import Report
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
@@ -62,8 +61,6 @@ class Flown:
         how many tasks went to another robot, over all times that the rest was planned again.
     planning_s
         processor time of planning the rest again, in all.
-    stuck
-        robots that the monitor put out because they did not get on.
     """
 
     report: Report
@@ -73,7 +70,6 @@ class Flown:
     visits: Mapping[str, tuple[Visit, ...]]
     moved: int
     planning_s: float
-    stuck: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,7 +126,6 @@ class _Log:
     """Of the last event of a kind, robot and task."""
     moved: int = 0
     planning_s: float = 0.0
-    stuck: list[str] = field(default_factory=list)
     _heard_cpu_s: float = 0.0
 
     def on_plan(self, now: float, plan: Plan) -> None:
@@ -140,8 +135,6 @@ class _Log:
         if kind == "replanned":  # told as soon as it is done; what asked for it was told just before
             self.planning_s += time.process_time() - self._heard_cpu_s
             self.moved += len(data["moved"])
-        elif kind == STUCK:
-            self.stuck.append(data["robot"])
         elif "robot" in data and "task" in data:
             self.moments[kind, data["robot"], data["task"]] = now
         self._heard_cpu_s = time.process_time()
@@ -165,7 +158,6 @@ class _Log:
             visits={robot.id: self._visits(robot.id) for robot in self.mission.robots},
             moved=self.moved,
             planning_s=self.planning_s,
-            stuck=tuple(self.stuck),
         )
 
     def _visits(self, robot: str) -> tuple[Visit, ...]:
