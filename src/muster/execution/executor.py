@@ -17,7 +17,7 @@ from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
+from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.rest import Rest
@@ -180,6 +180,9 @@ class Executor:
         if self.now_s < self._look_s:
             return
         self._look_s = self.now_s + self._limits.look_every_s
+        if any(seems_late(hand, self.now_s, self._limits) for hand in self._present):
+            for hand in held_up(self._present):
+                hand.nearest_s = self.now_s
         for hand in self._present:
             if is_silent(hand, self.now_s, self._limits):
                 self._ask(self._changes.put_out(hand, SILENT, self.now_s))

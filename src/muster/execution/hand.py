@@ -25,7 +25,7 @@ class Activity(Enum):
     RETURNING = "returning"  # to where its route ends
 
 
-_MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
+MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
 
 
 @dataclass
@@ -103,7 +103,7 @@ class Hand:
 
     def hear(self, now: float) -> Telemetry | None:
         """What it says, if that is new."""
-        if self.activity in _MOVING and not self.out:
+        if self.activity in MOVING and not self.out:
             self.busy_s += now - self.since_s
         self.since_s = now
         said = self.port.telemetry()

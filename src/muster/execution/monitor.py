@@ -1,4 +1,7 @@
-"""What the monitor notices of a robot: that it is silent, does not get on, or will use more than it can."""
+"""What the monitor notices of a robot: that it is silent, does not get on, or will use more than it can.
+
+A robot that others hold up who are at work does not count as stuck, however long they take.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.execution.hand import Activity, Hand
+from muster.execution.hand import MOVING, Activity, Hand
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.port import Place
 
 _ROUNDING = 1e-6  # relative and absolute; by how much usage may be above capacity
+_ASIDE_M = 0.05  # by which a robot said to be before another may be aside
 _LEAST_SHARE = 0.05  # of its speed, with which a robot gets on
 
 
@@ -47,7 +51,7 @@ def is_silent(hand: Hand, now: float, limits: Limits) -> bool:
 def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
     """Whether a robot that should get on does not: its way grows no shorter, or its work takes far too long."""
     if hand.activity is Activity.WORKING:
-        return now > hand.begun_s + 2 * hand.work_s + limits.stuck_after_s
+        return now > max(hand.begun_s + 2 * hand.work_s, hand.nearest_s) + limits.stuck_after_s
     if hand.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
     left = hand.way_left_m
@@ -55,6 +59,44 @@ def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
         hand.nearest_m, hand.nearest_s = left, now
     arrives = left < _LEAST_SHARE * hand.robot.speed_mps * limits.stuck_after_s
     return now - hand.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
+
+
+def seems_late(hand: Hand, now: float, limits: Limits) -> bool:
+    """Whether a robot may soon count as stuck."""
+    expected_s = hand.begun_s + hand.work_s if hand.activity is Activity.WORKING else hand.nearest_s
+    return now > expected_s + limits.stuck_after_s / 2
+
+
+def held_up(crew: Sequence[Hand]) -> list[Hand]:
+    """Those under way who have one before them that stands at work, or is held up itself."""
+    under_way = [hand for hand in crew if hand.activity in MOVING and hand.points_left and hand.robot.radius_m > 0]
+    stand = [hand for hand in under_way if _stands_at_work(hand)]
+    held: list[Hand] = []
+    for one in stand:  # grows
+        reached = [hand for hand in under_way if hand not in stand and _is_before(one, hand)]
+        stand += reached
+        held += reached
+    return held
+
+
+def _stands_at_work(hand: Hand) -> bool:
+    near = math.dist(hand.position, hand.points_left[0]) <= hand.robot.radius_m
+    return hand.activity is Activity.WORKING and near and math.hypot(*hand.told.velocity if hand.told else ()) == 0
+
+
+def _is_before(other: Hand, hand: Hand) -> bool:
+    """Whether a robot cannot get to its next way point without touching another where that is now."""
+    reach = hand.robot.radius_m + other.robot.radius_m + _ASIDE_M
+    return distance_to_piece(other.position, hand.position, hand.points_left[0]) < reach
+
+
+def distance_to_piece(point: Place, start: Place, end: Place) -> float:
+    """Metres from a point to the straight piece between two others."""
+    along = [b - a for a, b in zip(start, end, strict=True)]
+    squared = sum(c * c for c in along)
+    share = sum((p - a) * c for p, a, c in zip(point, start, along, strict=True)) / squared if squared > 0 else 0.0
+    share = min(1.0, max(0.0, share))
+    return math.dist(point, [a + share * c for a, c in zip(start, along, strict=True)])
 
 
 def stands_in_the_way(broken: Hand, robot: Robot, points: Sequence[Place]) -> bool:
