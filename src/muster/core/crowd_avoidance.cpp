@@ -85,7 +85,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   for (std::size_t k = 0; k < group.size(); ++k) {
     const CrowdRobot& robot = robots_[group[k]];
     const Body& body = robot.body;
-    const bool chooses = !robot.stands(time()) && (D == 2 || body.flies);
+    const bool chooses = robot.gives_way(time()) && (D == 2 || body.flies);
     choosing.push_back(chooses);
     agents.positions.push_back(in_dimensions<D>(robot.position));
     agents.velocities.push_back(in_dimensions<D>(robot.velocity));

@@ -103,6 +103,8 @@ struct CrowdRobot {
     if (commanded != Vec<3>{}) return false;
     return failed || phase == Phase::holding || (phase == Phase::idle && !is_away(time));
   }
+  // It is moved by others too. Where it holds or turns it stays, also in the step in which it comes to a stand.
+  bool gives_way(double time) const { return phase != Phase::holding && phase != Phase::turning && !stands(time); }
 };
 
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }

@@ -117,11 +117,13 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
     robot.patience.stuck = 0.0;
     return {};
   }
-  const bool impatient = robot.patience.stuck > kPatience;
   meet(i, course, near);
   const bool yields = std::any_of(near.begin(), near.end(), [&](int k) {
     return on_way_point(k) && robots_[k].has_time() && !robots_[k].aside.empty();
   });
+  const bool almost_there =
+      norm(goal - robot.position) < robot.body.radius && std::none_of(near.begin(), near.end(), on_way_point);
+  const bool impatient = robot.patience.stuck > (almost_there ? kYields : kPatience);
   if (yields && robot.patience.stuck < kYields) return {};
   if (near.empty() && !robot.near_faces.empty() && (robot.trail.back || impatient)) return wanted_back(robot, course);
   robot.trail.back = false;

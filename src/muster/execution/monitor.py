@@ -68,20 +68,28 @@ def seems_late(hand: Hand, now: float, limits: Limits) -> bool:
 
 
 def held_up(crew: Sequence[Hand]) -> list[Hand]:
-    """Those under way who have one before them that stands at work, or is held up itself."""
+    """Those under way who have one before them that stands at work, or is held up itself.
+
+    Of two that stand close to their way points at work, the one that is nearer to its own holds the other up.
+    """
     under_way = [hand for hand in crew if hand.activity in MOVING and hand.points_left and hand.robot.radius_m > 0]
     stand = [hand for hand in under_way if _stands_at_work(hand)]
     held: list[Hand] = []
     for one in stand:  # grows
-        reached = [hand for hand in under_way if hand not in stand and _is_before(one, hand)]
-        stand += reached
+        reached = [hand for hand in under_way if hand not in held and hand is not one and _is_before(one, hand)]
+        reached = [hand for hand in reached if hand not in stand or _off(hand) > _off(one)]
+        stand += [hand for hand in reached if hand not in stand]
         held += reached
     return held
 
 
 def _stands_at_work(hand: Hand) -> bool:
-    near = math.dist(hand.position, hand.points_left[0]) <= hand.robot.radius_m
-    return hand.activity is Activity.WORKING and near and math.hypot(*hand.told.velocity if hand.told else ()) == 0
+    still = hand.told is not None and not any(hand.told.velocity)
+    return hand.activity is Activity.WORKING and still and _off(hand) <= hand.robot.radius_m
+
+
+def _off(hand: Hand) -> float:
+    return math.dist(hand.position, hand.points_left[0])
 
 
 def _is_before(other: Hand, hand: Hand) -> bool:
