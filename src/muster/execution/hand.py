@@ -68,7 +68,7 @@ class Hand:
     usage_to_task: float = 0.0  # from then to the end of the task at hand, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
-    nearest_m: float = math.inf  # least way left of this order, and when it was reached
+    nearest_m: float = math.inf  # least way left of this order, and when it was reached, or others last held it up
     nearest_s: float = 0.0
     stuck_before: bool = False
     warned_of: str = ""  # the task on the way to which its capacity was found too small

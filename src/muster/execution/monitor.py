@@ -51,7 +51,7 @@ def is_silent(hand: Hand, now: float, limits: Limits) -> bool:
 def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
     """Whether a robot that should get on does not: its way grows no shorter, or its work takes far too long."""
     if hand.activity is Activity.WORKING:
-        return now > max(hand.begun_s + 2 * hand.work_s, hand.nearest_s) + limits.stuck_after_s
+        return now > hand.nearest_s + 2 * hand.work_s + limits.stuck_after_s
     if hand.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
     left = hand.way_left_m
@@ -63,8 +63,8 @@ def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
 
 def seems_late(hand: Hand, now: float, limits: Limits) -> bool:
     """Whether a robot may soon count as stuck."""
-    expected_s = hand.begun_s + hand.work_s if hand.activity is Activity.WORKING else hand.nearest_s
-    return now > expected_s + limits.stuck_after_s / 2
+    works_s = hand.work_s if hand.activity is Activity.WORKING else 0.0
+    return hand.activity in MOVING and now > hand.nearest_s + works_s + limits.stuck_after_s / 2
 
 
 def held_up(crew: Sequence[Hand]) -> list[Hand]:
