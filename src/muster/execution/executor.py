@@ -195,7 +195,9 @@ class Executor:
         """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, hand.robot, hand.points_left)), None)
-        if blocking is not None and hand.activity is Activity.DRIVING:
+        if blocking is not None and hand.activity is Activity.RETURNING:
+            self._dispatch.end_here(hand, self.now_s)
+        elif blocking is not None:
             self._ask(self._give_up_blocked(hand, blocking))
         elif hand.stuck_before:
             self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
