@@ -54,7 +54,7 @@ class Bodies:
 
 
 def bodily_mission(seed):
-    """A disturbed mission of robots with bodies, and how they avoid each other.
+    """A disturbed mission of robots with bodies, and how they avoid each other. In space all are drones.
 
     In three of four without a map places lie on a coarse grid, so that robots stand where others have to work.
     """
@@ -99,6 +99,7 @@ def _free(place, robots):
 
 
 def _with_body(robot, random):
+    robot = replace(robot, kind="air") if len(robot.position) == 3 else robot
     kinematics = "quadcopter" if robot.kind == "air" else random.choice(("holonomic", "differential-drive"))
     acceleration = random.choice((None, 1.0))
     return replace(robot, radius_m=RADIUS, kinematics=kinematics, acceleration_mps2=acceleration)

@@ -26,7 +26,7 @@ std::vector<Box> ground_below(const WallSet& walls, double radius) {
   return {{Vec<3>{{-kFar, -kFar, -kFar}}, Vec<3>{{kFar, kFar, walls.ground - radius}}}};
 }
 
-// Along the walls instead of into them: what each leaves of a velocity, for those that fly.
+// Along the walls instead of into them: what each leaves of a velocity, where avoidance does not look at walls.
 Vec<3> slid(const CrowdRobot& robot, const WallSet& walls, Vec<3> velocity, double dt) {
   const Braking braking{dt, robot.body.acceleration};
   const auto leave = [&](const Vec<3>& closest) {
@@ -108,7 +108,8 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
       if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
     }
     for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
-    if constexpr (D == 3) chosen = slid(robots_[group[k]], walls_[robots_[group[k]].body.walls], chosen, settings_.dt);
+    if (D == 3 || settings_.avoidance != Avoidance::orca)
+      chosen = slid(robots_[group[k]], walls_[robots_[group[k]].body.walls], chosen, settings_.dt);
   }
 }
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from muster.execution.hand import MOVING, Activity, Hand
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
+from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place
 
 _ROUNDING = 1e-6  # relative and absolute; by how much usage may be above capacity
@@ -108,9 +109,15 @@ def distance_to_piece(point: Place, start: Place, end: Place) -> float:
 
 
 def stands_in_the_way(broken: Hand, robot: Robot, points: Sequence[Place]) -> bool:
-    """Whether a robot that is out stands so near one of these points that another cannot get there."""
+    """Whether a robot that is out stands so near one of these points that another cannot get there.
+
+    It stands where it was last heard, or as far on as it took to brake.
+    """
     reach = broken.robot.radius_m + robot.radius_m
-    return any(math.dist(broken.position, point) < reach for point in points)
+    last, velocity = broken.position, broken.told.velocity if broken.told is not None else (0.0, 0.0, 0.0)
+    speed, most = math.hypot(*velocity), limits_of(broken.robot).acceleration_mps2
+    stood = tuple(c + v * speed / (2 * most) for c, v in zip(last, velocity, strict=True))
+    return any(distance_to_piece(point, last, (stood[0], stood[1], stood[2])) < reach for point in points)
 
 
 def exceeds(used: float, capacity: float | None) -> bool:
