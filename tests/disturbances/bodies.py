@@ -33,6 +33,11 @@ class Bodies:
     def position(self, robot) -> Place:
         return self.ports[robot].telemetry().position
 
+    def beside_broken(self, robot):
+        """Whether a broken robot truly stands close to a robot, wherever it was last heard."""
+        places = dict(zip(self.ports, self._world.positions.tolist(), strict=True))
+        return any(dist(places[robot], places[other]) < 4 * RADIUS for other in self.broken)
+
     def step(self, dt):
         """Go on, at most to where a robot is done with something."""
         self._world.advance(self.now + dt)
@@ -77,6 +82,8 @@ def _on_grid(place):
 
 
 def _task_at(task, moved):
+    if len(task.position) == 3:  # those of a task that is moved could lie below the ground
+        return replace(task, position=moved(task.position), entry=None, exit=None)
     return replace(task, position=moved(task.position), entry=moved(task.entry), exit=moved(task.exit))
 
 

@@ -139,9 +139,11 @@ Vec<3> Manners::wanted_aside(int i, const Vec<3>& course, const std::vector<int>
   return tilted(course, robot.patience.tilt_at(time_, robot.body, robot.whims));
 }
 
-// Ask those who stand where robot i wants to be, and if it is held up those ahead of it, too.
+// Ask those who stand where robot i wants to be, and if it is held up those ahead of it, too. Who only comes back asks
+// nobody: robots without orders would drive each other about for ever.
 void Manners::meet(int i, const Vec<3>& course, const std::vector<int>& near) const {
   const CrowdRobot& robot = robots_[i];
+  if (robot.phase == Phase::idle && robot.asked_until < time_) return;
   const bool impatient = robot.patience.stuck > kPatience;
   for (const int k : near) {
     const bool ahead = dot(robots_[k].position - robot.position, course) > 0.0;
