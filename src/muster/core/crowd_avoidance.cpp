@@ -102,6 +102,8 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   const std::vector<Vec<D>> found = velocities<D>(agents, walls, choosing, settings_);
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (!choosing[k]) continue;
+    // RVO and HRVO would rather stand than get near to those behind a way point.
+    if (robots_[group[k]].arrives && settings_.avoidance != Avoidance::orca) continue;
     Vec<3>& chosen = chosen_[group[k]];
     if constexpr (D == 2) {  // uphill in proportion
       const double wanted = std::hypot(chosen[0], chosen[1]);

@@ -78,6 +78,7 @@ struct CrowdRobot {
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
   Trail trail;
+  bool arrives = false;         // whether its way point is close by, and nobody on it
   bool waits = false;           // whether another is at work on its way point
   double asked_until = kNever;  // until then it makes room
   double look_again = kNever;   // when it looks for a way again after it found none

@@ -92,6 +92,7 @@ Vec<3> Manners::course_without_order(int i) const {
 
 Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
   CrowdRobot& robot = robots_[i];
+  robot.arrives = false;
   if (!robot.turned_aside) {
     robot.waits = false;
     return course;
@@ -124,6 +125,7 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
   const bool almost_there =
       norm(goal - robot.position) < robot.body.radius && std::none_of(near.begin(), near.end(), on_way_point);
   const bool impatient = robot.patience.stuck > (almost_there ? kYields : kPatience);
+  robot.arrives = almost_there && !impatient;
   if (yields && robot.patience.stuck < kYields) return {};
   if (near.empty() && !robot.near_faces.empty() && (robot.trail.back || impatient)) return wanted_back(robot, course);
   robot.trail.back = false;
