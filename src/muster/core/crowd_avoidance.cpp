@@ -102,16 +102,17 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   const std::vector<Vec<D>> found = velocities<D>(agents, walls, choosing, settings_);
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (!choosing[k]) continue;
-    // RVO and HRVO would rather stand than get near to those behind a way point.
-    if (robots_[group[k]].arrives && settings_.avoidance != Avoidance::orca) continue;
+    const CrowdRobot& robot = robots_[group[k]];
+    const bool orca = settings_.avoidance == Avoidance::orca;
     Vec<3>& chosen = chosen_[group[k]];
-    if constexpr (D == 2) {  // uphill in proportion
-      const double wanted = std::hypot(chosen[0], chosen[1]);
-      if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
+    if (orca || !robot.arrives) {  // RVO and HRVO would rather stand than get near to those behind a way point
+      if constexpr (D == 2) {      // uphill in proportion
+        const double wanted = std::hypot(chosen[0], chosen[1]);
+        if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
+      }
+      for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
     }
-    for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
-    if (D == 3 || settings_.avoidance != Avoidance::orca)
-      chosen = slid(robots_[group[k]], walls_[robots_[group[k]].body.walls], chosen, settings_.dt);
+    if (D == 3 || !orca) chosen = slid(robot, walls_[robot.body.walls], chosen, settings_.dt);
   }
 }
 
