@@ -64,6 +64,9 @@ class World:
         for point in self.ports.values():
             point.step(0.0)
 
+    def position(self, robot):
+        return self.ports[robot].position
+
     def step(self, dt):
         self.now += dt
         while self._script and self._script[0].at_s <= self.now:

@@ -76,16 +76,16 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
 bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
   const double away = norm(point.at - robot.position);
+  const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
   if (point.stops() || robot.next + 1 == robot.way.size()) {
     const Braking braking{dt, robot.body.acceleration};
     if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
-    const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
     return away <= (no_nearer ? tolerances.arrival : kExact);
   }
-  if (away <= kExact) return true;
+  const double past = corner_speed(robot, before, robot.next, tolerances, dt);
+  if (away <= kExact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
-  if (missed <= tolerances.corner + kRounding && corner_speed(robot, before, robot.next, tolerances, dt) > 0.0)
-    return true;
+  if (missed <= tolerances.corner + kRounding && past > 0.0) return true;
   const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
   return robot.turned_aside && missed <= room;
 }

@@ -26,7 +26,7 @@ std::vector<Box> ground_below(const WallSet& walls, double radius) {
   return {{Vec<3>{{-kFar, -kFar, -kFar}}, Vec<3>{{kFar, kFar, walls.ground - radius}}}};
 }
 
-// Along the walls instead of into them: what each leaves of a velocity, for those that fly.
+// Along the walls instead of into them: what each leaves of a velocity, where avoidance does not look at walls.
 Vec<3> slid(const CrowdRobot& robot, const WallSet& walls, Vec<3> velocity, double dt) {
   const Braking braking{dt, robot.body.acceleration};
   const auto leave = [&](const Vec<3>& closest) {
@@ -85,7 +85,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   for (std::size_t k = 0; k < group.size(); ++k) {
     const CrowdRobot& robot = robots_[group[k]];
     const Body& body = robot.body;
-    const bool chooses = !robot.stands(time()) && (D == 2 || body.flies);
+    const bool chooses = robot.gives_way(time()) && (D == 2 || body.flies);
     choosing.push_back(chooses);
     agents.positions.push_back(in_dimensions<D>(robot.position));
     agents.velocities.push_back(in_dimensions<D>(robot.velocity));
@@ -102,13 +102,17 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   const std::vector<Vec<D>> found = velocities<D>(agents, walls, choosing, settings_);
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (!choosing[k]) continue;
+    const CrowdRobot& robot = robots_[group[k]];
+    const bool orca = settings_.avoidance == Avoidance::orca;
     Vec<3>& chosen = chosen_[group[k]];
-    if constexpr (D == 2) {  // uphill in proportion
-      const double wanted = std::hypot(chosen[0], chosen[1]);
-      if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
+    if (orca || !robot.arrives) {  // RVO and HRVO would rather stand than get near to those behind a way point
+      if constexpr (D == 2) {      // uphill in proportion
+        const double wanted = std::hypot(chosen[0], chosen[1]);
+        if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);
+      }
+      for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
     }
-    for (int axis = 0; axis < D; ++axis) chosen[axis] = found[k][axis];
-    if constexpr (D == 3) chosen = slid(robots_[group[k]], walls_[robots_[group[k]].body.walls], chosen, settings_.dt);
+    if (D == 3 || !orca) chosen = slid(robot, walls_[robot.body.walls], chosen, settings_.dt);
   }
 }
 

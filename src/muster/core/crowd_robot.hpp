@@ -78,7 +78,11 @@ struct CrowdRobot {
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
   Trail trail;
-  double asked_until = kNever;  // until then it makes room though it has no order
+  bool arrives = false;         // whether its way point is close by, and nobody on it
+  bool waits = false;           // whether another is at work on its way point
+  double asked_until = kNever;  // until then it makes room
+  double look_again = kNever;   // when it looks for a way again after it found none
+  std::vector<Vec<3>> aside;    // places by which it makes room or comes back; the last is where it stays
   Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
 
   Random noise{0}, whims{0};  // what the world does to it, and the tilts that it tries
@@ -88,14 +92,20 @@ struct CrowdRobot {
 
   double top_speed() const { return body.speed * slowed; }
   bool under_way() const { return velocity != Vec<3>{}; }
-  bool comes_back(double time) const {
-    return phase == Phase::idle && !failed && asked_until < time && position != post;
+  // It has nothing to do that could not be done elsewhere as well.
+  bool has_time() const { return !failed && body.radius > 0.0 && (phase == Phase::idle || waits); }
+  // It makes room, or is not back yet.
+  bool is_away(double time) const {
+    return phase == Phase::idle && !failed && body.radius > 0.0 && (asked_until >= time || position != post);
   }
+  const Vec<3>& goal() const { return !aside.empty() ? aside.back() : phase == Phase::idle ? post : way[next].at; }
   // It stays where it is whatever comes: at work, out of order, or at its post and not asked to make room.
   bool stands(double time) const {
     if (commanded != Vec<3>{}) return false;
-    return failed || phase == Phase::holding || (phase == Phase::idle && asked_until < time && position == post);
+    return failed || phase == Phase::holding || (phase == Phase::idle && !is_away(time));
   }
+  // It is moved by others too. Where it holds or turns it stays, also in the step in which it comes to a stand.
+  bool gives_way(double time) const { return phase != Phase::holding && phase != Phase::turning && !stands(time); }
 };
 
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }

@@ -9,6 +9,7 @@ namespace muster {
 namespace {
 
 constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
+constexpr double kExact = 1e-3;    // metres from its post at which a robot is back
 constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
 
 double normal(Random& random) {
@@ -47,11 +48,15 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.post = robot.position;
   robot.patience = {};
   robot.trail = {robot.position, {}, false};
+  robot.waits = false;
+  robot.asked_until = kNever;
+  robot.aside.clear();
 }
 
 void CrowdWorld::fail(int i) {
   robots_[i].failed = true;
   robots_[i].way.clear();
+  robots_[i].aside.clear();
   robots_[i].next = 0;
   robots_[i].phase = Phase::idle;
 }
@@ -80,17 +85,15 @@ void CrowdWorld::step() {
 void CrowdWorld::want(const AgentTree<3>& tree) {
   const std::size_t n = robots_.size();
   course_.assign(n, {});
-  for (std::size_t i = 0; i < n; ++i) {
-    const CrowdRobot& robot = robots_[i];
-    if (robot.phase == Phase::going) course_[i] = along_course(robot, settings_.tolerances, settings_.dt);
-    if (robot.comes_back(time())) course_[i] = straight_to(robot, robot.post, settings_.dt);
-  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (robots_[i].phase == Phase::going) course_[i] = along_course(robots_[i], settings_.tolerances, settings_.dt);
   wanted_ = course_;
   if (settings_.avoidance == Avoidance::none) return;
-  const Manners manners(robots_, tree, time(), settings_.dt);
-  for (std::size_t i = 0; i < n; ++i)
-    if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0)
-      wanted_[i] = manners.wanted(static_cast<int>(i), course_[i]);
+  const Manners manners(robots_, walls_, tree, time(), settings_.dt, settings_.space);
+  for (int i = 0; i < static_cast<int>(n); ++i) {
+    if (robots_[i].is_away(time())) wanted_[i] = course_[i] = manners.course_without_order(i);
+    if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0) wanted_[i] = manners.wanted(i, course_[i]);
+  }
 }
 
 void CrowdWorld::steer() {
@@ -147,7 +150,7 @@ void CrowdWorld::drive(CrowdRobot& robot) {
 void CrowdWorld::take_note(int i) {
   CrowdRobot& robot = robots_[i];
   if (robot.phase == Phase::idle) {
-    settle(robot);
+    settle(i);
     return;
   }
   if (robot.phase == Phase::going) {
@@ -172,10 +175,13 @@ void CrowdWorld::take_note(int i) {
 }
 
 // Where a robot without an order comes to a stand is its post.
-void CrowdWorld::settle(CrowdRobot& robot) const {
-  if (robot.comes_back(time())) robot.patience.note(robot, settings_.dt);
-  const bool near = norm(robot.post - robot.position) <= settings_.tolerances.arrival;
-  if (near || robot.failed || robot.stopping) robot.post = robot.position;
+void CrowdWorld::settle(int i) {
+  CrowdRobot& robot = robots_[i];
+  const double away = norm(robot.post - robot.position);
+  const bool no_nearer = robot.turned_aside || away >= norm(robot.post - before_[i]);
+  const bool back = away <= (no_nearer ? settings_.tolerances.arrival : kExact);
+  if (robot.is_away(time())) robot.patience.note(robot, settings_.dt);
+  if ((back && robot.asked_until < time()) || robot.failed || robot.stopping) robot.post = robot.position;
   if (robot.commanded == Vec<3>{}) robot.stopping = false;
 }
 

@@ -81,7 +81,7 @@ class CrowdWorld {
   void measure(const AgentTree<3>& tree);
   void measure(int i, int k);
   void take_note(int i);
-  void settle(CrowdRobot& robot) const;
+  void settle(int i);
   void next_way_point(int i);
   void collect_walls(CrowdRobot& robot) const;
 

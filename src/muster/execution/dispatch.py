@@ -62,8 +62,7 @@ class Dispatch:
         elif self.goes_home(hand) and hand.home is not None:
             way = self.way(hand, hand.home)
             if way is None:
-                hand.at_home = True
-                self._tell("no_way_to_end", {"robot": hand.robot.id})
+                self.end_here(hand, now)
             else:
                 hand.send(now, Activity.RETURNING, [Waypoint(point) for point in way])
                 self._tell("returns", {"robot": hand.robot.id})
@@ -71,6 +70,13 @@ class Dispatch:
     def goes_home(self, hand: Hand) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
         return hand.activity is Activity.IDLE and not hand.route and not hand.at_home and hand.home is not None
+
+    def end_here(self, hand: Hand, now: float) -> None:
+        """A robot cannot get to where its route ends."""
+        if hand.activity is Activity.RETURNING:
+            hand.stop(now)
+        hand.at_home = True
+        self._tell("no_way_to_end", {"robot": hand.robot.id})
 
     def again(self, hand: Hand, now: float) -> None:
         """Send a robot that does not get on once more, by a new way if it drives."""

@@ -17,7 +17,7 @@ from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
+from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.rest import Rest
@@ -187,6 +187,9 @@ class Executor:
         if self.now_s < self._look_s:
             return
         self._look_s = self.now_s + self._limits.look_every_s
+        if any(seems_late(hand, self.now_s, self._limits) for hand in self._present):
+            for hand in held_up(self._present):
+                hand.nearest_s = self.now_s
         for hand in self._present:
             if is_silent(hand, self.now_s, self._limits):
                 self._ask(self._changes.put_out(hand, SILENT, self.now_s))
@@ -199,7 +202,9 @@ class Executor:
         """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, hand.robot, hand.points_left)), None)
-        if blocking is not None and hand.activity is Activity.DRIVING:
+        if blocking is not None and hand.activity is Activity.RETURNING:
+            self._dispatch.end_here(hand, self.now_s)
+        elif blocking is not None:
             self._ask(self._give_up_blocked(hand, blocking))
         elif hand.stuck_before:
             self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))

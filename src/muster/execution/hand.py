@@ -25,7 +25,7 @@ class Activity(Enum):
     RETURNING = "returning"  # to where its route ends
 
 
-_MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
+MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
 
 
 @dataclass
@@ -69,7 +69,7 @@ class Hand:
     usage_to_task: float = 0.0  # from then to the end of the task at hand, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
-    nearest_m: float = math.inf  # least way left of this order, and when it was reached
+    nearest_m: float = math.inf  # least way left of this order, and when it was reached, or others last held it up
     nearest_s: float = 0.0
     stuck_before: bool = False
     warned_of: str = ""  # the task on the way to which its capacity was found too small
@@ -104,7 +104,7 @@ class Hand:
 
     def hear(self, now: float) -> Telemetry | None:
         """What it says, if that is new."""
-        if self.activity in _MOVING and not self.out:
+        if self.activity in MOVING and not self.out:
             self.busy_s += now - self.since_s
         self.since_s = now
         said = self.port.telemetry()

@@ -1,4 +1,7 @@
-"""What the monitor notices of a robot: that it is silent, does not get on, or will use more than it can."""
+"""What the monitor notices of a robot: that it is silent, does not get on, or will use more than it can.
+
+A robot that others hold up who are at work does not count as stuck, however long they take.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.execution.hand import Activity, Hand
+from muster.execution.hand import MOVING, Activity, Hand
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
+from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place
 
 _ROUNDING = 1e-6  # relative and absolute; by how much usage may be above capacity
+_ASIDE_M = 0.05  # by which a robot said to be before another may be aside
 _LEAST_SHARE = 0.05  # of its speed, with which a robot gets on
 
 
@@ -47,7 +52,7 @@ def is_silent(hand: Hand, now: float, limits: Limits) -> bool:
 def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
     """Whether a robot that should get on does not: its way grows no shorter, or its work takes far too long."""
     if hand.activity is Activity.WORKING:
-        return now > hand.begun_s + 2 * hand.work_s + limits.stuck_after_s
+        return now > hand.nearest_s + 2 * hand.work_s + limits.stuck_after_s
     if hand.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
     left = hand.way_left_m
@@ -57,10 +62,62 @@ def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
     return now - hand.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
 
 
+def seems_late(hand: Hand, now: float, limits: Limits) -> bool:
+    """Whether a robot may soon count as stuck."""
+    works_s = hand.work_s if hand.activity is Activity.WORKING else 0.0
+    return hand.activity in MOVING and now > hand.nearest_s + works_s + limits.stuck_after_s / 2
+
+
+def held_up(crew: Sequence[Hand]) -> list[Hand]:
+    """Those under way who have one before them that stands at work, or is held up itself.
+
+    Of two that stand close to their way points at work, the one that is nearer to its own holds the other up.
+    """
+    under_way = [hand for hand in crew if hand.activity in MOVING and hand.points_left and hand.robot.radius_m > 0]
+    stand = [hand for hand in under_way if _stands_at_work(hand)]
+    held: list[Hand] = []
+    for one in stand:  # grows
+        reached = [hand for hand in under_way if hand not in held and hand is not one and _is_before(one, hand)]
+        reached = [hand for hand in reached if hand not in stand or _off(hand) > _off(one)]
+        stand += [hand for hand in reached if hand not in stand]
+        held += reached
+    return held
+
+
+def _stands_at_work(hand: Hand) -> bool:
+    still = hand.told is not None and not any(hand.told.velocity)
+    return hand.activity is Activity.WORKING and still and _off(hand) <= hand.robot.radius_m
+
+
+def _off(hand: Hand) -> float:
+    return math.dist(hand.position, hand.points_left[0])
+
+
+def _is_before(other: Hand, hand: Hand) -> bool:
+    """Whether a robot cannot get to its next way point without touching another where that is now."""
+    reach = hand.robot.radius_m + other.robot.radius_m + _ASIDE_M
+    return distance_to_piece(other.position, hand.position, hand.points_left[0]) < reach
+
+
+def distance_to_piece(point: Place, start: Place, end: Place) -> float:
+    """Metres from a point to the straight piece between two others."""
+    along = [b - a for a, b in zip(start, end, strict=True)]
+    squared = sum(c * c for c in along)
+    share = sum((p - a) * c for p, a, c in zip(point, start, along, strict=True)) / squared if squared > 0 else 0.0
+    share = min(1.0, max(0.0, share))
+    return math.dist(point, [a + share * c for a, c in zip(start, along, strict=True)])
+
+
 def stands_in_the_way(broken: Hand, robot: Robot, points: Sequence[Place]) -> bool:
-    """Whether a robot that is out stands so near one of these points that another cannot get there."""
+    """Whether a robot that is out stands so near one of these points that another cannot get there.
+
+    It stands where it was last heard, or as far on as it took to brake.
+    """
     reach = broken.robot.radius_m + robot.radius_m
-    return any(math.dist(broken.position, point) < reach for point in points)
+    last, velocity = broken.position, broken.told.velocity if broken.told is not None else (0.0, 0.0, 0.0)
+    speed, most = math.hypot(*velocity), limits_of(broken.robot).acceleration_mps2
+    stood = tuple(c + v * speed / (2 * most) for c, v in zip(last, velocity, strict=True))
+    return any(distance_to_piece(point, last, (stood[0], stood[1], stood[2])) < reach for point in points)
 
 
 def exceeds(used: float, capacity: float | None) -> bool:

@@ -116,11 +116,14 @@ class OverMap:
         here = {problem.task_index[name]: spot for name, spot in past.items()}
         here |= {problem.start(i): robots[robot.id] for i, robot in enumerate(problem.robots)}
         for k, metres in enumerate(found.table):
-            lost = [p for p in here if not np.isfinite(metres[p]).any()]
+            lost = [p for p in here if not np.isfinite(np.delete(metres[p], p)).any()]
             if lost:
                 refuges = np.array([here[p].refuge for p in lost])
                 apart = np.linalg.norm(over.exits[k, lost] - refuges, axis=1)
                 metres[lost] = apart[:, None] + over.lengths(k, refuges, 1)
+            for name, spot in past.items():  # a robot is where its past is, wherever that may be
+                for i in (i for i, robot in enumerate(problem.robots) if robots[robot.id] is spot):
+                    metres[problem.start(i), problem.task_index[name]] = 0.0
         return found
 
 
