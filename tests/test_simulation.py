@@ -1,5 +1,7 @@
 """`muster.Simulation`: a mission carried out as far as one lets it, and told what the mission file did not foresee."""
 
+from dataclasses import replace
+
 import pytest
 
 import muster
@@ -30,6 +32,15 @@ def test_it_goes_no_further_than_told(simulation):
     assert simulation.time_s == pytest.approx(3.0)
     assert simulation.positions["a"] == pytest.approx((3, 0, 0), abs=1e-6)
     assert not simulation.done
+
+
+def test_a_time_within_a_step_is_its_end(mission):
+    late = replace(mission, events=(Event(at_s=2.04, robot_fails="a"),))
+    simulation = muster.Simulation(late, muster.solve(late, iterations=100))
+    assert [one.kind for one in simulation.advance(until_s=9.99)] == ["robot_fails", "replanned", "sets_out"]
+    assert simulation.time_s == pytest.approx(2.1)
+    simulation.advance(until_s=2.25)
+    assert simulation.time_s == pytest.approx(2.3)
 
 
 def test_to_the_end_it_is_what_simulate_does(mission, simulation):

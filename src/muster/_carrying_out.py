@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
-from muster.execution.doing import acted
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.roads import Roads
@@ -79,7 +78,6 @@ class Simulation:
             mission,
             _with_objective(mission, plan),
             self._world.ports,
-            doing=acted,
             way=way_of(mission, roads),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
@@ -112,10 +110,14 @@ class Simulation:
         return {name: said.position for name, said in heard.items() if said is not None}
 
     def advance(self, until_s: float) -> Sequence[Happening]:
-        """Go on until something happens, until the mission is over, or up to a time; returns what happened."""
+        """Go on until something happens, until the mission is over, or up to a time; returns what happened.
+
+        It goes on by whole steps: what falls into a step, an event or `until_s`, comes at its end.
+        """
         first = len(self._executor.happenings)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
-            self._world.advance(min([until_s, self.time_s + LOOK_S, *(event.at_s for event in self._ahead[:1])]))
+            due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s)
+            self._world.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._executor.tick(self.time_s)

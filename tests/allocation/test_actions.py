@@ -202,6 +202,25 @@ def test_an_action_with_a_way_point_in_a_wall_is_unreachable():
     ]
 
 
+@pytest.mark.parametrize(
+    ("out", "why"),
+    [
+        ((10, 0), "goal blocked on the way to its exit: (10, 0): inside zone 0"),
+        ((-20.5, 0), "goal blocked on the way to its exit: (-20.5, 0): outside the boundary"),
+    ],
+)
+def test_an_exit_to_which_no_way_leads_is_unreachable_for_planner_and_judge(out, why):
+    mission = walled(Task(id="a", position=(7, 0), exit=out), Task(id="fine", position=(7, 0), exit=(15, 0)))
+    (item,) = impossible(Problem.compile(mission))
+    assert [(item.task, r.reason, r.detail) for r in item.reasons] == [("a", "unreachable", why)]
+    verdict = muster.verify(mission, Plan(routes=(Route("r", ("fine", "a")),)))
+    assert [(v.kind, v.task, v.detail) for v in verdict.violations] == [
+        ("unreachable", "a", "no way from its entry to its exit")
+    ]
+    plan = muster.solve(mission, iterations=10)
+    assert (plan.routes[0].tasks, muster.verify(mission, plan).valid) == (("fine",), True)
+
+
 def test_the_smallest_change_is_never_at_a_robot_that_cannot():
     mission = looked_at(
         Robot(id="able", position=(0, 0), camera=CAMERA, work_capacity=1), Robot(id="blind", position=(10, 0))

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from muster import Mission
+from tests.action_missions import able, acting, walled
 from tests.random_missions import random_mission, with_travel_tables
 
 SMALL = 5  # tasks, up to which every plan is looked at
@@ -15,6 +16,13 @@ class Case:
 
     mission: Mission
     small: bool
+
+    @property
+    def rounding(self):
+        """By how much, relative, judge and planner may differ."""
+        if self.mission.travel_rule != "map":
+            return 1e-9
+        return 1e-6 if self.mission.dimensions == 2 else 1e-2
 
 
 def case(seed):
@@ -31,7 +39,11 @@ def case(seed):
     if random.random() < 0.3:
         mission = with_own_ends(mission, random)
     if random.random() < 0.3:
-        mission = with_travel_tables(mission, seed)
+        return Case(with_travel_tables(mission, seed), small)
+    if random.random() < 0.5:
+        mission = with_actions(mission, random)
+    if random.random() < 0.3:
+        mission = walled(mission, random)
     return Case(mission, small)
 
 
@@ -55,6 +67,16 @@ def with_chain(mission, random):
         )
     by_id = {task.id: task for task in order}
     return replace(mission, tasks=tuple(by_id[task.id] for task in mission.tasks))
+
+
+def with_actions(mission, random):
+    """The mission with an action in two of three tasks, and robots that can do some of them."""
+
+    def place():
+        return tuple(round(random.uniform(-10, 10), 2) for _ in range(mission.dimensions))
+
+    robots = tuple(able(robot, random) for robot in mission.robots)
+    return replace(mission, robots=robots, tasks=tuple(acting(task, random, place) for task in mission.tasks))
 
 
 def with_own_ends(mission, random):

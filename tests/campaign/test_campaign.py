@@ -3,10 +3,12 @@
 import pytest
 
 from muster.allocation.problem import Problem
+from tests.action_missions import ACTIONS
 from tests.campaign.missions import case
 from tests.campaign.trial import trial
 
 pytest.importorskip("ortools", reason="needs the extra exact")
+pytest.importorskip("shapely", reason="needs the extra `map`")
 MISSIONS, CHUNK = 150, 25
 
 
@@ -31,7 +33,17 @@ def test_the_missions_have_every_rule():
     tasks = [task for mission in missions for task in mission.tasks]
     assert {rule.objective for rule in rules} == {"total", "max", "total+max", "average", "makespan"}
     assert {rule.usage for rule in rules} == {"distance", "time"}
-    assert {rule.travel for rule in rules} == {None, "matrix"}
+    assert {rule.travel for rule in rules} == {None, "matrix", "euclidean"}
+    assert {mission.travel_rule for mission in missions} == {"euclidean", "matrix", "map"}
+    acting = [mission for mission in missions if any(task.action for task in mission.tasks)]
+    assert {(mission.dimensions, mission.map is None) for mission in acting} == {
+        (2, True),
+        (2, False),
+        (3, True),
+        (3, False),
+    }
+    assert {task.action.name for mission in acting for task in mission.tasks if task.action} == set(ACTIONS)
+    assert {robot.kind for robot in robots} == {"ground", "air"}
     assert {robot.return_to_start for robot in robots} == {None, True, False}
     for values in (
         [mission.suitability for mission in missions],
@@ -41,6 +53,8 @@ def test_the_missions_have_every_rule():
         [robot.end_position for robot in robots],
         [robot.available_from_s for robot in robots],
         [robot.efficiency - 1 for robot in robots],
+        [robot.camera for robot in robots],
+        [task.action for task in tasks],
         [task.prerequisites for task in tasks],
         [task.only_robots for task in tasks],
         [task.requires for task in tasks],

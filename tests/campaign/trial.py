@@ -16,19 +16,23 @@ from tests.all_plans import best_plan
 from tests.campaign.missions import case
 
 ITERATIONS, MANY_ITERATIONS = 400, 20_000  # of `search`; others have a tenth of the first
+LONGER_RUNS = 5
 EXACT_EVERY, CONFLICTS_EVERY = (
     40,
     8,
 )  # one in so many small missions is solved exactly, one in so many looked at for conflicts
-ROUNDING = 1e-9
 OTHERS = tuple(name for name in ALLOCATORS if name != "search")
 
 
 @dataclass
 class Report:
-    """What was wrong, how often what was looked at, and how far the bound was below the best of all plans."""
+    """What was wrong, how often what was looked at, and how far the bound was below the best of all plans.
+
+    `rounding` is how much judge and planner may differ, relative.
+    """
 
     seed: int
+    rounding: float = 0.0
     failures: list[str] = field(default_factory=list)
     counts: Counter = field(default_factory=Counter)
     gaps: list[float] = field(default_factory=list)
@@ -43,7 +47,9 @@ def trial(seed):
     """Plan the mission of a seed and check all that is claimed; an error is a failure like any other."""
     report = Report(seed)
     try:
-        _run(report, case(seed))
+        given = case(seed)
+        report.rounding = given.rounding
+        _run(report, given)
     except Exception as error:
         report.failures.append(f"{type(error).__name__}: {error}")
     return report
@@ -60,7 +66,7 @@ def _run(report, given):
     begun = _judged(report, mission, start, bound)
     onward = muster.solve(mission, "search", seed=seed, iterations=ITERATIONS // 10, start=start)
     after = _judged(report, mission, onward, bound)
-    report.check(not _better(begun, after), f"search makes {begun} of {other} worse: {after}")
+    report.check(not _better(report, begun, after), f"search makes {begun} of {other} worse: {after}")
     _impossible(report, problem, (plan, start, onward))
     if given.small:
         _against_all_plans(report, problem, (found, begun, after), bound)
@@ -77,16 +83,18 @@ def _judged(report, mission, plan, bound):
     if plan.complete:
         value = verdict.value()
         report.counts["complete"] += 1
-        report.check(bound <= value + ROUNDING * (1 + value), f"{plan.allocator}: {value} is below the bound {bound}")
+        report.check(
+            bound <= value + report.rounding * (1 + value), f"{plan.allocator}: {value} is below the bound {bound}"
+        )
     weights = {task.id: task.priority for task in mission.tasks}
     return sum(sorted(weights[name] for route in plan.routes for name in route.tasks)), verdict.value()
 
 
-def _better(a, b):
+def _better(report, a, b):
     """Whether (weight, objective) a is better than b by more than rounding."""
-    if abs(a[0] - b[0]) > ROUNDING:
+    if abs(a[0] - b[0]) > 1e-9:
         return a[0] > b[0]
-    return a[1] < b[1] - 1e-7 * (1 + abs(b[1]))
+    return a[1] < b[1] - max(1e-7, report.rounding) * (1 + abs(b[1]))
 
 
 def _impossible(report, problem, plans):
@@ -101,10 +109,14 @@ def _against_all_plans(report, problem, found, bound):
     weight, value, routes = best_plan(problem)
     report.counts["small"] += 1
     for one in found:
-        report.check(not _better(one, (weight, value)), f"{one} is better than the best of all plans, {weight, value}")
+        report.check(
+            not _better(report, one, (weight, value)), f"{one} is better than the best of all plans, {weight, value}"
+        )
     _reached(report, problem, (weight, value), found[0])
     if sum(map(len, routes)) == len(problem.tasks):
-        report.check(bound <= value + ROUNDING * (1 + value), f"the best of all plans, {value}, is below {bound}")
+        report.check(
+            bound <= value + report.rounding * (1 + value), f"the best of all plans, {value}, is below {bound}"
+        )
         report.gaps.append(1 - bound / value if value else 0.0)
         report.counts["small: the best of all plans does all tasks"] += 1
     if report.seed % EXACT_EVERY == 0:
@@ -112,16 +124,21 @@ def _against_all_plans(report, problem, found, bound):
 
 
 def _reached(report, problem, best, found):
-    """Search finds the best of all plans, if not at once then in a longer run.
+    """Search finds the best of all plans, if not at once then in one of a few longer runs.
+
+    It is a heuristic: where tasks must all change robot at once one run of some thousand small missions misses it.
 
     Unless a travel table lacks ways: tasks that can only be done one on the way to or from the other are not put in
     one by one, so that search may miss them.
     """
-    if not _better(best, found):
+    if not _better(report, best, found):
         report.counts["small: search finds the best of all plans"] += 1
         return
-    plan = muster.solve(problem.mission, "search", seed=report.seed, iterations=MANY_ITERATIONS)
-    reached = not _better(best, problem.value(routes_of(problem, plan)))
+    runs = (
+        muster.solve(problem.mission, "search", seed=report.seed + k, iterations=MANY_ITERATIONS)
+        for k in range(LONGER_RUNS)
+    )
+    reached = any(not _better(report, best, problem.value(routes_of(problem, plan))) for plan in runs)
     report.counts["small: search finds the best of all plans in a longer run"] += reached
     report.check(reached or len(problem.travel[0]), f"search misses the best of all plans, {best}: {found}")
 
@@ -132,9 +149,11 @@ def _exactly(report, problem, best):
     said, value = problem.value(exact.routes), best[1]
     report.counts["exact"] += 1
     report.check(exact.optimal, f"exact: {said} is not proven optimal; the best of all plans is {best}")
-    report.check(not _better(best, said), f"exact: {said}, but the best of all plans is {best}")
+    report.check(not _better(report, best, said), f"exact: {said}, but the best of all plans is {best}")
     bound = exact.lower_bound or 0.0
-    report.check(bound <= value + ROUNDING * (1 + value), f"exact: the best of all plans, {value}, is below {bound}")
+    report.check(
+        bound <= value + report.rounding * (1 + value), f"exact: the best of all plans, {value}, is below {bound}"
+    )
 
 
 def _together(report, problem, plans):

@@ -8,7 +8,9 @@ import muster
 from muster.execution.doing import place
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation
-from muster.execution.travel import travel_of
+from muster.execution.travel import travel_of, way_of
+from muster.motion import actions
+from muster.motion.roads import Roads
 from tests.disturbances.missions import disturbed_mission
 from tests.execution.world import World, carry_out
 
@@ -70,11 +72,13 @@ class Watcher:
             score = self.mission.suitability[able.type].get(task.type, 0)
             fit = fit and score >= self.mission.rules.min_suitability
         self.report.check(fit, f"{robot} may not do {name}")
+        self.report.check(not isinstance(actions.plan(task, able), actions.Impossible), f"{robot} cannot do {name}")
+        self.report.check(now >= able.available_from_s, f"{robot} begins {name} before it is available")
 
     def _ends(self, name, robot):
         self.ends[name] += 1
         task, point = self.executor.ledger.tasks[name], self.world.ports[robot]
-        off = math.dist(point.position, place(task.exit or task.position))
+        off = math.dist(point.position, place(actions.plan(task, self.executor.crew[robot].robot).exit))
         self.report.check(off < 1e-6, f"{robot} ends {name} {off} m beside it")
 
     def _replanned(self, data):
@@ -103,9 +107,11 @@ def _run(report, mission):
     plan = muster.solve(mission, "greedy")
     world = World(mission)
     watcher = Watcher(report, mission, world)
-    travel = travel_of(mission)
+    roads = Roads.of(mission) if mission.travel_rule == "map" else None
+    travel = travel_of(mission, roads)
     replan = Reallocation(travel=travel, iterations=ITERATIONS)
-    executor = Executor(mission, plan, world.ports, travel=travel, replan=replan, observer=watcher)
+    way = way_of(mission, roads)
+    executor = Executor(mission, plan, world.ports, way=way, travel=travel, replan=replan, observer=watcher)
     watcher.executor = executor
     watcher.on_plan(0.0, executor.plan)
     carry_out(executor, world, step=STEP, until=LONGEST_S)
@@ -134,6 +140,10 @@ def _afterwards(report, mission, executor, watcher):
             off = math.dist(hand.position, hand.home)
             report.check(off < 1e-6, f"{hand.robot.id} ends {off} m from its end")
     report.counts["missions"] += 1
+    report.counts[f"missions: {mission.travel_rule}"] += 1
+    for name in ledger.ends_s:
+        action = ledger.tasks[name].action
+        report.counts[f"done: {'no action' if action is None else action.name}"] += 1
     report.counts["tasks"] += len(ledger.tasks)
     report.counts["done"] += len(ledger.ends_s)
     for why in lost.values():

@@ -13,8 +13,8 @@ from muster.allocation.problem import Problem
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation, told
 from muster.execution.rest import posed
-from muster.execution.travel import travel_of
-from muster.mission.model import Event
+from muster.execution.travel import travel_of, way_of
+from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
 from muster.studies.bench import large_mission
 
@@ -180,3 +180,52 @@ def test_the_admissible_part_of_routes_is_admissible_and_in_order(seed):
 def test_reasons_are_told_together():
     reasons = (Reason("a", "skill", "lacks x"), Reason("b", "lock", "only c"), Reason("c", "skill", "lacks x"))
     assert told(reasons) == "skill: lacks x (a, c); lock: only c (b)"
+
+
+def walled_rest(*tasks, delays=(), **rules):
+    """The problem of a robot of 1 m/s after 1 s beside a wall from y = 4 to 16; and the whole mission's."""
+    wall = Zone(polygon=((14, 4), (15, 4), (15, 16), (14, 16)))
+    arena = Map(boundary=((0, 0), (30, 0), (30, 20), (0, 20)), zones=(wall,))
+    mission = muster.Mission(
+        robots=(muster.Robot(id="r", position=(3.0, 3.0), radius_m=0.3, efficiency=0.5),),
+        tasks=(muster.Task(id="first", position=(3.0, 10.0)), *tasks),
+        map=arena,
+        rules=muster.Rules(**rules),
+    )
+    world, travel = World(mission), travel_of(mission)
+    plan = muster.Plan(routes=(muster.Route("r", tuple(task.id for task in mission.tasks)),))
+    executor = Executor(mission, plan, world.ports, travel=travel, way=way_of(mission))
+    executor.tick(0.0)
+    world.step(1.0)
+    executor.tick(1.0)
+    for name, by_s in delays:
+        executor.ledger.delay(name, by_s)
+    return posed(executor._rest(), travel).problem, Problem.compile(mission)
+
+
+PATROL = muster.Task(id="x", position=(14.5, 10), action=Action(name="ground-patrol", side_m=8))
+PARCEL = muster.Task(id="x", position=(20, 10), action=Action(name="delivery", pickup=(10, 10)), duration_s=50)
+PROBE = muster.Task(id="x", position=(20, 10), action=Action(name="sensor-activation", duration_s=8))
+PLAIN = muster.Task(id="x", position=(20, 10), actuation_cost=5)
+
+
+@pytest.mark.parametrize("task", [PATROL, PARCEL, PROBE, PLAIN], ids=lambda task: str(task.action and task.action.name))
+@pytest.mark.parametrize("usage", ["distance", "time"])
+def test_the_rest_has_the_ways_and_times_of_actions_over_the_map(task, usage):
+    """As the whole mission has them, and a delay on top of the time."""
+    rest, whole = walled_rest(task, usage=usage)
+    a, b = rest.task_index["x"], whole.task_index["x"]
+    assert rest.work_usage(0)[a] == pytest.approx(whole.work_usage(0)[b])
+    first = [problem.task_index["first"] for problem in (rest, whole)]
+    assert rest.legs(0, first[:1], [a]) == pytest.approx(whole.legs(0, first[1:], [b]))
+    assert rest.legs(0, [a], [rest.end(0)]).shape == (1, 1)
+    late, _ = walled_rest(task, usage=usage, delays=[("x", 12)])
+    assert late.work_seconds(0)[a] == pytest.approx(whole.work_seconds(0)[b] + 12)
+    assert late.measured.costs[0, a] == rest.measured.costs[0, a]
+
+
+def test_a_part_of_the_rest_has_its_ways():
+    rest, _ = walled_rest(PARCEL)
+    parted = rest.part([0], range(len(rest.tasks)))
+    assert (parted.travel[0] == rest.travel[0]).all()
+    assert (parted.measured.costs == rest.measured.costs).all()

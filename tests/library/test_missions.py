@@ -19,8 +19,11 @@ from muster.mission.yaml_writer import yaml_text
 INSTANCES = {"berlin52": 52, "eil51": 51, "eil76": 76}
 COUNTS = {  # robots, tasks
     "6T-2R": (2, 6),
+    "6T-2R-actions": (2, 6),
     "11T-2R": (2, 11),
+    "11T-2R-actions": (2, 11),
     "16T-3R": (3, 16),
+    "16T-3R-actions": (3, 16),
     "24T-5R": (5, 24),
     "31T-2R65-4R25": (6, 31),
     "31T-2R65-4R25-as-run": (6, 31),
@@ -29,6 +32,7 @@ COUNTS = {  # robots, tasks
     "31T-6R": (6, 31),
     "31T-6R-as-run": (6, 31),
     "31T-6R50": (6, 31),
+    "31T-6R50-actions": (6, 31),
     "31T-6R50-as-run": (6, 31),
     "auction-1": (2, 6),
     "auction-2": (5, 20),
@@ -36,6 +40,7 @@ COUNTS = {  # robots, tasks
     "auction-3-seeded": (20, 50),
     "berlin52-5": (5, 51),
     "berlin52-5-thesis": (5, 56),
+    "depot": (5, 15),
     "eil51-3": (3, 50),
     "eil51-3-thesis": (3, 53),
     "eil51-5": (5, 50),
@@ -47,6 +52,7 @@ COUNTS = {  # robots, tasks
     "floor": (5, 23),
     "market-rescue": (3, 5),
     "market-rescue-20": (5, 20),
+    "market-rescue-arena": (3, 5),
     "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]
@@ -359,3 +365,15 @@ def test_market_rescue_fits_its_arena():
     places = [*(r.position for r in mission.robots), *(t.position for t in mission.tasks)]
     assert all(0 <= x <= 2 and 0 <= y <= 2 for x, y in places)
     assert min(math.dist(a, b) for k, a in enumerate(places) for b in places[:k]) >= 0.3
+
+
+def test_market_rescue_arena_is_market_rescue_with_bodies_and_obstacles():
+    plain, arena = shipped("market-rescue"), shipped("market-rescue-arena")
+    assert (arena.tasks, arena.rules) == (plain.tasks, plain.rules)
+    bodies = {"kinematics", "radius_m", "heading_deg", "yaw_rate_radps", "acceleration_mps2"}
+    for one, other in zip(plain.robots, arena.robots, strict=True):
+        assert replace(other, **{name: getattr(one, name) for name in bodies}) == one
+        assert other.kinematics == "differential-drive"
+        assert other.radius_m >= 0.065  # a Khepera-III is 0.13 m wide
+    assert arena.map is not None
+    assert len(arena.map.zones) == 5

@@ -107,3 +107,28 @@ def test_a_start_inside_a_wall_is_a_fault(tmp_path):
     question = mission(tmp_path, "  - {id: r_0, position: [5, 5]}", "  - {id: 0, position: [2, 2]}")
     with pytest.raises(MissionError, match=r"m.yaml:5: robots\[0\].position: \[5.0, 5.0\], inside zone 0; expected"):
         checked_world(question)
+
+
+def test_the_way_points_of_actions_are_looked_at_for_robots_that_pass_them(tmp_path):
+    """Each once, by the name that the mission has for it; the position itself need not be free."""
+    robots = (
+        "  - {id: r_0, position: [1, 1], radius_m: 0.2}\n"
+        "  - {id: r_1, position: [2, 1], radius_m: 0.2, camera: {fov_deg: 60, tilt_deg: 45}}\n"
+        "  - {id: uav, position: [1, 2], kind: air}"
+    )
+    tasks = """\
+  - {id: around, position: [5, 5], action: {name: ground-patrol, side_m: 4}}
+  - {id: corner, position: [7, 7], action: {name: ground-patrol, side_m: 3}}
+  - {id: load, position: [2, 8], action: {name: delivery, pickup: [5, 5]}}
+  - {id: bring, position: [5, 5], action: {name: delivery, pickup: [2, 8]}, exit: [5, 5.5]}
+  - {id: look, position: [6.5, 5], action: {name: stationary-observation, width_m: 1}}
+  - {id: only, position: [7, 7], action: {name: ground-patrol, side_m: 3}, only_robots: [uav]}"""
+    question = mission(tmp_path, robots, tasks)
+    blocked = blocked_places(World.of(question), question)
+    assert [(p.owner, p.path[2:], p.point) for p in blocked] == [
+        ("task corner", ("action",), (5.5, 5.5)),
+        ("task load", ("action", "pickup"), (5, 5)),
+        ("task bring", ("position",), (5, 5)),
+        ("task bring", ("exit",), (5, 5.5)),
+        ("task look", ("action",), (pytest.approx(5.817, abs=1e-3), 5)),
+    ]

@@ -51,7 +51,7 @@ def test_lines_go_to_the_entry_and_from_the_exit(mission, plan, drawn):
     nan = (np.nan, np.nan)
     travel = [(0, 0), (2, 4), nan, (4, 5), (3, 10), (11, 10)]
     np.testing.assert_array_equal(drawn(ax, "travel-ada")[0].get_xydata(), travel)
-    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 4), (3, 4), (4, 5)])
+    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 4), (4, 5)])
     np.testing.assert_array_equal(drawn(ax, "tasks-ada")[0].get_xydata()[0], (3, 4))
 
 

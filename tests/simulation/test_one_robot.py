@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.action_missions import ARENA
 from tests.simulation.scenes import mission, robot, states, until_idle
 
 from muster.motion.port import Waypoint
+from muster.motion.roads import Roads
+from muster.motion.world import body_of
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")
@@ -136,3 +139,20 @@ def test_stops_when_cancelled_as_fast_as_it_can():
     world.advance(9.0)
     assert world.positions[0, 0] - at == pytest.approx(1.0, abs=0.06)  # v^2 / 2a
     assert world.ports["r"].telemetry().order == 2
+
+
+@pytest.mark.parametrize(
+    ("start", "goal"),
+    [((13.129042178338342, 38.084016114332805), (26.09926980282172, 36.75831168766079)),
+     ((13.850916371012572, 37.9242366008549), (24.585502769776546, 33.9957942298707)),
+     ((12.847376763026215, 32.15737908406385), (28.242298911419404, 32.037106335716985))],
+)  # fmt: skip
+def test_a_corner_that_was_cut_does_not_draw_a_robot_back_into_the_wall(start, goal):
+    """Around the end of a wall at full speed; it took 500 s for the 2 m along the end."""
+    pytest.importorskip("shapely")
+    team = mission(robot(position=start, radius_m=0.3, speed_mps=2.0), map=ARENA)
+    way = Roads.of(team).path(body_of(team.robots[0]), start, goal).points[1:]
+    world = KinematicWorld(team)
+    world.ports["r"].send([Waypoint((*place, 0.0)) for place in way.tolist()])
+    assert until_idle(world, 30.0).keys() == {"r"}
+    assert world.positions[0, :2] == pytest.approx(goal, abs=1e-3)

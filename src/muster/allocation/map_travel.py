@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.allocation.doings import Doings
-from muster.allocation.travel import require_room
-from muster.mission.model import Mission, Robot
+from muster.allocation.measured import Measured
+from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
 from muster.motion.path import NoPath
 from muster.motion.roads import Roads
@@ -35,7 +34,7 @@ class MapTravel:
     doings
         what they do at the tasks, by body.
     exits, entries
-        (classes, p, 3) metres in the map frame: where places are left and entered.
+        (classes, p, 3) metres in the map frame: where places are left and entered; first the n tasks.
     """
 
     roads: Roads
@@ -45,41 +44,34 @@ class MapTravel:
     entries: Floats
 
     @classmethod
-    def of(cls, mission: Mission, robots: Sequence[Robot], doings: Doings, exits: Floats, entries: Floats) -> MapTravel:
-        """Read the map.
-
-        Raises
-        ------
-        MissionError
-            for a map that is wrong, and for robots that start or end where they cannot stand.
-        MissingExtraError
-            if the extra `map` is not installed.
-        NotSupportedError
-            for more places than a table can hold.
-        """
-        require_room(mission, exits.shape[1], "travel over a map")
-        bodies = tuple(body_of(robots[i]) for i in doings.firsts)
-        return cls(Roads.of(mission), bodies, doings, exits, entries)
+    def of(cls, roads: Roads, robots: Sequence[Robot], doings: Doings, exits: Floats, entries: Floats) -> MapTravel:
+        return cls(roads, tuple(body_of(robots[i]) for i in doings.firsts), doings, exits, entries)
 
     @cached_property
     def costs(self) -> Floats:
         """(classes, n) metres along the way points of actions, else the typed costs; inf where there is no way."""
         costs = self.doings.costs.copy()
         for (k, j), doing in self.doings.moving.items():
-            costs[k, j] = sum(self._metres(self.bodies[k], leg) for leg in doing.legs)
+            costs[k, j] = sum(self.roads.leg_m(self.bodies[k], *leg) for leg in doing.legs)
+        for k, j in self._crossed:
+            if math.isinf(self.roads.leg_m(self.bodies[k], *self._across(k, j))):
+                costs[k, j] = math.inf
         return costs
 
-    def table(self) -> Floats:
-        """(classes, p, p) metres from the exit of each place to the entry of each other; inf where there is no way.
+    def measured(self, threads: int) -> Measured:
+        """All lengths."""
+        table = np.array([self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)])
+        classes = self.doings.classes
+        return Measured(table, classes, np.where(np.isinf(self.costs), 0.0, self.costs), classes)
+
+    def lengths(self, k: int, exits: Floats, threads: int) -> Floats:
+        """(q, p) metres for class k from exits (q, 3) to the entry of each place; inf where there is no way.
 
         There is none to a task whose own way points cannot all be passed.
         """
-        threads = os.cpu_count() or 1
-        lengths = zip(self.bodies, self.exits, self.entries, strict=True)
-        table = np.array([self.roads.lengths(body, exits, entries, threads) for body, exits, entries in lengths])
-        for k, j in np.argwhere(np.isinf(self.costs)):
-            table[k, :, j] = math.inf
-        return table
+        metres = self.roads.lengths(self.bodies[k], exits, self.entries[k], threads)
+        metres[:, np.flatnonzero(np.isinf(self.costs[k]))] = math.inf
+        return metres
 
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
@@ -93,8 +85,19 @@ class MapTravel:
             found = self.roads.path(body, *leg)
             if isinstance(found, NoPath):
                 return f"{found.reason} on the way of its action: {found.detail}"
+        if (k, end) in self._crossed:
+            found = self.roads.path(body, *self._across(k, end))
+            if isinstance(found, NoPath):
+                return f"{found.reason} on the way to its exit: {found.detail}"
         return "there is no way to it"
 
-    def _metres(self, body: Body, leg: Leg) -> float:
-        found = self.roads.path(body, *leg)
-        return math.inf if isinstance(found, NoPath) else found.length_m
+    @cached_property
+    def _crossed(self) -> frozenset[tuple[int, int]]:
+        """Classes and tasks without geometry that are left elsewhere than entered."""
+        n = self.doings.costs.shape[1]
+        apart = (self.entries[:, :n] != self.exits[:, :n]).any(axis=2)
+        return frozenset((int(k), int(j)) for k, j in np.argwhere(apart)) - self.doings.moving.keys()
+
+    def _across(self, k: int, j: int) -> Leg:
+        d = self.roads.world.dimensions
+        return tuple(self.entries[k, j, :d].tolist()), tuple(self.exits[k, j, :d].tolist())

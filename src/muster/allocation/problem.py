@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -14,7 +15,8 @@ import numpy.typing as npt
 from muster import core
 from muster.allocation.cut import cut_down
 from muster.allocation.doings import Doings
-from muster.allocation.travel import straight_table, travel_table
+from muster.allocation.measured import Measured
+from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
@@ -24,39 +26,11 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
+    from muster.motion.roads import Roads
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
-
-
-@dataclass(frozen=True, eq=False)
-class Measured:
-    """Lengths that a problem needs, metres; inf where there is no way.
-
-    Parameters
-    ----------
-    table, classes
-        as `Problem.travel`.
-    costs, work_classes
-        (work classes, n) what tasks cost, and (m,) each robot's class.
-    """
-
-    table: Floats
-    classes: npt.NDArray[np.int32]
-    costs: Floats
-    work_classes: npt.NDArray[np.int32]
-
-    def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
-        """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
-        tables, classes = np.unique(self.classes[list(robots)], return_inverse=True)
-        rows, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
-        return Measured(
-            self.table[tables][:, places][:, :, places],
-            classes.astype(np.int32),
-            self.costs[rows][:, tasks],
-            work_classes.astype(np.int32),
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +97,7 @@ class Problem:
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
         known = None
-        if self.mission.travel_rule == "map":
+        if self.known is not None or self.mission.travel_rule == "map":
             n, m = len(self.tasks), len(self.robots)
             places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
             known = self.measured.part(robots, places, tasks)
@@ -307,8 +281,7 @@ class Problem:
             return self.known
         doings, none = self._doings, np.empty(0, dtype=np.int32)
         if self.mission.travel_rule == "map":
-            table, costs = self._over_map.table(), self._over_map.costs
-            return Measured(table, doings.classes, np.where(np.isinf(costs), 0.0, costs), doings.classes)
+            return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
             return Measured(*travel_table(self.mission, self.robots, self.tasks), doings.costs, doings.classes)
         table = straight_table(self.mission, self._exits, self._entries)
@@ -320,9 +293,19 @@ class Problem:
 
     @cached_property
     def _over_map(self) -> MapTravel:
+        from muster.motion.roads import Roads
+
+        require_room(self.mission, self._exits.shape[1], "travel over a map")
+        return self.over(Roads.of(self.mission))
+
+    def over(self, roads: Roads) -> MapTravel:
+        """Travel between the places by roads, whatever the mission's rule."""
         from muster.allocation.map_travel import MapTravel
 
-        return MapTravel.of(self.mission, self.robots, self._doings, self._exits, self._entries)
+        by_body = self.mission.travel_rule == "map"
+        doings = self._doings if by_body else Doings.of(self.robots, self.tasks, by_body=True)
+        exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
+        return MapTravel.of(roads, self.robots, doings, exits, entries)
 
     def why_no_way(self, i: int, j: int) -> str:
         """Why robot i cannot come to task j, which no way leads to, or along the way of its action."""

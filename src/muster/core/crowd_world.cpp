@@ -181,10 +181,10 @@ void CrowdWorld::settle(CrowdRobot& robot) const {
 
 void CrowdWorld::next_way_point(int i) {
   CrowdRobot& robot = robots_[i];
+  robot.trail = {robot.way[robot.next].at, {}, false};  // not where it cut past it: there may be a wall ahead
   const bool labelled = robot.way[robot.next].labelled, last = ++robot.next == robot.way.size();
   robot.phase = last ? Phase::idle : Phase::going;
   robot.patience = {};
-  robot.trail = {robot.position, {}, false};
   robot.stopping = last;
   robot.post = robot.position;
   if (labelled || last) events_.push_back({time(), i, robot.order, static_cast<int>(robot.next), last});

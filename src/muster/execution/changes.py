@@ -93,6 +93,7 @@ class Changes:
         """A robot takes part again, from where it is."""
         if hand.out:
             hand.out, hand.heard_s, hand.stuck_before = "", now, False
+            self.ledger.unblock(hand.robot.id)
             hand.stop(now)
             yield Change("robot_returns", {"robot": hand.robot.id})
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from muster.execution.changes import Change
-from muster.execution.doing import Doer, Doing, Way, path_length
+from muster.execution.doing import Doer, Way, Work, path_length, work_of
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.monitor import exceeds
@@ -108,31 +109,29 @@ class Dispatch:
         return None if onward is None else [hand.refuge, *onward]
 
     def _to_task(self, hand: Hand, task: str, now: float) -> Iterator[Change]:
-        doing = self._doing(self._ledger.tasks[task], hand.robot)
-        if isinstance(doing, Impossible):
-            yield from self.refuse(hand, task, doing.reason, now)
+        work = work_of(self._ledger.tasks[task], hand.robot, self._doing, self._way)
+        if isinstance(work, Impossible):
+            yield from self.refuse(hand, task, work.reason, now)
             return
-        way = self.way(hand, doing.entry)
-        home = self._home_usage(hand, doing)
+        way = self.way(hand, work.entry)
+        home = self._home_usage(hand, work)
         if way is None or home is None:
             yield from self.refuse(hand, task, "unreachable: there is no way", now)
             return
         there = [Waypoint(point, label=task) for point in way]
         delay = self._ledger.delays_s.get(task, 0.0)
-        lasts = _lasts_s(hand, doing) + delay
-        least = _least_usage(hand, doing, there, lasts) + home
+        lasts = work.lasts_s + delay
+        least = _least_usage(hand, work, there, lasts) + home
         if exceeds(least, self._capacity(hand)):
             yield from self.refuse(
                 hand, task, f"capacity: {least:.2f} used with it, of {self._capacity(hand):.2f}", now
             )
             return
-        hand.doing, hand.work_s, hand.delay_s, hand.home_usage = doing, lasts, delay, home
-        hand.work_way_m = path_length(doing.entry, doing.waypoints)
+        hand.work, hand.work_s, hand.delay_s, hand.home_usage = work, lasts, delay, home
         hand.to_task, hand.works = len(there), self._ledger.may_begin(task)
         hand.at_home = False
         hand.usage_to_task = hand.used - hand.used_before + self._planned_usage(hand, task)
-        work = self._work_waypoints(hand, task) if hand.works else []
-        hand.send(now, Activity.DRIVING, [*there, *work])
+        hand.send(now, Activity.DRIVING, [*there, *(_delayed(work, delay) if hand.works else ())])
         self._tell("sets_out", {"robot": hand.robot.id, "task": task})
 
     def _arrive(self, hand: Hand, now: float) -> None:
@@ -148,12 +147,12 @@ class Dispatch:
 
     def _work(self, hand: Hand, now: float) -> None:
         task = hand.route[0]
-        if hand.doing is not None:
+        if hand.work is not None:
             hand.delay_s, before = self._ledger.delays_s.get(task, 0.0), hand.delay_s
             hand.work_s += hand.delay_s - before
             hand.works = True
             self._begin(hand, task, now)
-            hand.send(now, Activity.WORKING, self._work_waypoints(hand, task))
+            hand.send(now, Activity.WORKING, _delayed(hand.work, hand.delay_s))
 
     def _begin(self, hand: Hand, task: str, now: float) -> None:
         self._ledger.begin(task, now)
@@ -163,11 +162,11 @@ class Dispatch:
         """The work has ended, unless it was delayed meanwhile: then the robot stays for that."""
         task = hand.route[0]
         longer = self._ledger.delays_s.get(task, 0.0) - hand.delay_s
-        if longer > 0 and hand.doing is not None:
+        if longer > 0 and hand.work is not None:
             begun = hand.begun_s
             hand.delay_s += longer
             hand.work_s += longer
-            hand.send(now, Activity.WORKING, [Waypoint(hand.doing.exit, hold_s=longer, label=task)])
+            hand.send(now, Activity.WORKING, [replace(hand.work.waypoints[-1], hold_s=longer)])
             hand.begun_s = begun
             return
         hand.charge_work()
@@ -179,38 +178,32 @@ class Dispatch:
         hand.turn_to(now, Activity.IDLE)
         self._tell("ends", {"task": task, "robot": hand.robot.id})
 
-    def _work_waypoints(self, hand: Hand, task: str) -> list[Waypoint]:
-        if hand.doing is None:
-            return []
-        stays = [Waypoint(hand.doing.exit, hold_s=hand.delay_s, label=task)] if hand.delay_s else []
-        return [*hand.doing.waypoints, *stays]
-
     def _planned_usage(self, hand: Hand, task: str) -> float:
         """What a task costs by the plan in force, from the task before it or from where that plan was made."""
         ahead = self.ahead.get(hand.robot.id, {})
         before = hand.done[-1] if hand.done and hand.done[-1] in ahead else ""
         return ahead.get(before, 0.0) - ahead.get(task, 0.0)
 
-    def _home_usage(self, hand: Hand, doing: Doing) -> float | None:
+    def _home_usage(self, hand: Hand, work: Work) -> float | None:
         """Usage from the exit of a task to where the route ends; None where there is no way."""
         if hand.home is None:
             return 0.0
-        way = self._way(hand.robot, doing.exit, hand.home)
+        way = self._way(hand.robot, work.exit, hand.home)
         if way is None:
             return None
-        metres = path_length(doing.exit, [Waypoint(point) for point in way])
+        metres = path_length(work.exit, [Waypoint(point) for point in way])
         return metres / hand.robot.speed_mps if hand.in_time else metres
 
 
-def _lasts_s(hand: Hand, doing: Doing) -> float:
-    """Seconds that work takes a robot."""
-    moving = path_length(doing.entry, doing.waypoints) / hand.robot.speed_mps
-    return moving + sum(waypoint.hold_s for waypoint in doing.waypoints)
+def _delayed(work: Work, by_s: float) -> list[Waypoint]:
+    """The way points of work that takes so much longer: the robot stays in the last."""
+    *before, last = work.waypoints
+    return [*before, replace(last, hold_s=last.hold_s + by_s)]
 
 
-def _least_usage(hand: Hand, doing: Doing, there: Sequence[Waypoint], lasts_s: float) -> float:
+def _least_usage(hand: Hand, work: Work, there: Sequence[Waypoint], lasts_s: float) -> float:
     """Usage when a task is done, if nothing comes in the way, in the mission's unit."""
     metres = path_length(hand.position, there)
     if hand.in_time:
         return hand.used + metres / hand.robot.speed_mps + lasts_s
-    return hand.used + metres + max(doing.cost_m, path_length(doing.entry, doing.waypoints))
+    return hand.used + metres + max(work.cost_m, work.way_m)

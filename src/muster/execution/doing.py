@@ -1,57 +1,16 @@
-"""What a robot does at a task, as far as carrying out needs it; and what it is for a task without an action.
-
-The time of work: `duration_s / efficiency` where a duration is given, else
-`actuation_cost / speed`.
-"""
+"""A task as a robot of the crew carries it out: the way points of its action, by the ways that robots go."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 
 from muster.mission.model import Point, Robot, Task
-from muster.motion import actions
-from muster.motion.actions import Impossible
+from muster.motion.actions import Doing, Impossible, duration_of
 from muster.motion.port import Place, Waypoint
-
-
-class Doing(Protocol):
-    """What a task makes a robot do.
-
-    Attributes
-    ----------
-    waypoints
-        what it passes from where it enters the task, holds included; passing the last is the end of the work.
-    entry, exit
-        where it arrives and where it leaves, metres in the map frame.
-    cost_m
-        usage of the work, by distance: what of it is not travelled is charged while the robot stays.
-    """
-
-    @property
-    def waypoints(self) -> Sequence[Waypoint]: ...
-
-    @property
-    def entry(self) -> Place: ...
-
-    @property
-    def exit(self) -> Place: ...
-
-    @property
-    def cost_m(self) -> float: ...
-
-
-@dataclass(frozen=True)
-class PlainDoing:
-    """The work of a task that names no geometry; see `Doing`."""
-
-    waypoints: tuple[Waypoint, ...]
-    entry: Place
-    exit: Place
-    cost_m: float
-
 
 Doer = Callable[[Task, Robot], Doing | Impossible]
 """What a task makes a robot do, or why the robot cannot do it."""
@@ -60,34 +19,79 @@ Way = Callable[[Robot, Place, Place], Sequence[Place] | None]
 """The places that a robot passes from one place to another, the last included; None where there is no way."""
 
 
-def plain(task: Task, robot: Robot) -> Doing | Impossible:
-    """The work of a plain task: the robot stays at the entry and is at the exit when the time is over.
+@dataclass(frozen=True)
+class Work:
+    """How one robot does one task.
 
-    Where the way to the exit takes longer than the work, the work ends when the robot is there.
+    Parameters
+    ----------
+    waypoints
+        what it passes from where it enters the task, holds included; passing the last is the end of the work.
+    cost_m
+        usage of the work, by distance: what of it is not travelled is charged while the robot stays.
+    speed_mps
+        of the robot.
     """
-    entry, out = place(task.entry or task.position), place(task.exit or task.position)
-    moving = math.dist(entry, out) / robot.speed_mps
-    stays = max(0.0, plain_work_s(task, robot) - moving)
-    waypoints = [Waypoint(entry, hold_s=stays, label=task.id)]
-    if out != entry:
-        waypoints.append(Waypoint(out, label=task.id))
-    return PlainDoing(tuple(waypoints), entry, out, task.actuation_cost)
+
+    waypoints: tuple[Waypoint, ...]
+    cost_m: float
+    speed_mps: float
+
+    @property
+    def entry(self) -> Place:
+        return self.waypoints[0].position
+
+    @property
+    def exit(self) -> Place:
+        return self.waypoints[-1].position
+
+    @cached_property
+    def way_m(self) -> float:
+        """Metres from the entry to the exit."""
+        return path_length(self.entry, self.waypoints)
+
+    @property
+    def lasts_s(self) -> float:
+        """Seconds that it takes, from the entry on."""
+        return self.way_m / self.speed_mps + sum(waypoint.hold_s for waypoint in self.waypoints)
+
+    @property
+    def stayed_cost_m(self) -> float:
+        """Usage by distance that is not travelled."""
+        return max(0.0, self.cost_m - self.way_m)
 
 
-def acted(task: Task, robot: Robot) -> Doing | Impossible:
-    """The work of any task: that of its action where this has geometry (see `motion.actions`), else the plain one."""
-    if task.action is None or not task.action.has_geometry:
-        return plain(task, robot)
-    found = actions.plan(task, robot)
+def work_of(task: Task, robot: Robot, doing: Doer, way: Way) -> Work | Impossible:
+    """How a robot does a task: what `doing` says, by `way` from each way point to the next.
+
+    What the task takes, if that is given, it takes over a map too: by what the ways are longer there the robot stays
+    less. Where they alone take longer, so does the work.
+    """
+    found = doing(task, robot)
     if isinstance(found, Impossible):
         return found
-    return PlainDoing(found.waypoints, place(found.entry), place(found.exit), found.cost_m)
+    waypoints = [found.waypoints[0]]
+    for before, waypoint in pairwise(found.waypoints):
+        places = way(robot, before.position, waypoint.position)
+        if places is None:
+            return Impossible(f"unreachable: there is no way from {_told(before)} to {_told(waypoint)}")
+        waypoints += [*map(Waypoint, places[:-1]), waypoint]
+    way_m, straight_m = (path_length(points[0].position, points) for points in (waypoints, found.waypoints))
+    if duration_of(task) is not None or found.typed_cost is not None:
+        waypoints = list(_staying_less(waypoints, max(0.0, way_m - straight_m) / robot.speed_mps))
+    return Work(tuple(waypoints), way_m if found.typed_cost is None else found.typed_cost, robot.speed_mps)
 
 
-def plain_work_s(task: Task, robot: Robot) -> float:
-    """Seconds that a plain task takes a robot."""
-    given = actions.duration_of(task)
-    return task.actuation_cost / robot.speed_mps if given is None else given / robot.efficiency
+def _staying_less(waypoints: Sequence[Waypoint], by_s: float) -> Iterator[Waypoint]:
+    """Way points with so much less hold in all, as far as they have it."""
+    for waypoint in waypoints:
+        less = min(by_s, waypoint.hold_s)
+        by_s -= less
+        yield replace(waypoint, hold_s=waypoint.hold_s - less)
+
+
+def _told(waypoint: Waypoint) -> str:
+    return f"({', '.join(f'{c:g}' for c in waypoint.position)})"
 
 
 def straight(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:

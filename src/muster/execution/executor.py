@@ -7,16 +7,17 @@ to be done, and the rest is planned again (`reallocation`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes, new_hand
 from muster.execution.dispatch import Dispatch
-from muster.execution.doing import Doer, Way, plain, straight
+from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.rest import Rest
@@ -25,6 +26,7 @@ from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.motion import actions
 from muster.motion.port import RobotPort
 
 
@@ -47,9 +49,9 @@ class Executor:
     ports
         for each robot how it is reached. A robot that joins has its port here by then.
     doing
-        what a task makes a robot do.
+        what a task makes a robot do; by its action by default.
     way
-        the places a robot passes from one place to another.
+        the places a robot passes from one place to another, between the way points of an action too.
     travel
         how travel is measured when the rest is planned again; by the mission's rule by default.
     replan
@@ -73,7 +75,7 @@ class Executor:
         plan: Plan,
         ports: Mapping[str, RobotPort],
         *,
-        doing: Doer = plain,
+        doing: Doer = actions.plan,
         way: Way = straight,
         travel: Travel | None = None,
         replan: Callable[[Rest], Revision] | None = None,
@@ -116,6 +118,13 @@ class Executor:
     def done(self) -> bool:
         """Whether the mission is over."""
         return self.ended_s is not None
+
+    @property
+    def due_s(self) -> float:
+        """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
+        available = [hand.robot.available_from_s for hand in self._present if hand.route]
+        times = [*(event.at_s for event in self._script[:1]), *available]
+        return min((time for time in times if time > self.now_s), default=math.inf)
 
     def report(self, event: Event) -> None:
         """Let something happen that the mission file did not foresee; its `at_s` does not count.
@@ -180,12 +189,26 @@ class Executor:
                 self._notice_capacity(hand)
 
     def _free_or_put_out(self, hand: Hand) -> None:
-        """A robot that does not get on is sent again, and out the next time."""
-        if hand.stuck_before:
+        """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
+        broken = [other for other in self.crew.values() if other.out]
+        blocking = next((one for one in broken if stands_in_the_way(one, hand.robot, hand.points_left)), None)
+        if blocking is not None and hand.activity is Activity.DRIVING:
+            self._ask(self._give_up_blocked(hand, blocking))
+        elif hand.stuck_before:
             self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
         else:
             self._tell("robot_sent_again", {"robot": hand.robot.id, "reason": "no progress"})
             self._dispatch.again(hand, self.now_s)
+
+    def _give_up_blocked(self, hand: Hand, blocking: Hand) -> Iterator[Change]:
+        """No robot gets to a task at which a broken one stands, if it is as large as the one that tried."""
+        task, points, reason = hand.route[0], hand.points_left, f"unreachable: {blocking.robot.id} stands there, out"
+        for other in self._present:
+            able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
+            if other is not hand and able and stands_in_the_way(blocking, other.robot, points):
+                self.ledger.refuse(task, other.robot.id, reason)
+        self.ledger.blocked_by[task] = blocking.robot.id
+        return self._dispatch.refuse(hand, task, reason, self.now_s)
 
     def _notice_capacity(self, hand: Hand) -> None:
         """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
@@ -263,10 +286,12 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
+        gone = ", ".join(hand.robot.id for hand in self.crew.values() if hand.out)
+        out = f"; no longer taking part: {gone}" if gone else ""
         lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
         for task in self.ledger.open:
             if task.id not in under_way:
-                lost[task.id] = self._left_out.get(task.id, "left out by the plan")
+                lost[task.id] = self._left_out.get(task.id, "left out by the plan") + out
         return {name: lost[name] for name in self.ledger.tasks if name in lost}
 
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
-from muster.execution.doing import Doing, path_length, place
+from muster.execution.doing import Work, path_length, place
 from muster.mission.model import Robot
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
@@ -56,8 +56,7 @@ class Hand:
     out: str = ""
     activity: Activity = Activity.IDLE
     told: Telemetry | None = None
-    doing: Doing | None = None
-    work_way_m: float = 0.0  # metres that the work at hand makes it travel
+    work: Work | None = None  # at hand
     to_task: int = 0  # way points of the last order that lead to the task
     works: bool = False  # whether the order holds the work too
     delay_s: float = 0.0  # that the work at hand was ordered with
@@ -133,13 +132,18 @@ class Hand:
             self.charged += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
         self._waypoints = ()
         self._order = self.port.cancel()
-        self.doing = None
+        self.work = None
         self.turn_to(now, Activity.IDLE)
 
     def turn_to(self, now: float, activity: Activity) -> None:
         """Go on to another activity under the same order."""
         self.activity, self.begun_s = activity, now
         self.nearest_m, self.nearest_s = math.inf, now
+
+    @property
+    def points_left(self) -> list[Place]:
+        """The places of the last order that it has not passed."""
+        return [waypoint.position for waypoint in self._waypoints[self.passed :]]
 
     @property
     def way_left_m(self) -> float:
@@ -157,26 +161,27 @@ class Hand:
 
     def used_after(self, now: float) -> float:
         """Usage when the task at hand is done, in the mission's unit; without one, now."""
-        if self.doing is None:
+        if self.work is None:
             return self.used
         works = self.activity is Activity.WORKING
         if self.in_time:
             before = 0.0 if works else self.travel_left_m / self.robot.speed_mps
             return self.used + before + (self.work_left_s(now) if works else self.work_s)
-        way = self.way_left_m if works else self.travel_left_m + self.work_way_m
+        way = self.way_left_m if works else self.travel_left_m + self.work.way_m
         return self.used + way + self._stayed_cost
 
     @property
     def travel_left_m(self) -> float:
         """Metres to the entry of the task at hand."""
-        return max(0.0, self.way_left_m - (self.work_way_m if self.works else 0.0))
+        work_m = self.work.way_m if self.works and self.work is not None else 0.0
+        return max(0.0, self.way_left_m - work_m)
 
     def charge_work(self) -> None:
         """The work at hand has ended: its cost is used up, as far as it was not travelled."""
         self.charged += self._stayed_cost
-        self.doing = None
+        self.work = None
 
     @property
     def _stayed_cost(self) -> float:
         """Usage of the work at hand, by distance, that is not travelled."""
-        return 0.0 if self.doing is None else max(0.0, self.doing.cost_m - self.work_way_m)
+        return 0.0 if self.work is None else self.work.stayed_cost_m

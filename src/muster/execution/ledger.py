@@ -31,6 +31,7 @@ class Ledger:
     usage: dict[str, tuple[float, float]] = field(default_factory=dict)  # of tasks done: planned, flown
     cancelled: dict[str, float] = field(default_factory=dict)
     refusals: dict[str, dict[str, str]] = field(default_factory=dict)  # task, robot: why that robot cannot do it
+    blocked_by: dict[str, str] = field(default_factory=dict)  # task: the broken robot that stands there
 
     @classmethod
     def of(cls, tasks: Iterable[Task], needs_order: bool) -> Ledger:
@@ -77,6 +78,12 @@ class Ledger:
 
     def refuse(self, task: str, robot: str, reason: str) -> None:
         self.refusals.setdefault(task, {})[robot] = reason
+
+    def unblock(self, robot: str) -> None:
+        """A robot that stood at tasks, broken, goes on: others may try again."""
+        for task in [task for task, by in self.blocked_by.items() if by == robot]:
+            del self.blocked_by[task]
+            self.refusals.pop(task, None)
 
     def move(self, task: str, to: Point) -> None:
         """A task is elsewhere from now on; its entry and exit move with it."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from muster.execution.hand import Activity, Hand
 from muster.mission.errors import ParameterError
+from muster.mission.model import Robot
+from muster.motion.port import Place
 
 _ROUNDING = 1e-6  # relative and absolute; by how much usage may be above capacity
 _LEAST_SHARE = 0.05  # of its speed, with which a robot gets on
@@ -51,6 +55,12 @@ def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
         hand.nearest_m, hand.nearest_s = left, now
     arrives = left < _LEAST_SHARE * hand.robot.speed_mps * limits.stuck_after_s
     return now - hand.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
+
+
+def stands_in_the_way(broken: Hand, robot: Robot, points: Sequence[Place]) -> bool:
+    """Whether a robot that is out stands so near one of these points that another cannot get there."""
+    reach = broken.robot.radius_m + robot.radius_m
+    return any(math.dist(broken.position, point) < reach for point in points)
 
 
 def exceeds(used: float, capacity: float | None) -> bool:

@@ -16,11 +16,11 @@ from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
-from muster.execution.rest import Posed, Rest, posed
+from muster.execution.rest import Posed, Rest, in_one_line, posed
 from muster.execution.rewiring import rewired
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
-from muster.mission.plan import Reason
+from muster.mission.plan import Reason, Unassigned
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,7 +192,7 @@ def _revision(rest: Rest, what: Posed, routes: Routes, forced: Iterable[str]) ->
         for i, robot in enumerate(problem.robots)
     }
     now = {task: robot for robot, tasks in planned.items() for task in tasks}
-    left_out = {item.task: told(item.reasons) for item in unassigned(problem, routes)} | dict(what.hopeless)
+    left_out = {item.task: _why(item, rest) for item in unassigned(problem, routes)} | dict(what.hopeless)
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
     still = {task for robot, tasks in rest.routes.items() for task in tasks}
     freed = {task for task in moved if task not in still or moved[task][0] in rest.refusals.get(task, {})}
@@ -220,9 +220,13 @@ def _nobody(rest: Rest) -> Revision:
     )
 
 
+def _why(item: Unassigned, rest: Rest) -> str:
+    """Why a task is left out; robots that refused it are locked out of the problem, and have a reason of their own."""
+    refused = rest.refusals.get(item.task, {})
+    others = told(reason for reason in item.reasons if reason.robot not in refused)
+    return "; ".join(part for part in (in_one_line(refused.items()), others) if part)
+
+
 def told(reasons: Iterable[Reason]) -> str:
-    """Reasons in one line: robots with the same reason together."""
-    robots: dict[str, list[str]] = {}
-    for reason in reasons:
-        robots.setdefault(f"{reason.reason}: {reason.detail}", []).append(reason.robot)
-    return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())
+    """Reasons in one line."""
+    return in_one_line((reason.robot, f"{reason.reason}: {reason.detail}") for reason in reasons)

@@ -9,12 +9,11 @@ and times are those of the whole mission, and prerequisites that have ended are 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from muster.allocation.fixed import keeping
 from muster.allocation.problem import Problem
-from muster.execution.doing import plain_work_s
 from muster.execution.travel import Spot, Travel
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
@@ -104,9 +103,8 @@ def posed(rest: Rest, travel: Travel) -> Posed:
     mission = _mission(rest, [*past.values(), *tasks])
     problem = Problem.compile(mission, ignored=rest.ignored)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
-    table = travel.table(problem, spots, {s.robot.id: s.spot for s in rest.crew})
-    known = problem.measured
-    problem = replace(problem, known=known if table is None else replace(known, table=table[0], classes=table[1]))
+    known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
+    problem = _delayed(rest, replace(problem, known=known))
     problem = _bearable(problem, past)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return Posed(keeping(problem, Plan(routes=routes)), hopeless)
@@ -150,7 +148,7 @@ def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, 
             hopeless[task.id] = why
         else:
             before = tuple(name for name in task.prerequisites if needs_order and name not in rest.ended)
-            hopeful[task.id] = replace(_delayed(rest, task), prerequisites=before, only_robots=robots)
+            hopeful[task.id] = replace(task, prerequisites=before, only_robots=robots)
     sure = {standing.task for standing in rest.crew if standing.task is not None}
     waiting = dict(hopeful)
     while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
@@ -173,19 +171,35 @@ def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
     robots = tuple(name for name in meant if name not in refused)
     if task.only_robots is not None and not meant:
         return robots, f"lock: only {', '.join(task.only_robots)} may do it, and takes no part any more"
-    return robots, "; ".join(f"{robot}: {why}" for robot, why in refused.items())
+    return robots, in_one_line(refused.items())
 
 
-def _delayed(rest: Rest, task: Task) -> Task:
-    """A task with its delay, as a duration that is right for the robot that has it, else for the fastest."""
-    delay = rest.delays_s.get(task.id, 0.0)
-    if not delay:
-        return task
-    crew = {standing.robot.id: standing.robot for standing in rest.crew}
-    robot = crew.get(rest.former.get(task.id, "")) or max(crew.values(), key=lambda robot: robot.speed_mps)
-    action = None if task.action is None or task.action.duration_s is not None else task.action
-    lasts = (plain_work_s(task, robot) + delay) * robot.efficiency
-    return replace(task, duration_s=lasts, action=action)
+def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:
+    """Say why each robot cannot: robots with the same reason together."""
+    robots: dict[str, list[str]] = {}
+    for robot, why in reasons:
+        robots.setdefault(why, []).append(robot)
+    return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())
+
+
+def _delayed(rest: Rest, problem: Problem) -> Problem:
+    """With delays, as durations that are right for the robot that has the task, else for the fastest."""
+    fastest = max(problem.robots, key=lambda robot: robot.speed_mps).id
+    tasks = list(problem.tasks)
+    for name in (task.id for task in rest.tasks if rest.delays_s.get(task.id)):
+        j = problem.task_index.get(name)
+        if j is not None:
+            i = problem.robot_index.get(rest.former.get(name, ""), problem.robot_index[fastest])
+            lasts = float(problem.work_seconds(i)[j]) + rest.delays_s[name]
+            tasks[j] = _lasting(tasks[j], lasts * problem.robots[i].efficiency)
+    return replace(problem, tasks=tuple(tasks))
+
+
+def _lasting(task: Task, duration_s: float) -> Task:
+    """A task of another duration, which is that of its action where it has its own."""
+    if task.action is not None and task.action.duration_s is not None:
+        return replace(task, action=replace(task.action, duration_s=duration_s))
+    return replace(task, duration_s=duration_s)
 
 
 def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:

@@ -21,7 +21,6 @@ from muster.allocation.problem import Floats, Problem
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Plan
-from muster.motion.actions import duration_of
 
 _LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
 
@@ -149,8 +148,5 @@ class _Schedule:
     @cached_property
     def _work_seconds(self) -> Floats:
         """(m, n) seconds that each task takes each robot."""
-        rows = []
-        for robot in self.problem.robots:
-            lasts = [(task.actuation_cost / robot.speed_mps, duration_of(task)) for task in self.problem.tasks]
-            rows.append([bare if given is None else given / robot.efficiency for bare, given in lasts])
+        rows = [self.problem.work_seconds(i) for i in range(len(self.problem.robots))]
         return np.array(rows).reshape(len(self.problem.robots), len(self.problem.tasks))

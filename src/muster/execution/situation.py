@@ -55,7 +55,7 @@ def rest_of(mission: Mission, plan: Plan, crew: Mapping[str, Hand], ledger: Ledg
 
 def _standing(hand: Hand, now: float) -> Standing:
     works = hand.activity is Activity.WORKING
-    point = hand.doing.exit if works and hand.doing is not None else hand.position
+    point = hand.work.exit if works and hand.work is not None else hand.position
     at_task = hand.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
     before = hand.done[-1] if hand.done and not hand.at_home else hand.robot.id
     return Standing(

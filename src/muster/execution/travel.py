@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from muster.allocation.measured import Measured
 from muster.allocation.problem import Problem
 from muster.execution.doing import Way, place, straight
 from muster.mission.model import Mission, Robot, TravelTable
@@ -16,9 +17,6 @@ from muster.motion.path import NoPath
 from muster.motion.port import Place
 from muster.motion.roads import Roads
 from muster.motion.world import body_of
-
-Table = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
-"""(classes, n + 2m, n + 2m) metres between tasks, starts and ends of a problem, and (m,) each robot's class."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +45,8 @@ class Travel(Protocol):
         """Whether there is travel to a task or from a robot of that name."""
         ...
 
-    def table(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Table | None:
-        """Travel of a problem; None where it is straight.
+    def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
+        """The lengths that a problem needs, whose own rule is straight travel.
 
         Parameters
         ----------
@@ -99,8 +97,8 @@ class Straight:
     def knows(self, name: str) -> bool:
         return True
 
-    def table(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Table | None:
-        return None
+    def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
+        return problem.measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,24 +110,18 @@ class OverMap:
     def knows(self, name: str) -> bool:
         return True
 
-    def table(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Table | None:
-        here = [past.get(task.id) for task in problem.tasks] + [robots[robot.id] for robot in problem.robots]
-        ends = [place(robot.end_position or robot.position) for robot in problem.robots]
-        entries = [place(task.entry or task.position) for task in problem.tasks]
-        exits = [place(task.exit or task.position) for task in problem.tasks]
-        starts = [place(robot.position) for robot in problem.robots]
-        into, out = np.array([*entries, *starts, *ends]), np.array([*exits, *starts, *ends])
-        refuges = np.array([*(out[k] if spot is None else spot.refuge for k, spot in enumerate(here)), *ends])
-        bodies = list(dict.fromkeys(body_of(robot) for robot in problem.robots))
-        tables = []
-        for body in bodies:
-            metres = self.roads.lengths(body, out, into, 1)
-            lost = [k for k in range(len(here)) if here[k] is not None and not np.isfinite(metres[k]).any()]
+    def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
+        over = problem.over(self.roads)
+        found = over.measured(1)
+        here = {problem.task_index[name]: spot for name, spot in past.items()}
+        here |= {problem.start(i): robots[robot.id] for i, robot in enumerate(problem.robots)}
+        for k, metres in enumerate(found.table):
+            lost = [p for p in here if not np.isfinite(metres[p]).any()]
             if lost:
-                apart = np.linalg.norm(out[lost] - refuges[lost], axis=1)
-                metres[lost] = apart[:, None] + self.roads.lengths(body, refuges[lost], into, 1)
-            tables.append(metres)
-        return np.array(tables), np.array([bodies.index(body_of(r)) for r in problem.robots], dtype=np.int32)
+                refuges = np.array([here[p].refuge for p in lost])
+                apart = np.linalg.norm(over.exits[k, lost] - refuges, axis=1)
+                metres[lost] = apart[:, None] + over.lengths(k, refuges, 1)
+        return found
 
 
 @dataclass(frozen=True)
@@ -141,12 +133,13 @@ class ByTable:
     def knows(self, name: str) -> bool:
         return all(name in table.places for table in self.tables.values())
 
-    def table(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Table | None:
+    def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
         tasks = [past[task.id].name if task.id in past else task.id for task in problem.tasks]
         starts, ends = [robots[robot.id].name for robot in problem.robots], [robot.id for robot in problem.robots]
         kinds = sorted({robot.type or "" for robot in problem.robots})
         tables = [self._between(kind, [*tasks, *starts, *ends]) for kind in kinds]
-        return np.array(tables), np.array([kinds.index(robot.type or "") for robot in problem.robots], dtype=np.int32)
+        classes = np.array([kinds.index(robot.type or "") for robot in problem.robots], dtype=np.int32)
+        return replace(problem.measured, table=np.array(tables), classes=classes)
 
     def _between(self, kind: str, names: Sequence[str]) -> npt.NDArray[np.float64]:
         given = self.tables[kind]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import numpy as np
 from muster.mission.errors import MissionError
 from muster.mission.kinds import Fault, Path, shown
 from muster.mission.model import Mission, Point, Robot, Task, findings
+from muster.motion.actions import Doing, plan
 from muster.motion.grid import Grid
 from muster.motion.maps.inside import free
 from muster.motion.spaces import PrismSpace
@@ -49,14 +50,16 @@ class BlockedPlace:
 def blocked_places(world: World, mission: Mission) -> tuple[BlockedPlace, ...]:
     """Every place that is blocked for a body that has to be there.
 
-    Starts and ends are looked at for their robot; entries and exits of tasks for every radius and kind of the robots
-    that the task allows (`only_robots`, or all), each once. Events are not looked at.
+    Starts and ends are looked at for their robot; entries and exits of tasks, and the way points of their actions, for
+    every radius and kind of the robots that the task allows (`only_robots`, or all), each once. Events are not looked
+    at.
     """
     found: list[BlockedPlace] = []
     for k, robot in enumerate(mission.robots):
-        found += _blocked(world, _places_of_robot(k, robot), f"robot {robot.id}", [body_of(robot)])
+        places = ((*place, body_of(robot)) for place in _places_of_robot(k, robot))
+        found += _blocked(world, places, f"robot {robot.id}")
     for k, task in enumerate(mission.tasks):
-        found += _blocked(world, _places_of_task(k, task), f"task {task.id}", _bodies(mission, task))
+        found += _blocked(world, _places_of_task(k, task, mission), f"task {task.id}")
     return tuple(found)
 
 
@@ -93,37 +96,39 @@ def _expected(body: Body) -> str:
     return f"a place that is free for its robot ({body.kind}, radius {body.radius_m:g} m)"
 
 
-def _bodies(mission: Mission, task: Task) -> list[Body]:
-    """The different bodies of the robots that may do a task, in mission order."""
-    allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
-    return list(dict.fromkeys(map(body_of, allowed)))
-
-
 def _places_of_robot(k: int, robot: Robot) -> Iterator[tuple[Path, Point]]:
     yield ("robots", k, "position"), robot.position
     if robot.end_position is not None:
         yield ("robots", k, "end_position"), robot.end_position
 
 
-def _places_of_task(k: int, task: Task) -> Iterator[tuple[Path, Point]]:
+def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Point, Body], None]:
+    """Where robots have to be for a task, those of an action by robot, each once and in order."""
+    allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
+    if task.action is None or not task.action.has_geometry:
+        bodies = dict.fromkeys(map(body_of, allowed))
+        return dict.fromkeys((path, point, body) for path, point in _portals(k, task) for body in bodies)
+    own = {task.entry: ("entry",), task.exit: ("exit",), task.action.pickup: ("action", "pickup")}
+    own[task.position] = ("position",)
+    doings = [(body_of(robot), plan(task, robot)) for robot in allowed]
+    passed = [(body, point) for body, doing in doings if isinstance(doing, Doing) for point in doing.points]
+    return dict.fromkeys((("tasks", k, *own.get(point, ("action",))), point, body) for body, point in passed)
+
+
+def _portals(k: int, task: Task) -> Iterator[tuple[Path, Point]]:
     if task.entry is None or task.exit is None:
         yield ("tasks", k, "position"), task.position
     if task.entry is not None:
         yield ("tasks", k, "entry"), task.entry
     if task.exit is not None:
         yield ("tasks", k, "exit"), task.exit
-    if task.action is not None and task.action.pickup is not None:
-        yield ("tasks", k, "action", "pickup"), task.action.pickup
 
 
-def _blocked(
-    world: World, places: Iterator[tuple[Path, Point]], owner: str, bodies: list[Body]
-) -> Iterator[BlockedPlace]:
-    for path, point in places:
-        for body in bodies:
-            space = world.free_space(body.radius_m, body.kind)
-            if not free(space, np.array([point]))[0]:
-                yield BlockedPlace(path, owner, point, body, why_blocked(world, point, body))
+def _blocked(world: World, places: Iterable[tuple[Path, Point, Body]], owner: str) -> Iterator[BlockedPlace]:
+    for path, point, body in places:
+        space = world.free_space(body.radius_m, body.kind)
+        if not free(space, np.array([point]))[0]:
+            yield BlockedPlace(path, owner, point, body, why_blocked(world, point, body))
 
 
 def why_blocked(world: World, point: Point, body: Body) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -32,6 +33,7 @@ class Roads:
 
     world: World
     _finders: dict[Body, WayFinder] = field(default_factory=dict, init=False, repr=False)
+    _legs: dict[tuple[Body, Point, Point], float] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def of(cls, mission: Mission) -> Roads:
@@ -52,6 +54,14 @@ class Roads:
         if isinstance(found, NoPath):
             return self._told(found, body, tuple(start), tuple(goal))
         return with_heights(found, start, goal)
+
+    def leg_m(self, body: Body, start: Point, goal: Point) -> float:
+        """Metres of the shortest path, inf where there is none; kept, for legs of actions are asked for again."""
+        leg = (body, start, goal)
+        if leg not in self._legs:
+            found = self.path(body, start, goal)
+            self._legs[leg] = math.inf if isinstance(found, NoPath) else found.length_m
+        return self._legs[leg]
 
     def curve(self, body: Body, path: Path) -> Curve:
         """A path with its corners rounded where the map leaves room."""

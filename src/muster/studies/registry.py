@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol, runtime_checkable
@@ -10,24 +10,29 @@ from typing import Protocol, runtime_checkable
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.studies.allocators import Allocators
-from muster.studies.auction_5 import Auction5
+from muster.studies.auction_5 import AUCTION_5
 from muster.studies.effort import Effort
-from muster.studies.market_rescue import MarketRescue
+from muster.studies.market_rescue import MARKET_RESCUE
 from muster.studies.peers import Peers
-from muster.studies.rvo import CollisionAvoidance
+from muster.studies.repetition import OnDone
+from muster.studies.rescue import RESCUE
+from muster.studies.rvo import RVO
 from muster.studies.tables import Report
-from muster.studies.thesis_3_3 import Thesis33
-
-OnDone = Callable[[int, int], None]
-"""Called with the number of runs done, and of all runs."""
+from muster.studies.thesis_3_3 import THESIS_3_3
+from muster.studies.thesis_6 import THESIS_6
 
 
 class Study(Protocol):
     """A published experiment that can be repeated; `tables` are the numbers of its tables."""
 
-    name: str
-    summary: str
-    tables: tuple[str, ...]
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def tables(self) -> tuple[str, ...]: ...
 
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
 
@@ -40,12 +45,14 @@ class Illustrated(Protocol):
 
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
-    Thesis33(),
-    Auction5(),
-    MarketRescue(),
+    THESIS_3_3,
+    THESIS_6,
+    AUCTION_5,
+    MARKET_RESCUE,
     Allocators(),
     Peers(),
-    CollisionAvoidance(),
+    RVO,
+    RESCUE,
 )
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})

@@ -94,7 +94,9 @@ def _unreachable(route: MeasuredRoute) -> Iterator[Violation]:
         if not step.leg.exists:
             yield Violation("unreachable", route.robot.id, step.task.id, f"no way from {here}")
         if not step.passable:
-            yield Violation("unreachable", route.robot.id, step.task.id, "no way along the way points of its action")
+            geometry = step.task.action is not None and step.task.action.has_geometry
+            way = "along the way points of its action" if geometry else "from its entry to its exit"
+            yield Violation("unreachable", route.robot.id, step.task.id, f"no way {way}")
         here = f"task {step.task.id}"
     if route.last_leg is not None and not route.last_leg.exists:
         yield Violation("unreachable", route.robot.id, None, f"no way from {here} to where the route must end")

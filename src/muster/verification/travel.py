@@ -89,13 +89,16 @@ class Travel:
         return length if math.isfinite(length) else None
 
     def work_metres(self, robot: Robot, task: Task) -> float | None:
-        """Return what the task costs the robot: the typed cost, or the legs between its way points; None if no way.
+        """Return what the task costs the robot: the typed cost, or the legs between its way points.
 
-        A task that the robot cannot do costs nothing.
+        None if there is no way along these, or from its entry to its exit. What the robot cannot do costs nothing.
         """
         doing = doing_at(robot, task)
         if doing is None:
-            return task.actuation_cost
+            place = place_of_task(task)
+            if self._ways is None or place.entry == place.exit:
+                return task.actuation_cost
+            return None if self._ways.metres(robot, place.entry, place.exit) is None else task.actuation_cost
         if isinstance(doing, Impossible):
             return 0.0
         if self._ways is None:

@@ -33,9 +33,16 @@ def test_a_task_without_action_is_one_to_go_to():
 
 def test_what_is_typed_beside_no_geometry_is_arrived_at_and_left():
     doing = plan(task(entry=(4, 0), exit=(7, 4), duration_s=5), ROVER)
-    assert places(doing) == [(4, 0, 0), (4, 4, 0), (7, 4, 0)]
+    assert places(doing) == [(4, 0, 0), (7, 4, 0)]
     assert (doing.entry, doing.exit, doing.cost_m) == ((4, 0), (7, 4), 0)
-    assert [waypoint.hold_s for waypoint in doing.waypoints] == [0, 10 - 7 / 2, 0]
+    assert [waypoint.hold_s for waypoint in doing.waypoints] == [10 - 5 / 2, 0]
+
+
+@pytest.mark.parametrize(("portal", "holds"), [("entry", [0, 8]), ("exit", [8, 0])])
+def test_it_stays_at_the_position_if_it_comes_there(portal, holds):
+    doing = plan(task(duration_s=5, **{portal: (4, 0)}), ROVER)
+    assert [waypoint.hold_s for waypoint in doing.waypoints] == holds
+    assert places(doing)[holds.index(8)] == (4, 4, 0)
 
 
 def test_a_sensor_is_waited_for():

@@ -38,7 +38,7 @@ def task_states(browser):
     )
 
 
-@pytest.mark.parametrize("name", ["31T-6R", "floor", "yard"])
+@pytest.mark.parametrize("name", ["31T-6R", "floor", "yard", "depot"])
 @pytest.mark.parametrize("size", [WIDE, NARROW])
 @pytest.mark.parametrize("dark", [False, True])
 def test_it_loads_without_complaint_and_without_network(name, size, dark, browser, page):
@@ -50,7 +50,7 @@ def test_it_loads_without_complaint_and_without_network(name, size, dark, browse
     paper = browser.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (paper == "rgb(255, 255, 255)") != dark
     assert browser.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    assert browser.evaluate("document.getElementById('heights').hidden") == (name != "yard")
+    assert browser.evaluate("document.getElementById('heights').hidden") == (name not in ("yard", "depot"))
     assert browser.evaluate("document.querySelectorAll('#map image').length") == (name == "floor")
 
 

@@ -109,7 +109,7 @@ def along(task: Task, robot: Robot, points: Sequence[Point], heading: float | No
 
     Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `heading` is
     that in which the robot waits, radians; None: as it arrives. An entry and an exit that the mission gives are passed
-    before and after. What is left is reckoned by straight legs: where a map makes them longer the work takes longer.
+    before and after. What is left is reckoned by straight legs; where a map makes them longer, less is left.
     """
     dimensions = len(task.position)
     own = [point[:dimensions] for point in points]
@@ -121,12 +121,16 @@ def along(task: Task, robot: Robot, points: Sequence[Point], heading: float | No
 
 
 def staying(task: Task, robot: Robot) -> Doing:
-    """Be at the task's position for as long as it takes; arrive and leave where the mission says."""
-    before = [task.entry] if task.entry is not None and task.entry != task.position else []
-    after = [task.exit] if task.exit is not None and task.exit != task.position else []
-    rest = _rest_s(task, robot, _length([*before, task.position, *after]))
-    at_work = Waypoint(_place(task.position), hold_s=rest)
-    return Doing((*_passed(before), at_work, *_passed(after)), len(task.position), typed_cost=task.actuation_cost)
+    """Arrive and leave where the mission says, and stay for as long as it takes, for what the mission types in.
+
+    The robot stays at the task's position where it arrives or leaves there, else at the entry.
+    """
+    entry, out = task.entry or task.position, task.exit or task.position
+    points = [entry] if entry == out else [entry, out]
+    rest = _rest_s(task, robot, _length(points))
+    stays = len(points) - 1 if task.exit is None else 0
+    waypoints = [Waypoint(_place(point), hold_s=rest if k == stays else 0.0) for k, point in enumerate(points)]
+    return Doing(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost)
 
 
 def given(task: Task, *keys: str) -> tuple[float, ...]:

@@ -1,5 +1,5 @@
 """Auction thesis, chapter 5: its three scenarios, Tables 5.2 to 5.23."""
 
-from muster.studies.auction_5.study import Auction5
+from muster.studies.auction_5.study import AUCTION_5
 
-__all__ = ["Auction5"]
+__all__ = ["AUCTION_5"]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from muster.studies.auction_5.auctions import Auction, Held
 from muster.studies.auction_5.published import content, judged_paths
+from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL, ERRATUM
 from muster.studies.misprints import corrected, errata, printed
 from muster.studies.runs import mission_named
@@ -29,17 +30,17 @@ class Paths:
     remarks: tuple[tuple[str, str], ...] = ()
     columns: tuple[str, ...] = ("drone", "values", "tasks", "length", "mark")
 
-    def auctions(self) -> Iterator[Auction]:
+    def jobs(self, effort: Effort) -> Iterator[Auction]:
         mission = content(self.number)["plans"][0]["run_as"]
         for bid in self.bids:
             for placement in self.placements:
                 yield Auction(mission=mission, bid=bid, placement=placement)
 
-    def table(self, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
         notes, rows = Notes(), []
         for k, there in enumerate(judged_paths(self.number).routes):
             rows.append(row(self.columns, _cells("thesis", there)))
-            for auction in self.auctions():
+            for auction in self.jobs(effort):
                 own = held[auction].verdict.routes[k]
                 mark = EQUAL if own.tasks == there.tasks else OTHER_TASKS + self._remark(auction, notes)
                 rows.append(row(self.columns, {**_cells(self._values(auction), own), "mark": mark}))
@@ -71,10 +72,10 @@ class Positions:
     paths: str = "5.18"
     columns: tuple[str, ...] = ("task", "position, thesis", "position, own", "mark")
 
-    def auctions(self) -> Iterator[Auction]:
+    def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield from ()
 
-    def table(self, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
         published, notes, rows = content(self.number), Notes(), []
         positions = published["positions"]
         there, right = printed(positions), corrected(positions)

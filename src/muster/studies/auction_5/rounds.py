@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from muster.mission.book import Bid
 from muster.studies.auction_5.auctions import Auction, Held
 from muster.studies.auction_5.published import content
+from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL
 from muster.studies.tables import Cell, Table, row
 
@@ -28,10 +29,10 @@ class Bids:
 
     number: str
 
-    def auctions(self) -> Iterator[Auction]:
+    def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield _AUCTION
 
-    def table(self, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
         published, rows = content(self.number), []
         columns = ("drone", "values", *content("5.1")["positions"], "mark")
         own = held[_AUCTION].bids()[published["round"]]
@@ -59,10 +60,10 @@ class SubmittedBids:
     number: str
     columns: tuple[str, ...] = ("drone", "values", "task", "bid", "wins", "mark")
 
-    def auctions(self) -> Iterator[Auction]:
+    def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield _AUCTION
 
-    def table(self, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
         published, rows = content(self.number), []
         winner = published["winner"]
         own = held[_AUCTION].bids()[published["round"]]

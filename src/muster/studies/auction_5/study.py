@@ -2,27 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Protocol
-
 from muster.studies.auction_5.auctions import Auction, Held, hold
 from muster.studies.auction_5.paths import Paths, Positions
 from muster.studies.auction_5.rounds import Bids, SubmittedBids
 from muster.studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
-from muster.studies.effort import Effort
-from muster.studies.tables import Report, Table
-
-
-class Reproduction(Protocol):
-    """One table repeated: the auctions that it needs, and the table made of them."""
-
-    @property
-    def number(self) -> str: ...
-
-    def auctions(self) -> Iterator[Auction]: ...
-
-    def table(self, held: Mapping[Auction, Held]) -> Table: ...
-
+from muster.studies.repetition import Repetition, Reproduction, one_by_one
 
 _NOT_AS_DESCRIBED = (
     "average is the bid that the text and the literature describe: the growth of the sum of the path lengths at which "
@@ -30,7 +14,7 @@ _NOT_AS_DESCRIBED = (
     "alike. average-as-printed, the number of tasks times the length of the path, is fitted to Table 5.20."
 )
 
-_TABLES: tuple[Reproduction, ...] = (
+_TABLES: tuple[Reproduction[Auction, Held], ...] = (
     Bids("5.2"),
     Bids("5.3"),
     SubmittedBids("5.4"),
@@ -71,36 +55,13 @@ _LEGEND = (
     "the allocator.",
 )
 
-
-class Auction5:
-    """Sequential single-item auction of tasks among drones, bid by bid and under each rule."""
-
-    name = "auction-5"
-    summary = "sequential auction of tasks among drones, auction thesis, chapter 5"
-    tables = tuple(table.number for table in _TABLES)
-
-    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
-        """Repeat the chapter, or the tables of it that `effort` names. Nothing is random, and all takes a moment.
-
-        Raises
-        ------
-        ParameterError
-            if there is no such table.
-        """
-        numbers = effort.wanted(self.tables)
-        wanted = [table for table in _TABLES if table.number in numbers]
-        auctions = list(dict.fromkeys(auction for table in wanted for auction in table.auctions()))
-        held: dict[Auction, Held] = {}
-        for auction in auctions:
-            held[auction] = hold(auction)
-            if on_done is not None:
-                on_done(len(held), len(auctions))
-        return Report(
-            study=self.name,
-            document="auction thesis, chapter 5",
-            seeds=None,
-            runs=len(held),
-            cpu_s=sum(own.cpu_s for own in held.values()),
-            legend=_LEGEND,
-            tables=tuple(table.table(held) for table in wanted),
-        )
+AUCTION_5 = Repetition(
+    name="auction-5",
+    summary="sequential auction of tasks among drones, auction thesis, chapter 5",
+    document="auction thesis, chapter 5",
+    legend=_LEGEND,
+    reproductions=_TABLES,
+    perform=one_by_one(hold),
+    seeds=lambda _: None,
+)
+"""Sequential single-item auction of tasks among drones, bid by bid and under each rule."""

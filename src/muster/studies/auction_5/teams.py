@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from muster.studies.auction_5.auctions import BIDS, PUBLISHED_NAMES, Auction, Held
 from muster.studies.auction_5.published import judged_paths, paths
+from muster.studies.effort import Effort
 from muster.studies.tables import Cell, Table, row
 
 PLACEMENTS = ("append", "insert")
@@ -30,7 +31,7 @@ class Teams:
     notes: tuple[str, ...] = ()
     columns: tuple[str, ...] = ("bid", "placement", "done", "total", "max", "average", "most", "idle", "ms")
 
-    def auctions(self) -> Iterator[Auction]:
+    def jobs(self, effort: Effort) -> Iterator[Auction]:
         for bid in self.bids:
             yield from self._auctions(bid)
 
@@ -38,7 +39,7 @@ class Teams:
         for placement in PLACEMENTS:
             yield Auction(mission=self.mission, bid=bid, placement=placement, winner=self.winner)
 
-    def table(self, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
         rows = []
         for bid in self.bids:
             if bid in self.published:

@@ -51,7 +51,7 @@ class Comparison:
         "reached",
     )
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         budgets = _budgets(effort)
         yield _case("greedy", None)
         yield _case("auction", None)
@@ -66,7 +66,7 @@ class Comparison:
         tasks = len(mission_named(MISSION).tasks)
         rows = [
             row(self.columns, {"allocator": "best known", "done": tasks, "best": known}),
-            *(row(self.columns, _cells(samples[case], known)) for case in self.cases(effort)),
+            *(row(self.columns, _cells(samples[case], known)) for case in self.jobs(effort)),
         ]
         title = "5 robots, 20 survivors: seconds of the robot that takes longest"
         return Table(self.number, title, self.columns, tuple(rows), _notes(effort))

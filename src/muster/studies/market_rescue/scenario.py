@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -12,13 +12,13 @@ from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL, equal
 from muster.studies.runs import Case, Sample
 from muster.studies.tables import Cell, Table, row
-from muster.verification import RouteFigures
+from muster.verification import RouteFigures, Visit
 
 ITERATIONS = 100
 """Of the market; the paper states no number."""
 
 TRAVEL, EXECUTION = "-", "#"
-_CHARACTER_S = 2
+CHARACTER_S = 2
 
 
 @cache
@@ -27,14 +27,16 @@ def paper() -> Mapping[str, Any]:
     return published("market-rescue")
 
 
-def _allocation() -> Mapping[str, tuple[str, ...]]:
+def printed_allocation() -> Mapping[str, tuple[str, ...]]:
+    """By robot the survivors that the paper's Figure 5 gives it."""
     routes = paper()["tables"]["Figure 5"]["plans"][0]["routes"]
     return {robot: tuple(route["tasks"]) for robot, route in routes.items()}
 
 
-def _case(effort: Effort) -> Case:
+def market_case(effort: Effort, mission: str = "market-rescue") -> Case:
+    """The market on a mission of the scenario."""
     iterations = ITERATIONS if effort.iterations is None else effort.iterations
-    return Case(mission="market-rescue", allocator="market", objective="max", iterations=iterations)
+    return Case(mission=mission, allocator="market", objective="max", iterations=iterations)
 
 
 @dataclass(frozen=True)
@@ -42,15 +44,16 @@ class Allocation:
     """Figure 5: which survivors each robot does."""
 
     number: str = "Figure 5"
+    mission: str = "market-rescue"
     columns: tuple[str, ...] = ("robot", "values", "survivors", "runs", "mark")
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
-        yield _case(effort)
+    def jobs(self, effort: Effort) -> Iterator[Case]:
+        yield market_case(effort, self.mission)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
-        sample, rows = samples[_case(effort)], []
+        sample, rows = samples[market_case(effort, self.mission)], []
         for route in sample.best.verdict.routes:
-            there = _allocation()[route.robot]
+            there = printed_allocation()[route.robot]
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "survivors": there}))
             runs = sum(set(_tasks(outcome.verdict.routes, route.robot)) == set(there) for outcome in sample.outcomes)
             cells: dict[str, Cell] = {
@@ -80,15 +83,20 @@ class TimeChart:
     number: str = "Figure 6"
     columns: tuple[str, ...] = ("robot", "values", "A", "B", "A + B", "chart", "mark")
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
-        yield _case(effort)
+    def jobs(self, effort: Effort) -> Iterator[Case]:
+        yield market_case(effort)
 
     def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table:
-        verdict, rows = samples[_case(effort)].best.verdict, []
+        verdict, rows = samples[market_case(effort)].best.verdict, []
         for route in verdict.routes:
-            there = _execution_s(route.robot)
+            there = execution_s(route.robot)
             rows.append(row(self.columns, {"robot": route.robot, "values": "paper", "B": there}))
-            cells: dict[str, Cell] = {"A": route.travel, "B": route.work, "A + B": route.usage, "chart": chart(route)}
+            cells: dict[str, Cell] = {
+                "A": route.travel,
+                "B": route.work,
+                "A + B": route.usage,
+                "chart": chart(route.visits),
+            }
             mark = EQUAL if equal(there, route.work) else f"B {route.work - there:+.2f}"
             rows.append(row(self.columns, {"robot": route.robot, "values": "own", **cells, "mark": mark}))
         mission_s = float(paper()["simulated_mission_s"])
@@ -102,22 +110,22 @@ class TimeChart:
             "The paper's mission time, 1 min 23 s, is that of its simulation, with obstacles, turns and survivors at "
             "places that it does not print. Own places are chosen, in its arena of 2 m x 2 m, and own travel is "
             "straight and at full speed: the two times do not compare.",
-            f"chart: a character is {_CHARACTER_S} s; {TRAVEL} travel, {EXECUTION} execution, by the judge's schedule.",
+            f"chart: a character is {CHARACTER_S} s; {TRAVEL} travel, {EXECUTION} execution, by the judge's schedule.",
         )
         return Table(self.number, "Time chart of the allocation", self.columns, tuple(rows), notes)
 
 
-def _execution_s(robot: str) -> float:
+def execution_s(robot: str) -> float:
     """B of the paper's allocation, from its execution times and aging factor."""
     model = paper()["tables"]["Figure 3"]
-    minutes = sum(model["tasks"][task]["time_required_min"] for task in _allocation()[robot])
+    minutes = sum(model["tasks"][task]["time_required_min"] for task in printed_allocation()[robot])
     return float(60 * minutes / model["robots"][robot]["aging_factor"])
 
 
-def chart(route: RouteFigures) -> str:
+def chart(visits: Iterable[Visit]) -> str:
     """A robot's time as a line of characters."""
     drawn = ""
-    for visit in route.visits:
-        arrives, starts, ends = (round(s / _CHARACTER_S) for s in (visit.arrives_s, visit.starts_s, visit.ends_s))
+    for visit in visits:
+        arrives, starts, ends = (round(s / CHARACTER_S) for s in (visit.arrives_s, visit.starts_s, visit.ends_s))
         drawn = drawn.ljust(arrives, TRAVEL).ljust(starts).ljust(ends, EXECUTION)
     return drawn

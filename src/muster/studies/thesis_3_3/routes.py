@@ -44,7 +44,7 @@ class Routes:
 
     number: str
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         for plan in published_plans(self.number).values():
             yield own_case(plan, self.number, effort)
 

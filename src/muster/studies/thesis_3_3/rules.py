@@ -37,7 +37,7 @@ class Chains:
         "mark",
     )
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         for chain in publication(self.number).content["chains"]:
             yield own_case(_plan_of(chain, _PLANS), _PLANS[chain["allocator"]], effort)
 
@@ -123,7 +123,7 @@ class Violations:
         "mark",
     )
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         for record in publication(self.number).content["violations"]:
             yield own_case(published_plans(record["table"])[record["mission"]], record["table"], effort)
 
@@ -183,7 +183,7 @@ class Capacities:
     number: str = "3.16"
     plans: str = "3.17"
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         for plan in published_plans(self.plans).values():
             yield own_case(plan, self.plans, effort)
 

@@ -2,34 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Protocol
-
-from muster.studies.effort import Effort
-from muster.studies.processes import run_cases
+from muster.studies.repetition import Repetition, Reproduction, over_seeds
 from muster.studies.runs import Case, Sample
-from muster.studies.tables import Report, Table
 from muster.studies.thesis_3_3.routes import Routes
 from muster.studies.thesis_3_3.rules import Capacities, Chains, Violations
 from muster.studies.thesis_3_3.totals import Totals
-
-
-class Reproduction(Protocol):
-    """One table repeated: the cases that it needs, and the table made of their runs."""
-
-    @property
-    def number(self) -> str: ...
-
-    def cases(self, effort: Effort) -> Iterator[Case]: ...
-
-    def table(self, effort: Effort, samples: Mapping[Case, Sample]) -> Table: ...
-
 
 _RUN = ("scenario", "allocator")
 _FIGURES = ("iterations", "tasks", "C", "F", "mean", "worst", "s")
 _STATISTICS = ("iterations", "tasks", "F", "mean", "worst", "spread", "deviation", "s")
 
-_TABLES: tuple[Reproduction, ...] = (
+_TABLES: tuple[Reproduction[Case, Sample], ...] = (
     Totals("3.2", ("allocator",), _STATISTICS),
     Totals("3.3", ("figure", "allocator"), _FIGURES, published_iterations=True),
     Totals("3.4", _RUN, _FIGURES),
@@ -62,33 +45,12 @@ _LEGEND = (
     "erratum: misprinted; own numbers are compared with what is right.",
 )
 
-
-class Thesis33:
-    """Greedy, genetic, hill-climbing and combined task allocation against a benchmark, and under each rule."""
-
-    name = "thesis-3.3"
-    summary = "task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22"
-    tables = tuple(table.number for table in _TABLES)
-
-    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
-        """Repeat the section, or the tables of it that `effort` names.
-
-        Raises
-        ------
-        ParameterError
-            if there is no such table.
-        """
-        numbers = effort.wanted(self.tables)
-        wanted = [table for table in _TABLES if table.number in numbers]
-        cases = [case for table in wanted for case in table.cases(effort)]
-        samples = run_cases(cases, effort.seed_count, workers, on_done)
-        outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
-        return Report(
-            study=self.name,
-            document="TCF thesis, section 3.3",
-            seeds=effort.seed_count,
-            runs=len(outcomes),
-            cpu_s=sum(outcome.cpu_s for outcome in outcomes),
-            legend=_LEGEND,
-            tables=tuple(table.table(effort, samples) for table in wanted),
-        )
+THESIS_3_3 = Repetition(
+    name="thesis-3.3",
+    summary="task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22",
+    document="TCF thesis, section 3.3",
+    legend=_LEGEND,
+    reproductions=_TABLES,
+    perform=over_seeds,
+)
+"""Greedy, genetic, hill-climbing and combined task allocation against a benchmark, and under each rule."""

@@ -54,7 +54,7 @@ class Totals:
     plans: str | None = None
     published_iterations: bool = False
 
-    def cases(self, effort: Effort) -> Iterator[Case]:
+    def jobs(self, effort: Effort) -> Iterator[Case]:
         for record in publication(self.number).rows:
             yield from self._cases(record, effort)
 

@@ -1,0 +1,40 @@
+"""Lengths that a problem needs: between its places, and along the way points of its actions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Lengths that a problem needs, metres; inf where there is no way.
+
+    Parameters
+    ----------
+    table, classes
+        as `Problem.travel`.
+    costs, work_classes
+        (work classes, n) what tasks cost, and (m,) each robot's class.
+    """
+
+    table: Floats
+    classes: npt.NDArray[np.int32]
+    costs: Floats
+    work_classes: npt.NDArray[np.int32]
+
+    def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
+        """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
+        tables, classes = np.unique(self.classes[list(robots)], return_inverse=True)
+        rows, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
+        return Measured(
+            self.table[tables][:, places][:, :, places],
+            classes.astype(np.int32),
+            self.costs[rows][:, tasks],
+            work_classes.astype(np.int32),
+        )

@@ -1,0 +1,144 @@
+"""A robot's reference and where it went, on the map and as deviation; and measures as bars with their spread."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from muster.mission.model import Map
+from muster.report.canvas import quiet_frame, require_matplotlib
+from muster.report.floor import draw_map
+from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+from muster.report.traces import Places
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PANEL_IN = 4.6
+_DEVIATION_IN = 1.9
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tracked:
+    """One flight of one robot.
+
+    Parameters
+    ----------
+    name
+        of what kind it is; flights of a kind have one colour.
+    places
+        (k, 2) metres.
+    times, aside
+        (k,) seconds, and metres from the reference.
+    """
+
+    name: str
+    places: Places
+    times: Places
+    aside: Places
+
+
+def plot_tracking(
+    chart: Map | None,
+    reference: Places,
+    flights: Sequence[Tracked],
+    goals: Mapping[str, tuple[float, float]],
+    title: str,
+) -> Figure:
+    """Draw the reference (k, 2) and the flights on the map, beneath them how far aside each was over time.
+
+    `goals` are marked with their names.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    figure = _figure(_PANEL_IN, _PANEL_IN + _DEVIATION_IN)
+    above, below = figure.subplots(2, 1, height_ratios=(_PANEL_IN, _DEVIATION_IN))
+    if chart is not None:
+        draw_map(above, chart, spatial=False)
+    above.plot(*reference.T, color=TEXT, linestyle=DASHED, linewidth=1.2, label="reference", zorder=4, gid="reference")
+    for index, kind in enumerate(dict.fromkeys(flight.name for flight in flights)):
+        for k, flight in enumerate(flight for flight in flights if flight.name == kind):
+            look: dict[str, Any] = {
+                "color": robot_style(index).color,
+                "linewidth": 1.0,
+                "zorder": 3 - 0.1 * index,
+                "label": kind if k == 0 else "_",  # one entry of the legend for all of a kind
+            }
+            above.plot(*flight.places.T, **look)
+            below.plot(flight.times, 1000 * flight.aside, **look)
+    above.plot(*reference[0], "s", color=TEXT, markersize=5, zorder=5)
+    for name, (x, y) in goals.items():
+        above.plot(x, y, "o", color=ALARM, markersize=5, zorder=5)
+        above.annotate(name, (x, y), (6, 4), textcoords="offset points", fontsize=7, color=QUIET_TEXT)
+    above.set_aspect("equal", adjustable="datalim")
+    above.set_xlabel("x [m]")
+    above.set_ylabel("y [m]")
+    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=7, frameon=False)
+    below.set_xlabel("time [s]")
+    below.set_ylabel("aside [mm]")
+    below.set_ylim(bottom=0.0)
+    _finish(figure, title)
+    return figure
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
+    """One measure: by robot its mean and its spread, in the unit that `label` tells; `printed`, a published value."""
+
+    label: str
+    means: Mapping[str, float]
+    spreads: Mapping[str, float]
+    printed: float | None = None
+
+
+def plot_measures(measures: Sequence[Measure], title: str) -> Figure:
+    """Draw each measure in a panel of its own: a bar for each robot, the spread as error bar.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    columns = min(4, len(measures))
+    rows = -(-len(measures) // columns)
+    figure = _figure(2.9 * columns, 2.6 * rows)
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for ax, measure in zip(axes, measures, strict=False):
+        _draw_measure(ax, measure)
+    for ax in axes[len(measures) :]:
+        ax.remove()
+    _finish(figure, title)
+    return figure
+
+
+def _draw_measure(ax: Any, measure: Measure) -> None:
+    for index, (robot, mean) in enumerate(measure.means.items()):
+        ax.bar(robot, mean, width=0.6, color=robot_style(index).color, alpha=0.85)
+        ax.errorbar(robot, mean, yerr=measure.spreads[robot], color=TEXT, capsize=4, linewidth=1.0)
+    if measure.printed is not None:
+        ax.axhline(measure.printed, color=ALARM, linestyle=DASHED, linewidth=1.0)
+        ax.annotate("paper, most", (0.02, measure.printed), (0, -9), color=ALARM, fontsize=7, **_AT_LEFT)
+    ax.set_title(measure.label, fontsize=8, color=TEXT, loc="left")
+
+
+_AT_LEFT: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points"}
+
+
+def _figure(width_in: float, height_in: float) -> Figure:
+    require_matplotlib()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _finish(figure: Figure, title: str) -> None:
+    for ax in figure.axes:
+        quiet_frame(ax)
+    figure.suptitle(title, fontsize=10, fontweight="bold", color=TEXT)
