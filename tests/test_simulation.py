@@ -6,6 +6,7 @@ import pytest
 
 import muster
 from muster import Event, Mission, ParameterError, Robot, Task
+from muster.simulation import Noise
 
 
 @pytest.fixture
@@ -69,6 +70,8 @@ def test_events_that_do_not_fit_change_nothing(simulation):
         (Event(at_s=0, robot_fails="ghost"), "ghost"),
         (Event(at_s=0, robot_joins=Robot(id="a", position=(0, 0))), "a"),
         (Event(at_s=0, new_task=Task(id="x", position=(0, 0))), "new_task"),
+        (Event(at_s=0, new_task=Task(id="n", position=(0, 0, 1))), "new_task: n"),
+        (Event(at_s=0, new_task=Task(id="n", position=(0, 0), prerequisites=("zzz",))), "zzz"),
     ):
         with pytest.raises(ParameterError, match=message):
             simulation.report(wrong)
@@ -81,3 +84,41 @@ def test_a_plan_from_elsewhere_is_told_its_objective(mission):
     plan = muster.Plan(routes=(muster.Route("a", ("x",)), muster.Route("b", ("y",))))
     objective = muster.simulate(mission, plan).objective
     assert (objective.name, objective.planned) == ("total+max", pytest.approx(10 + 12 + 12))
+
+
+def test_what_changes_nothing_is_told_all_the_same(simulation):
+    while "x" not in simulation.result().tasks_done:
+        simulation.advance(until_s=1000)
+    simulation.report(Event(at_s=0, cancel_task="x"))
+    assert [one.kind for one in simulation.happenings][-1] == "without_effect"
+    assert simulation.result().tasks_done == ("x",)
+
+
+def test_a_mission_that_is_over_goes_on_when_a_task_is_added(simulation):
+    while not simulation.done:
+        simulation.advance(until_s=1000)
+    over_s = simulation.time_s
+    simulation.report(Event(at_s=0, cancel_task="x"))
+    assert simulation.done
+    simulation.report(Event(at_s=0, new_task=Task(id="z", position=(0, 0))))
+    while not simulation.done:
+        simulation.advance(until_s=1000)
+    assert simulation.result().tasks_done[-1] == "z"
+    assert simulation.time_s > over_s
+
+
+def test_the_mission_lasts_until_the_last_thing_happened():
+    """A robot that fails on its way has used up time, though it has done nothing."""
+    mission = Mission(
+        robots=(Robot(id="a", position=(0, 0)),),
+        tasks=(Task(id="x", position=(10, 0)),),
+        events=(Event(at_s=6, robot_fails="a"),),
+    )
+    report = muster.simulate(mission, muster.solve(mission, "greedy"))
+    assert report.mission_time_s == pytest.approx(6)
+    assert report.tasks_lost == (("x", "no robot takes part any more; no longer taking part: a (failed at 6 s)"),)
+
+
+def test_options_of_the_world(mission):
+    plan = muster.solve(mission, "greedy")
+    assert muster.simulate(mission, plan, noise=Noise(slip=0.5), dt_s=0.05).objective.flown > 30

@@ -166,7 +166,7 @@ def _require_mission(mission: object) -> None:
         )
 
 
-def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path | None = None) -> Report:
+def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path | None = None, **how: Any) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
 
     Parameters
@@ -175,6 +175,8 @@ def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path 
         of the world and of planning anew.
     record
         a file (.mcap) that is to hold what happened; needs the extra `record`.
+    how
+        as `Simulation` takes it: `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
 
     Raises
     ------
@@ -185,11 +187,11 @@ def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path 
 
     _require_mission(mission)
     if record is None:
-        return carry_out(mission, plan, seed=seed)
+        return carry_out(mission, plan, seed=seed, **how)
     from muster.report.record import RecordWriter
 
     with RecordWriter(record, mission) as recorder:
-        return carry_out(mission, plan, seed=seed, recorder=recorder)
+        return carry_out(mission, plan, seed=seed, recorder=recorder, **how)
 
 
 def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -91,7 +92,7 @@ class Simulation:
     @property
     def time_s(self) -> float:
         """The mission's clock."""
-        return self._world.time_s
+        return round(self._world.time_s, 9)  # of many steps, each of which rounds
 
     @property
     def done(self) -> bool:
@@ -102,6 +103,11 @@ class Simulation:
     def plan(self) -> Plan:
         """The plan of the whole mission as it is now, without figures: what each robot did, does and will do."""
         return self._executor.plan
+
+    @property
+    def happenings(self) -> Sequence[Happening]:
+        """All that has happened so far."""
+        return self._executor.happenings
 
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
@@ -165,18 +171,34 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 
-def carry_out(mission: Mission, plan: Plan, *, speed: float | None = None, **how: Any) -> Report:
+def carry_out(
+    mission: Mission,
+    plan: Plan,
+    *,
+    speed: float | None = None,
+    on_happening: Callable[[Happening], None] | None = None,
+    halt: threading.Event | None = None,
+    **how: Any,
+) -> Report:
     """Carry a plan out to its end; see `Simulation`.
 
     Parameters
     ----------
     speed
         how many times as fast as the wall clock; None: as fast as it goes.
+    on_happening
+        is told what happens, as it happens.
+    halt
+        when it is set, carrying out stops, and the report is of what was done until then.
     """
-    simulation = Simulation(mission, plan, **how)
-    begin = time.monotonic()
-    while not simulation.done:
+    simulation, halt = Simulation(mission, plan, **how), halt or threading.Event()
+    begin, told = time.monotonic(), 0
+    while not simulation.done and not halt.is_set():
         simulation.advance(simulation.time_s + LOOK_S)
         if speed is not None:
-            time.sleep(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+            halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+        if on_happening is not None:
+            for happening in simulation.happenings[told:]:
+                on_happening(happening)
+            told = len(simulation.happenings)
     return simulation.result()

@@ -2,9 +2,11 @@
 
 import json
 import re
+import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -193,3 +195,49 @@ def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, 
     assert data["duration_s"] >= 4 * (after_s - 1.5)
     assert "breaks off" in err
     assert [row["poses"] > 0 for row in data["robots"]] == [True, True]
+
+
+def test_watched_it_tells_what_happens(muster):
+    code, _, err = muster("simulate", "6T-2R", "--iterations", "10", "--speed", "10000")
+    assert code == 0
+    assert re.search(r"^ +0\.0 s  sets out: robot r_0, task ", err, flags=re.MULTILINE)
+    assert err.count("ends: ") == 6
+
+
+def test_the_plan_of_another_mission_is_doubted(muster, tmp_path):
+    plan = str(tmp_path / "p.json")
+    muster("solve", "6T-2R", "-a", "greedy", "-o", plan, "-q")
+    _, _, err = muster("simulate", "11T-2R", "--plan", plan)
+    assert "may be of another mission" in err
+
+
+def test_ctrl_c_stops_the_mission_and_tells_how_far_it_came(muster, tmp_path):
+    record, page = tmp_path / "r.mcap", tmp_path / "r.html"
+    files = ["--record", str(record), "--html", str(page), "--iterations", "10"]
+    command = [sys.executable, "-m", "muster.cli", "simulate", "6T-2R", "--speed", "1", *files]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (record.exists() and record.stat().st_size > 0):
+        time.sleep(0.05)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted at" in err
+    assert "of 6" in out
+    assert page.exists()
+    code, out, _ = muster("replay", str(record))
+    assert (code, out.splitlines()[0].rsplit(", ", 1)[-1]) == (0, "interrupted")
+
+
+@pytest.mark.parametrize("wrong", [("--dt", "5"), ("--dt", "nan"), ("--speed", "nan"), ("--speed", "1e-320")])
+def test_numbers_out_of_range(muster, wrong):
+    code, out, err = muster("simulate", "6T-2R", *wrong)
+    assert (code, out) == (2, "")
+    assert "is not in the range" in err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_disk(muster):
+    code, out, err = muster("simulate", "6T-2R", "--iterations", "10", "--record", "/dev/full")
+    assert (code, out) == (2, "")
+    assert err.startswith("/dev/full: No space left on device")

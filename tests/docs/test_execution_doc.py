@@ -6,6 +6,11 @@ from pathlib import Path
 TEXT = (Path(__file__).parents[2] / "docs" / "execution.md").read_text(encoding="utf-8")
 
 
+def test_an_executor_in_a_world(capsys):
+    exec(re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)[1], {})
+    assert "'tasks_lost': []" in capsys.readouterr().out
+
+
 def test_a_mission_goes_on_as_far_as_it_is_let(capsys):
     example = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)[0]
     names = {}

@@ -128,11 +128,11 @@ def test_a_failed_robots_tasks_are_done_by_another():
 def test_what_only_the_failed_robot_could_do_is_lost_with_that_reason():
     mission = line(5.0, robots=2, events=[Event(at_s=1, robot_fails="r_0")], only_robots=("r_0",))
     executor = carried_out(mission, plan_of(r_0=["0"]))
-    lost = "lock: only r_0 may do it, and takes no part any more; no longer taking part: r_0"
+    lost = "lock: only r_0 may do it, and takes no part any more; no longer taking part: r_0 (failed at 1.1 s)"
     assert executor.lost() == {"0": lost}
     alone = line(5.0, events=[Event(at_s=1, robot_fails="r_0")])
     assert carried_out(alone, plan_of(r_0=["0"])).lost() == {
-        "0": "no robot takes part any more; no longer taking part: r_0"
+        "0": "no robot takes part any more; no longer taking part: r_0 (failed at 1.1 s)"
     }
 
 

@@ -110,12 +110,18 @@ def _robots(recording: Recording) -> list[dict[str, Any]]:
     return found
 
 
+def _how_it_ends(recording: Recording) -> str:
+    if not recording.complete:
+        return "breaks off"
+    return "complete" if recording.report is not None else "interrupted"
+
+
 def _print(recording: Recording, *, all_events: bool) -> None:
     from muster.report.record.messages import event_line
 
     name, duration = recording.mission.name, f"{recording.duration_s:.1f} s"
     amounts = (counted(len(recording.plans), "plan"), counted(len(recording.events), "event"))
-    click.echo(f"{name}: {duration}, {', '.join(amounts)}, {'complete' if recording.complete else 'breaks off'}\n")
+    click.echo(f"{name}: {duration}, {', '.join(amounts)}, {_how_it_ends(recording)}\n")
     _print_robots(recording)
     shown = recording.events if all_events else recording.events[:_MOST_EVENTS]
     if shown:

@@ -21,7 +21,10 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
     rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
     print_table(columns, rows, title=f"{mission.name}: carried out", right=columns[1:])
-    _print_figures(report, unit)
+    _print_figures(report, mission, unit)
+    if report.get("reallocations"):
+        of_tasks = "; of tasks by the one in force then" if with_tasks else ""
+        click.echo(f"planned           of robots: by the plan that the mission began with{of_tasks}")
     if with_tasks:
         _print_tasks(report, unit)
     lost = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
@@ -29,13 +32,14 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         print_table(("task lost", "reason"), lost)
 
 
-def _print_figures(report: Report, unit: str) -> None:
+def _print_figures(report: Report, mission: Mission, unit: str) -> None:
     done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
+    known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
     least = report.get("min_distance_m")
     distance = "-" if least is None else f"{number(least)} m"
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
-        ("tasks done", f"{done} of {done + lost}"),
+        ("tasks done", f"{done} of {known}"),
         ("objective", _objective(report.get("objective"), unit)),
         ("waiting", f"{number(report.get('waiting_s'))} s"),
         ("least distance", f"{distance}, {counted(report.get('contacts', 0), 'contact')}"),

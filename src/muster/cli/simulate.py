@@ -10,8 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exits import DONE, INCOMPLETE
-from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, require_complete_option
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.halting import ctrl_c_halts
+from muster.cli.options import (
+    Finite,
+    format_option,
+    load_mission,
+    mission_argument,
+    quiet_option,
+    require_complete_option,
+    say_of_plan,
+)
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.replay import show_record
 from muster.cli.report_tables import print_report
@@ -20,6 +29,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
+    from muster.execution.executor import Happening
     from muster.execution.report import Report
     from muster.simulation import Noise
 
@@ -39,11 +49,9 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option(
     "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
 )
+@click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
-    "--dt", type=click.FloatRange(min=0, min_open=True), default=0.1, show_default=True, metavar="S", help="Step."
-)
-@click.option(
-    "--speed", type=click.FloatRange(min=0, min_open=True), metavar="X", help="X times real time.  [default: at once]"
+    "--speed", type=Finite(0.001, 1e6), metavar="X", help="X times real time, telling events.  [default: at once]"
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
@@ -88,15 +96,23 @@ def command(
     noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     planned = _plan(loaded, plan, seed, time_limit, iterations)
+    if plan is not None:
+        say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
     with tempfile.TemporaryDirectory() if record is None and (html or plot or gantt) else nullcontext() as folder:
         file = record if folder is None else Path(folder) / "record.mcap"
-        report = _carried_out(loaded, planned, file, seed=seed, dt_s=dt, avoidance=avoidance, noise=noise, speed=speed)
+        how: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance, "noise": noise, "speed": speed}
+        tell = _tell if speed is not None and not quiet else None
+        with ctrl_c_halts() as halt:
+            report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
         if file is not None:
             show_record(file, html, plot, gantt)
     if form == "json":
         click.echo(json_text(report.as_dict()), nl=False)
     else:
         print_report(report.as_dict(), loaded, with_tasks=verbose)
+    if halt.is_set():
+        click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission", err=True)
+        return INTERRUPTED
     return INCOMPLETE if require_complete and report.tasks_lost else DONE
 
 
@@ -106,6 +122,12 @@ def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, ite
     if file is not None:
         return read_plan(file)
     return solve(mission, seed=seed, time_limit=None if iterations is not None else time_limit, iterations=iterations)
+
+
+def _tell(happening: Happening) -> None:
+    from muster.report.record.messages import event_line
+
+    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)
 
 
 def _noise(noises: tuple[str, ...]) -> Noise:
@@ -131,5 +153,8 @@ def _carried_out(mission: Mission, plan: Plan, file: Path | None, **how: Any) ->
         return carry_out(mission, plan, **how)
     from muster.report.record import RecordWriter
 
-    with RecordWriter(file, mission) as recorder:
-        return carry_out(mission, plan, recorder=recorder, **how)
+    try:
+        with RecordWriter(file, mission) as recorder:
+            return carry_out(mission, plan, recorder=recorder, **how)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(file)) from None

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.execution.doing import place
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.travel import Travel
-from muster.mission.errors import ParameterError
+from muster.mission.errors import MissionError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.yaml_writer import plain
@@ -18,6 +18,8 @@ from muster.motion.port import RobotPort
 
 FAILED, SILENT, STUCK = "robot_fails", "robot_silent", "robot_stuck"
 """Why a robot is out."""
+OUT = {FAILED: "failed", SILENT: "fell silent", STUCK: "did not get on"}
+"""The same in words."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class Changes:
         """A robot takes no part any more: what it was to do is free, also what it was doing."""
         if hand.out == FAILED or (hand.out and why != FAILED):
             return
-        hand.out = why
+        hand.out, hand.out_s = why, now
         if hand.route:
             self.ledger.give_up(hand.route[0])
         hand.stop(now)
@@ -108,8 +110,18 @@ class Changes:
     def _add(self, task: Task) -> Change:
         if task.id in self.ledger.tasks:
             raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
+        self._require_fit(task)
         self.ledger.tasks[task.id] = task
         return Change("new_task", {"task": plain(task)})
+
+    def _require_fit(self, task: Task) -> None:
+        """A mission with this task, and those that there are, must be one."""
+        robots = tuple(hand.robot for hand in self.crew.values())
+        try:
+            replace(self.mission, robots=robots, tasks=(*self.ledger.tasks.values(), task), events=())
+        except MissionError as error:
+            found = error.findings[0]
+            raise ParameterError(f"new_task: {task.id}: {found.value}; expected {found.expected}") from None
 
     def _cancel(self, task: str, now: float) -> Iterator[Change]:
         if task in self.ledger.ends_s or task in self.ledger.cancelled:

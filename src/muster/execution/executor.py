@@ -8,11 +8,11 @@ to be done, and the rest is planned again (`reallocation`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster.execution.changes import SILENT, STUCK, Change, Changes, new_hand
+from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, new_hand
 from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
@@ -26,6 +26,7 @@ from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
 
@@ -129,12 +130,18 @@ class Executor:
     def report(self, event: Event) -> None:
         """Let something happen that the mission file did not foresee; its `at_s` does not count.
 
+        A mission that was over goes on if that changes anything.
+
         Raises
         ------
         ParameterError
             if the event does not fit (see `Changes.take`).
         """
-        self._ask(self._changes.take(event, self.now_s))
+        changes = list(self._changes.take(event, self.now_s))
+        self._ask(changes)
+        self.ended_s = None if changes else self.ended_s
+        if not changes and event.robot_silent is None:
+            self._tell("without_effect", plain(event))
 
     def tick(self, now: float) -> Sequence[Happening]:
         """Go on to a time, not before the last, in seconds; returns what happened.
@@ -246,7 +253,7 @@ class Executor:
             if not self._asked:
                 return
 
-    def _ask(self, changes: Any) -> None:
+    def _ask(self, changes: Iterable[Change]) -> None:
         """Have the rest planned again because of changes."""
         for change in changes:
             self._asked.append(change)
@@ -272,8 +279,8 @@ class Executor:
         ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
         busy = ways or any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
         if not self.done and not busy and not any(map(self._matters, self._script)):
-            self.ended_s = max(self.ledger.ends_s.values(), default=self.begun_s)
-            self.ended_s = max([self.ended_s, *(hand.begun_s for hand in self._present if hand.done)])
+            last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
+            self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
             for task, reason in self.lost().items():
                 self._tell("lost", {"task": task, "reason": reason})
             self._tell("mission_ended", {})
@@ -286,7 +293,7 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
-        gone = ", ".join(hand.robot.id for hand in self.crew.values() if hand.out)
+        gone = ", ".join(f"{h.robot.id} ({OUT[h.out]} at {h.out_s:g} s)" for h in self.crew.values() if h.out)
         out = f"; no longer taking part: {gone}" if gone else ""
         lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
         for task in self.ledger.open:

@@ -54,6 +54,7 @@ class Hand:
     route: list[str] = field(default_factory=list)
     done: list[str] = field(default_factory=list)
     out: str = ""
+    out_s: float = 0.0  # since when
     activity: Activity = Activity.IDLE
     told: Telemetry | None = None
     work: Work | None = None  # at hand

@@ -115,8 +115,20 @@ def log(now: float, level: int, message: str) -> dict[str, Any]:
 
 def event_line(kind: str, data: Mapping[str, Any]) -> str:
     """An event in a line for people: `starts: robot r_0, task 7`."""
+    if kind == "replanned":
+        return _replanned(data)
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
+
+
+def _replanned(data: Mapping[str, Any]) -> str:
+    """`replanned after robot_fails a: t from a to b, n to c; given up: x`."""
+    causes = ", ".join(" ".join(_short(of) for of in cause.values()) for cause in data.get("causes", ()))
+    moved = [f"{task} from {robots[0]} to {robots[1]}" for task, robots in data.get("moved", {}).items()]
+    added = [f"{task} to {robot}" for task, robot in data.get("added", {}).items()]
+    line = f"replanned after {causes}: {', '.join([*moved, *added]) or 'no task changes robot'}"
+    dropped = ", ".join(data.get("dropped", {}))
+    return f"{line}; given up: {dropped}" if dropped else line
 
 
 def _short(value: Any) -> str:

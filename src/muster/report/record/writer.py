@@ -9,6 +9,7 @@ chunks but the one in the making, and `read_record` reads them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
@@ -76,8 +77,13 @@ class RecordWriter:
         self._flush_s, self._flushed = flush_s, self._clock.now()
         self._chunk_bytes, self._waiting_bytes = chunk_bytes, 0
         self._file: IO[bytes] = Path(path).open("wb")  # noqa: SIM115 - closed by `close`
-        self._writer, self._channels = _started(self._file)
-        self._write_mission(mission)
+        try:
+            self._writer, self._channels = _started(self._file)
+            self._write_mission(mission)
+        except OSError:
+            with suppress(OSError):
+                self._file.close()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -88,8 +94,8 @@ class RecordWriter:
     def close(self) -> None:
         """End the file in order, with its index; may be called again."""
         if not self._file.closed:
-            self._writer.finish()
-            self._file.close()
+            with self._file:
+                self._writer.finish()
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """Write where the robots are, unless a step was written less than a period ago.
