@@ -67,8 +67,8 @@ class Base:
         claims of each member, in the order of its route; what it has begun stands first.
     facts
         all that any member knows for good.
-    added
-        of them those by which there are more tasks, in tie order.
+    done, added
+        of them what was done, in order, and those by which there are more tasks, in tie order.
     closed
         tasks that are not for sale, whoever owns them.
     dropped
@@ -83,6 +83,7 @@ class Base:
 
     routes: Mapping[str, tuple[Claim, ...]]
     facts: frozenset[Fact]
+    done: tuple[Fact, ...]
     added: tuple[Fact, ...]
     closed: frozenset[str]
     dropped: tuple[tuple[str, str], ...]
@@ -115,9 +116,11 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
     added = _added(facts, rules)
     rules = rules.with_added(added)
-    done = {fact.task for fact in facts if fact.done}
-    gone = done.union(fact.task for fact in facts if fact.kind == "cancelled")
-    reserved = _reserved(declarations, facts)
+    known = frozenset(fact for fact in facts if fact.task in rules.tasks)  # of a task it may be heard that it was done
+    finished = tuple(fact for fact in in_order(known) if fact.done)  # before it is heard that there is such a task
+    done = {fact.task for fact in finished}
+    gone = done.union(fact.task for fact in known if fact.kind == "cancelled")
+    reserved = _reserved(declarations, known)
     routes: Routes = {}
     for declaration in declarations:
         robot = declaration.robot
@@ -134,6 +137,7 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     return Base(
         routes={robot: tuple(claims) for robot, claims in routes.items()},
         facts=facts,
+        done=finished,
         added=added,
         closed=frozenset(gone.union(reserved, rules.once if few else ())),
         dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),

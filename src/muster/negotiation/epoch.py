@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from muster.negotiation.base import Base, Rules, agreed
-from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
 from muster.negotiation.valuation import Opening, Valuer
 
@@ -115,6 +115,14 @@ class Epoch:
         heard = self._bids.get(len(self.sales), {})
         return tuple(robot for robot in self.own.members if robot not in heard)
 
+    @property
+    def said_last(self) -> dict[str, Any]:
+        """What this member said last, as fields of a message: somebody may wait for it as this one waits."""
+        if self.base is None:
+            return {"declarations": (self.own,)}
+        said = None if self.ended else self.bids_of(self.own.robot, len(self.sales))
+        return {} if said is None else {"bids": (said,)}
+
     def declaration_of(self, robot: str) -> Declaration | None:
         return self._declared.get(robot)
 
@@ -162,7 +170,7 @@ def _opening(base: Base) -> Opening:
     """How things stand on a base; a task that several have done or begun counts for the first of them."""
     past: dict[str, list[str]] = {}
     counted: set[str] = set()
-    done = [(fact.robot, fact.task) for fact in in_order(base.facts) if fact.done]
+    done = [(fact.robot, fact.task) for fact in base.done]
     begun = [(robot, claim.task) for robot, claims in base.routes.items() for claim in claims if claim.begun]
     for robot, task in (*done, *begun):
         if task not in counted:

@@ -161,5 +161,5 @@ class Message:
 
     @property
     def is_idle(self) -> bool:
-        """Whether it carries nothing but that the sender lives, and what it lacks."""
-        return not (self.declarations or self.bids or self.sales or self.facts)
+        """Whether it is a beat: it tells nothing new, but that the sender lives, and what it lacks."""
+        return bool(self.pulses) and not self.facts

@@ -73,9 +73,9 @@ class Negotiator:
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
         self._number = 0
         self._agreed: set[str] = set()
-        self._agreed_on = Stage(0)
+        self._agreed_on = self._reached = Stage(0)
         self._repairs = Repairs(self.robot, self.patience.retry_s / 2)
-        self._due_s = self._entered_s = self._stage_s = 0.0
+        self._due_s = self._stage_s = 0.0
         self.epoch: Epoch
 
     def start(self, now: float) -> list[Outgoing]:
@@ -133,7 +133,7 @@ class Negotiator:
             return out
         self._hear(message, now)
         if message.stage.epoch > self.stage.epoch:
-            self._lose_patience(now, self.patience.bid_s / 2)  # whoever opened it may have lost it before
+            self._lose_patience_too(message, now)
             out += self._enter(message.stage.epoch, now)
         if message.stage.epoch == self.stage.epoch and self._absorb(message):
             out += self._go_on(now)
@@ -147,7 +147,7 @@ class Negotiator:
         out: list[Outgoing] = []
         if self.superseded:
             return out
-        self._lose_patience(now, self.patience.bid_s)
+        self._lose_patience(now)
         if self._present(now) != self.epoch.own.members or self._is_outdated() or self._has_news():
             out += self._enter(self.stage.epoch + 1, now)
         if self._work.fresh or (now >= self._due_s and not out):
@@ -240,7 +240,7 @@ class Negotiator:
         self.epoch = Epoch(own, self.rules, self.valuer, refused)
         self._shown, work.restless = set(), False
         work.fresh.clear()  # the declaration tells them
-        self._stage_s = now
+        self._reached, self._stage_s = self.stage, now
         self.counts.news += 1
         return [Outgoing(self._message(now, declarations=(own,))), *self._go_on(now)]
 
@@ -286,12 +286,12 @@ class Negotiator:
 
     def _go_on(self, now: float) -> list[Outgoing]:
         """Go on with the auction as far as it goes; returns the bids to be published."""
-        had_base, before = self.epoch.base is not None, self.stage
+        had_base = self.epoch.base is not None
         published = self.epoch.advance()
         if self.epoch.base is not None and not had_base:
             self._note_base(self.epoch.base)
-        if self.stage != before:
-            self._stage_s = now
+        if self.stage != self._reached:
+            self._reached, self._stage_s = self.stage, now
         if self.stage.ended and self._agreed_on != self.stage:
             self._agreed, self._agreed_on = {self.robot}, self.stage
             self.members.forgive(self.epoch.own.members)
@@ -327,15 +327,30 @@ class Negotiator:
         self.counts.repairs += 1
         return [Outgoing(self._message(None, **what), message.sender)]
 
-    def _lose_patience(self, now: float, after_s: float) -> None:
-        """Leave out who is heard, but has kept the others waiting for so long."""
-        if now - self._stage_s < after_s:
-            return
-        for robot in self.epoch.lacks:
-            if robot != self.robot and self.members.silent_s(robot, now) < self.patience.suspect_s / 2:
+    def _lose_patience(self, now: float) -> None:
+        """Leave out who is heard, but has kept the others waiting for `bid_s`."""
+        if now - self._stage_s >= self.patience.bid_s:
+            self._leave_out([r for r in self.epoch.lacks if r != self.robot], now)
+            self._stage_s = now
+
+    def _lose_patience_too(self, message: Message, now: float) -> None:
+        """Leave out with the others whom one of them leaves out, if this robot has waited for it about as long."""
+        if now - self._stage_s >= self.patience.bid_s / 2:
+            waited = set(self.epoch.lacks).difference([self.robot, message.sender])
+            self._leave_out(
+                [
+                    r
+                    for r in sorted(waited)
+                    if message.declarations and all(r not in d.members for d in message.declarations)
+                ],
+                now,
+            )
+
+    def _leave_out(self, robots: Collection[str], now: float) -> None:
+        for robot in robots:
+            if self.members.silent_s(robot, now) < self.patience.suspect_s / 2:
                 self.members.mute(robot, now, bids=self.epoch.base is not None)
                 self._tell_all("mute", [robot])
-        self._stage_s = now
 
     def _is_outdated(self) -> bool:
         """Whether a member has started anew since it declared."""
@@ -358,13 +373,13 @@ class Negotiator:
         return self.epoch.ended and not self.knows and sum(d.knows for d in said) >= self.rules.majority
 
     def _beat(self, now: float) -> Message:
-        """That the robot lives, whom it has heard, what it lacks; and what it has said since the last message."""
+        """That the robot lives, whom it has heard, what it lacks; and what others may lack of its own words."""
         fresh = tuple(self._work.fresh)
         self._work.fresh.clear()
         self.counts.news += bool(fresh)
         self.counts.beats += not fresh
-        known = self._work.known.digest
-        return self._message(now, lacks=self.epoch.lacks, pulses=self._pulses(), facts=fresh, known=known)
+        known, said = self._work.known.digest, self.epoch.said_last
+        return self._message(now, lacks=self.epoch.lacks, pulses=self._pulses(), facts=fresh, known=known, **said)
 
     def _message(self, sent_s: float | None, **said: Any) -> Message:
         """The next message; one that goes to all, at `sent_s`, puts off the next beat."""

@@ -98,11 +98,12 @@ class AuctionValuer:
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
         if opening.added != self._added:
             self._added, self._whole = opening.added, with_tasks(self._given, opening.added)
-        past, ahead = self._by_index(opening.past), self._by_index(opening.ahead)
+        number = self._whole.task_index
+        past, ahead = self._by_index(opening.past, number), self._by_index(opening.ahead, number)
         self._take_up(with_past(self._whole, past) if any(past) else self._whole)
         begun = [self._problem.beginning(i) for i in range(len(past))]
         routes = admissible_part(self._problem, [[*before, *after] for before, after in zip(begun, ahead, strict=True)])
-        closed = {self._tasks[task] for task in opening.closed}.union(*past)
+        closed = {number[task] for task in opening.closed}.union(*past)
         self._auctioneer.restore(routes, {}, closed)
         return {robot.id: self.route(robot.id)[len(begun[i]) :] for i, robot in enumerate(self._problem.robots)}
 
@@ -136,10 +137,10 @@ class AuctionValuer:
         self._problem, self._tasks = problem, problem.task_index
         self._auctioneer = Auctioneer(problem, self.terms)
 
-    def _by_index(self, routes: Mapping[str, Sequence[str]]) -> list[list[int]]:
+    def _by_index(self, routes: Mapping[str, Sequence[str]], number: Mapping[str, int]) -> list[list[int]]:
         by_index: list[list[int]] = [[] for _ in self._robots]
         for robot, tasks in routes.items():
-            by_index[self._robots[robot]] = [self._tasks[task] for task in tasks]
+            by_index[self._robots[robot]] = [number[task] for task in tasks]
         return by_index
 
     def _sold(self, sale: Sale) -> Sold:
