@@ -71,6 +71,7 @@ class Negotiator:
         self._shown: set[str] = set()  # members that have shown the base of this epoch
         self._told: set[tuple[str, tuple[str, ...]]] = set()  # what was done twice, by whom
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
+        self._anew = False  # whether a robot has started anew since this epoch was entered
         self._number = 0
         self._agreed: set[str] = set()
         self._agreed_on = self._reached = Stage(0)
@@ -106,6 +107,11 @@ class Negotiator:
     def facts(self) -> frozenset[Fact]:
         """What it knows for good."""
         return frozenset(self._work.known.facts)
+
+    @property
+    def known(self) -> int:
+        """A digest of `facts`."""
+        return self._work.known.digest
 
     @property
     def twice(self) -> Mapping[str, tuple[str, ...]]:
@@ -238,7 +244,7 @@ class Negotiator:
             self._tell_all("back", [robot for robot in members if robot not in before.own.members])
         refused = frozenset({*self._rules.tasks, *(f.task for f in work.known.facts)} if work.out else work.refused)
         self.epoch = Epoch(own, self.rules, self.valuer, refused)
-        self._shown, work.restless = set(), False
+        self._shown, self._anew, work.restless = set(), False, False
         work.fresh.clear()  # the declaration tells them
         self._reached, self._stage_s = self.stage, now
         self.counts.news += 1
@@ -252,8 +258,8 @@ class Negotiator:
             self._learn(said.facts)
         self._learn(message.facts)
         for pulse in heard:
-            self._is_mine(pulse)
-            if self.members.hear(pulse, now):
+            if not self._is_mine(pulse) and self.members.hear(pulse, now):
+                self._anew = True
                 self._tell_all("anew", [pulse.robot])
         self._repairs.hear(message)
 
@@ -354,6 +360,8 @@ class Negotiator:
 
     def _is_outdated(self) -> bool:
         """Whether a member has started anew since it declared."""
+        if not self._anew:
+            return False
         said = map(self.epoch.declaration_of, self.epoch.own.members)
         return any(d is not None and self.members.incarnation(d.robot) > d.incarnation for d in said)
 

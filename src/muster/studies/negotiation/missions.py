@@ -19,7 +19,7 @@ def random_mission(random: Random, *, robots: int, tasks: int) -> Mission:
         robots=tuple(
             Robot(
                 id=f"r_{k}",
-                position=_place(random),
+                position=place(random),
                 work_capacity=random.choice((100.0, 200.0, 300.0)) if limited and random.random() < 0.7 else None,
                 skills=tuple(skill for skill in SKILLS if random.random() < 0.7),
                 speed_mps=random.choice((1.0, 1.0, 2.0)),
@@ -43,7 +43,7 @@ def random_task(random: Random, name: str, *, before: list[str], skilled: bool, 
     """A task in the square."""
     return Task(
         id=name,
-        position=_place(random),
+        position=place(random),
         prerequisites=tuple(before),
         requires=(random.choice(SKILLS),) if skilled and random.random() < 0.3 else (),
         actuation_cost=random.choice((0.0, 5.0)),
@@ -51,5 +51,6 @@ def random_task(random: Random, name: str, *, before: list[str], skilled: bool, 
     )
 
 
-def _place(random: Random) -> tuple[float, float]:
+def place(random: Random) -> tuple[float, float]:
+    """A place in the square, metres."""
     return random.uniform(0, SIDE_M), random.uniform(0, SIDE_M)

@@ -1,8 +1,8 @@
 """Somebody who sees all robots at every moment, and says when a promise is broken.
 
 Two robots have lost each other from when one of them goes into an epoch without the other, or starts anew, until both
-have found the base of one epoch with both. What they own and begin meanwhile may clash; at any other moment it must not.
-A task that nobody may begin twice is never begun twice, whoever has lost whom.
+have found the base of one epoch with both. What they own and begin meanwhile may clash; at any other moment it must
+not. A task that nobody may begin twice is never begun twice, whoever has lost whom.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ class Observer:
     _lost: set[frozenset[str]] = field(default_factory=set)
     _entered: dict[str, int] = field(default_factory=dict)
     _based: dict[str, bytes] = field(default_factory=dict)
+    _seen: dict[str, object] = field(default_factory=dict)
     _owned: dict[str, frozenset[str]] = field(default_factory=dict)
 
     def started(self, robot: str) -> None:
@@ -45,10 +46,16 @@ class Observer:
 
     def gone(self, robot: str) -> None:
         self._owned.pop(robot, None)
+        self._seen.pop(robot, None)
 
     def look(self, robot: str) -> None:
         """A robot did something: look what has changed."""
         node = self.nodes[robot]
+        self.counts["moments"] += 1
+        now = node.epoch.own.epoch, node.incarnation, node.stage, node.known, node.epoch.refused
+        if self._seen.get(robot) == now:
+            return
+        self._seen[robot] = now
         self._look_at_epoch(robot, node)
         owned = frozenset(claim.task for claim in node.route)
         for task in owned - self._owned.get(robot, frozenset()):
@@ -56,7 +63,6 @@ class Observer:
                 if task in theirs and other != robot:
                     self._clash(task, robot, other)
         self._owned[robot] = owned
-        self.counts["moments"] += 1
 
     def begins(self, robot: str, task: str, *, again: bool) -> None:
         """A robot begins a task; `again`: it goes on with it after a restart."""
@@ -81,11 +87,10 @@ class Observer:
             return
         self._based[robot] = epoch.base.digest
         for other in epoch.own.members:
-            both = frozenset((robot, other))
             theirs = self.nodes.get(other)
-            if both in self._lost and theirs is not None and robot in theirs.epoch.own.members:
-                if self._based.get(other) == epoch.base.digest:
-                    self._lost.discard(both)
+            mutual = theirs is not None and robot in theirs.epoch.own.members
+            if mutual and self._based.get(other) == epoch.base.digest:
+                self._lost.discard(frozenset((robot, other)))
 
     def _clash(self, task: str, robot: str, other: str) -> None:
         if frozenset((robot, other)) in self._lost:

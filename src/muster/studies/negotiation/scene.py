@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from random import Random
 
 from muster.allocation.auction import Parameters
@@ -72,14 +73,17 @@ class Scene:
     def described(self) -> Iterator[str]:
         """Lines for people."""
         weather = self.weather
-        yield f"seed {self.seed}: {len(self.mission.robots)} robots, {len(self.mission.tasks)} tasks, {self.terms}"
-        yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s more"
-        yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s a task; quiet at {self.quiet_s:.2f} s"
+        terms = f"{self.terms.bid}, {self.terms.placement}, {self.terms.winner}"
+        mission = self.mission
+        yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks, {terms}"
+        yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s"
+        yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
         if self.links is not None:
             yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
         for what in sorted(self.incidents, key=lambda incident: incident.at_s):
             groups = " | ".join(" ".join(group) for group in what.groups)
-            yield f"{what.at_s:8.3f} s {what.kind} {what.robot}{groups}{'' if what.task is None else what.task.id}"
+            task = "" if what.task is None else what.task.id
+            yield f"{what.at_s:8.3f} s {what.kind} {what.robot}{groups} {task}".rstrip()
 
 
 def scene(seed: int) -> Scene:
@@ -88,7 +92,7 @@ def scene(seed: int) -> Scene:
     robots = random.choice((2, 3, 4, 5, 6, 7, random.randint(8, 12)))
     mission = random_mission(random, robots=robots, tasks=random.randint(1, 14))
     names = [robot.id for robot in mission.robots]
-    quiet_s = random.choice((random.uniform(1, 8), random.uniform(5, 30)))
+    quiet_s = random.uniform(5, 30) if random.random() < 0.2 else random.uniform(1, 8)
     return Scene(
         seed=seed,
         mission=mission,
@@ -107,16 +111,18 @@ def scene(seed: int) -> Scene:
 
 
 def _links(names: Sequence[str], random: Random) -> Links:
-    """A random tree with some more links; some of these go one way."""
-    links = set()
+    """A random tree with some more links; sometimes these go one way."""
+    links, both_ways = set[tuple[str, str]](), random.random() < 0.8
     for k in range(1, len(names)):
-        other = names[random.randrange(k)]
-        links |= {(names[k], other), (other, names[k])}
-    for a in names:
-        for b in names:
-            if a != b and random.random() < 0.15:
-                links.add((a, b))
+        links |= _link(names[k], names[random.randrange(k)])
+    for a, b in permutations(names, 2):
+        if random.random() < 0.1:
+            links |= _link(a, b) if both_ways else {(a, b)}
     return frozenset(links)
+
+
+def _link(a: str, b: str) -> set[tuple[str, str]]:
+    return {(a, b), (b, a)}
 
 
 def _incidents(mission: Mission, names: Sequence[str], until_s: float, random: Random) -> Iterator[Incident]:
