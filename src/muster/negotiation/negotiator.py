@@ -91,7 +91,9 @@ class Negotiator:
     @property
     def settled(self) -> bool:
         """Whether all members are known to own what this robot thinks that they own, and nobody bids any more."""
-        return self.stage.ended and self._agreed_on == self.stage and self._agreed.issuperset(self.epoch.own.members)
+        if not self.stage.ended or self._agreed_on != self.stage or self._work.fresh or self._work.restless:
+            return False
+        return self._agreed.issuperset(self.epoch.own.members)
 
     @property
     def superseded(self) -> bool:
