@@ -55,7 +55,7 @@ class AuctionValuer:
     """
 
     def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
-        self._problem, self._terms = problem, terms
+        self._problem, self.terms = problem, terms
         self._robots = {r.id: i for i, r in enumerate(problem.robots)}
         self._tasks = {t.id: j for j, t in enumerate(problem.tasks)}
         self._me = self._robots[robot]
@@ -71,7 +71,7 @@ class AuctionValuer:
         if not self._tasks:
             return ()
         bids = self._auctioneer.bids(self._me)
-        if self._terms.winner == "lowest":
+        if self.terms.winner == "lowest":
             j = int(np.argmin(bids))
             return ((self._problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
         return tuple((self._problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
@@ -80,7 +80,7 @@ class AuctionValuer:
         heard = _Heard(self._robots, self._tasks, bids)
         if not any(said.bids for said in bids):
             return None
-        rule = WINNER_RULES[self._terms.winner](heard)
+        rule = WINNER_RULES[self.terms.winner](heard)
         rule.note(range(len(self._robots)))
         sale = rule.winner()
         return None if sale is None else self._sold(sale)
