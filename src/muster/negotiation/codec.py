@@ -2,8 +2,8 @@
 
 The first byte is the version of the protocol. Then follows one MessagePack array, of arrays, numbers, texts and byte
 strings alone. Robots and tasks of the mission are their numbers in it; others are texts. Rows (claims, bids, pulses)
-have no brackets of their own. What has its default value is left out: after the fields that every message has come pairs
-of a field's number and its value, in ascending order.
+have no brackets of their own. What has its default value is left out: after the fields that every message has come
+pairs of a field's number and its value, in ascending order.
 
 A message of another version is refused, and so is a field that is not in the table: robots that understand half of what
 is said would find different bases and never agree. Whoever changes the table, or what a robot bids, raises PROTOCOL.
@@ -11,122 +11,86 @@ is said would find different bases and never agree. Whoever changes the table, o
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import MISSING, dataclass, fields, replace
-from operator import attrgetter
+from collections.abc import Sequence
+from dataclasses import MISSING, fields, replace
 from typing import Any
 
-from muster.mission.errors import MissingExtraError
+from muster.negotiation.extra import require_net
+from muster.negotiation.forms import COUNT, DATA, FLAG, NUMBER, Form, Garbled, array, count, many, name_of, record, rows
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
-
-try:
-    import msgpack
-except ImportError:
-    raise MissingExtraError("net", "an auction over a network") from None
 
 PROTOCOL = 1
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
-
-_MOST = 2**63
-
-
-class Garbled(Exception):  # noqa: N818 - what was received, not what went wrong here
-    """Bytes that are no message."""
 
 
 class OtherVersion(Garbled):
     """A message of another version of the protocol."""
 
 
-@dataclass(frozen=True)
-class Form:
-    """How a value is written: `pack` makes it plain, `unpack` checks what came and makes it a value again.
-
-    `width` is how many values it takes in a row; 1 but for rows.
-    """
-
-    pack: Callable[[Any], Any]
-    unpack: Callable[[Any], Any]
-
-
-def _count(value: Any) -> int:
-    if type(value) is not int or not 0 <= value < _MOST:
-        raise Garbled("not a count")
-    return value
-
-
-def _number(value: Any) -> float:
-    if type(value) is not float or math.isnan(value):
-        raise Garbled("not a number")
-    return value
-
-
-def _flag(value: Any) -> bool:
-    if type(value) is not bool:
-        raise Garbled("not a flag")
-    return value
-
-
-def _data(value: Any) -> bytes:
-    if type(value) is not bytes:
-        raise Garbled("not bytes")
-    return value
+def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
+    """The table: the form of each field of a message, in the order of `Message`."""
+    claim = record(Claim, task=task, price=NUMBER, round=COUNT, begun=FLAG)
+    fact = record(Fact, task=task, robot=robot, done=FLAG)
+    sold = record(Sold, robot=robot, task=task, price=NUMBER)
+    declaration = record(
+        Declaration,
+        robot=robot,
+        incarnation=COUNT,
+        epoch=COUNT,
+        members=many(robot),
+        route=rows(claim, 4),
+        facts=rows(fact, 3),
+        rounds=COUNT,
+    )
+    return {
+        "sender": robot,
+        "incarnation": COUNT,
+        "number": COUNT,
+        "stage": record(Stage, epoch=COUNT, base=DATA, round=COUNT, ended=FLAG),
+        "declarations": many(declaration),
+        "bids": many(record(RoundBids, robot=robot, round=COUNT, bids=rows(_pair(task, NUMBER), 2))),
+        "sales": rows(sold, 3),
+        "sales_from": COUNT,
+        "lacks": many(robot),
+        "pulses": _pulses(robot),
+        "agreed": many(robot),
+    }
 
 
-def _array(value: Any) -> list[Any]:
-    if type(value) is not list:
-        raise Garbled("not an array")
-    return value
+PARTED = ("declarations", "bids", "sales", "pulses")
+"""Fields of which a message may say one part, and another message the rest."""
 
 
-def _same(value: Any) -> Any:
-    return value
-
-
-COUNT, FLAG, DATA = Form(_same, _count), Form(_same, _flag), Form(_same, _data)
-NUMBER = Form(float, _number)
-
-
-def name_of(ids: Sequence[str]) -> Form:
-    """An id: its number among these, else its text."""
-    numbers = {name: k for k, name in enumerate(ids)}
-
-    def unpack(value: Any) -> str:
-        if type(value) is int and 0 <= value < len(ids):
-            return ids[value]
-        if type(value) is str and value not in numbers:
-            return value
-        raise Garbled("not an id")
-
-    return Form(lambda name: numbers.get(name, name), unpack)
-
-
-def many(form: Form) -> Form:
-    """A tuple of values of one form."""
+def _pair(first: Form, second: Form) -> Form:
     return Form(
-        lambda values: [form.pack(value) for value in values],
-        lambda values: tuple(form.unpack(value) for value in _array(values)),
+        lambda pair: (first.pack(pair[0]), second.pack(pair[1])),
+        lambda pair: (first.unpack(pair[0]), second.unpack(pair[1])),
     )
 
 
-def record(cls: Callable[..., Any], **forms: Form) -> Form:
-    """A dataclass: an array of its fields, in their order."""
-    row = _Row(cls, forms)
-    return Form(lambda value: list(row.pack(value)), lambda values: row.unpack(_array(values)))
+def _pulses(robot: Form) -> Form:
+    """Pulses: the least incarnation, then rows with what is above it, as robots that start together have like ones."""
+    number_of, name = robot.pack, robot.unpack
 
+    def pack(pulses: Sequence[Pulse]) -> list[Any]:
+        least = min((pulse.incarnation for pulse in pulses), default=0)
+        plain: list[Any] = [least]
+        for pulse in pulses:
+            plain += number_of(pulse.robot), pulse.incarnation - least, pulse.number
+        return plain
 
-def rows(cls: Callable[..., Any], **forms: Form) -> Form:
-    """A tuple of dataclasses of few fields: one array, row after row."""
-    row = _Row(cls, forms)
-    width = len(forms)
+    def unpack(plain: Any) -> tuple[Pulse, ...]:
+        if len(array(plain)) % 3 != 1:
+            raise Garbled("not pulses")
+        least = count(plain[0])
+        return tuple(
+            [
+                Pulse(name(plain[k]), count(least + count(plain[k + 1])), count(plain[k + 2]))
+                for k in range(1, len(plain), 3)
+            ]
+        )
 
-    def unpack(values: Any) -> tuple[Any, ...]:
-        if len(_array(values)) % width:
-            raise Garbled("not whole rows")
-        return tuple(row.unpack(values[k : k + width]) for k in range(0, len(values), width))
-
-    return Form(lambda several: [plain for value in several for plain in row.pack(value)], unpack)
+    return Form(pack, unpack)
 
 
 class Codec:
@@ -136,17 +100,94 @@ class Codec:
     ----------
     robots, tasks
         the ids of the mission, in the order that all robots know.
+
+    Raises
+    ------
+    MissingExtraError
+        if the extra `net` is not installed.
     """
 
     def __init__(self, robots: Sequence[str], tasks: Sequence[str]) -> None:
-        raise NotImplementedError
+        require_net()
+        import msgpack
+
+        self._packb, self._unpackb = msgpack.packb, msgpack.unpackb
+        forms = _message_forms(name_of(robots), name_of(tasks))
+        assert list(forms) == [f.name for f in fields(Message)], "the table has the fields of a message, in their order"
+        self._forms = tuple(forms.items())
+        self._always = [name for name, form in self._forms if _DEFAULTS[name] is MISSING]
 
     def encode(self, message: Message) -> bytes:
-        raise NotImplementedError
+        """The message as bytes."""
+        plain: list[Any] = []
+        for number, (name, form) in enumerate(self._forms):
+            value, default = getattr(message, name), _DEFAULTS[name]
+            if default is MISSING:
+                plain.append(form.pack(value))
+            elif value != default:
+                plain += number, form.pack(value)
+        packed: bytes = self._packb(plain)
+        return bytes((PROTOCOL,)) + packed
 
     def decode(self, data: bytes) -> Message:
-        raise NotImplementedError
+        """The message that bytes are.
+
+        Raises
+        ------
+        OtherVersion
+            if they are of another version.
+        Garbled
+            if they are no message.
+        """
+        if not data:
+            raise Garbled("nothing")
+        if data[0] != PROTOCOL:
+            raise OtherVersion(f"version {data[0]}")
+        try:
+            plain = self._unpackb(memoryview(data)[1:], raw=False)
+        except (ValueError, TypeError) as error:
+            raise Garbled(str(error)) from None
+        return Message(**self._said(array(plain)))
+
+    def _said(self, plain: list[Any]) -> dict[str, Any]:
+        """The fields of a message, checked."""
+        always = len(self._always)
+        if len(plain) < always or (len(plain) - always) % 2:
+            raise Garbled("not the fields of a message")
+        said = {name: form.unpack(plain[k]) for k, (name, form) in enumerate(self._forms[:always])}
+        last = always - 1
+        for k in range(always, len(plain), 2):
+            number = count(plain[k])
+            if not last < number < len(self._forms):
+                raise Garbled(f"field {number}")
+            name, form = self._forms[number]
+            said[name], last = form.unpack(plain[k + 1]), number
+        return said
 
     def parts(self, message: Message, room: int) -> list[bytes]:
-        """The message as one piece, or as several messages that say the same, each of at most `room` bytes if it can."""
-        raise NotImplementedError
+        """The message, in pieces of at most `room` bytes: several messages that say together what it says.
+
+        Each piece is of use without the others, so that a loss costs one piece, not all. What cannot be parted (one
+        declaration, with all its claims) stays whole, and is longer.
+        """
+        data = self.encode(message)
+        if len(data) <= room:
+            return [data]
+        first, second = halves(message)
+        if second is None:
+            return [data]
+        return self.parts(first, room) + self.parts(second, room)
+
+
+_DEFAULTS = {f.name: f.default for f in fields(Message)}
+
+
+def halves(message: Message) -> tuple[Message, Message | None]:
+    """Two messages that say what one says; None: it cannot be parted."""
+    middle = {name: (len(getattr(message, name)) + 1) // 2 for name in PARTED}
+    first = {name: getattr(message, name)[:half] for name, half in middle.items()}
+    rest = {name: getattr(message, name)[half:] for name, half in middle.items()}
+    if not any(rest.values()):
+        return message, None
+    second = replace(message, **rest, sales_from=message.sales_from + len(first["sales"]), lacks=(), agreed=())
+    return replace(message, **first), second
