@@ -15,7 +15,7 @@ from muster.cli.tables import counted
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import Method
-from muster.negotiation.team import Team
+from muster.negotiation.team import Team, patience_here
 from muster.negotiation.view import View
 from muster.negotiation.watch import Order
 
@@ -32,7 +32,14 @@ def agree_here(
     MusterError
         if they do not within the limit, or a robot cannot take part.
     """
-    order = Order(problem=problem, terms=terms, key=new_key(), method=method.name, transport=transport)
+    order = Order(
+        problem=problem,
+        terms=terms,
+        key=new_key(),
+        method=method.name,
+        transport=transport,
+        patience=patience_here(len(problem.robots)),
+    )
     until_s = time.monotonic() + limit_s
     told: set[str] = set()
     with Team(order) as team, auction_table(problem, transport, wanted=not quiet) as show:
@@ -49,8 +56,8 @@ def agree_here(
             views = team.agreement()
         assert team.began_s is not None
         took_s = time.monotonic() - team.began_s
-        if not quiet:
-            click.echo(_summary(team, views, took_s), err=True)
+    if not quiet:
+        click.echo(_summary(team, views, took_s), err=True)
     return Agreement(views, took_s)
 
 

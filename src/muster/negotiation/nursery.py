@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import ExitStack, suppress
 from multiprocessing.connection import Connection
 
 from muster.allocation.problem import Problem
@@ -38,10 +38,13 @@ _ZENOH_ENTRANCES = 3
 def main() -> None:
     """Start the robots that are ordered, and stay until the last has ended."""
     starter, *pipes = (Connection(int(descriptor)) for descriptor in sys.argv[1:])
-    order: Order = starter.recv()
+    try:
+        order: Order = starter.recv()
+    except EOFError:
+        return
     problem = order.problem.ready()
-    robots = [robot.id for robot in problem.robots]
-    places = {robot: _Place.found(order.transport) for robot in robots}
+    robots = [robot.id for robot in problem.mission.robots]
+    ports = dict(zip(robots, _free_ports(order.transport, len(robots)), strict=True))
     own = dict(zip(robots, pipes, strict=True))
     gc.freeze()  # what all share stays shared
     pids = {}
@@ -52,19 +55,24 @@ def main() -> None:
             for other, pipe in own.items():
                 if other != robot:
                     pipe.close()
-            _be(robot, order, problem, places, own[robot])
+            _be(robot, order, problem, ports, own[robot])
         pids[pid] = robot
-        starter.send(Born(robot, pid))
+        if not _tell(starter, Born(robot, pid)):
+            break
     for pipe in pipes:
         pipe.close()
     threading.Thread(target=_end_with, args=(starter, pids), daemon=True).start()
     while pids:
         pid, status = os.wait()
-        gone = Gone(pids.pop(pid), _cause(status))
-        try:
-            starter.send(gone)
-        except OSError:
-            continue  # the starter has ended before
+        _tell(starter, Gone(pids.pop(pid), _cause(status)))
+
+
+def _tell(starter: Connection, word: Born | Gone | Failed) -> bool:
+    """Whether the starter is still there. If it is not, the robots end, each by itself."""
+    with suppress(OSError):
+        starter.send(word)
+        return True
+    return False
 
 
 def _end_with(starter: Connection, pids: Mapping[int, str]) -> None:
@@ -81,30 +89,21 @@ def _cause(status: int) -> str:
     return f"killed by {signal.Signals(-code).name}" if code < 0 else f"ended with exit code {code}"
 
 
-@dataclass
-class _Place:
-    """Where a robot is to be reached on this machine; held until it goes there itself."""
-
-    port: int
-    held: socket.socket
-
-    @classmethod
-    def found(cls, transport: str) -> _Place:
-        kind = socket.SOCK_DGRAM if transport == "udp" else socket.SOCK_STREAM
-        held = socket.socket(socket.AF_INET, kind)
-        held.bind((_HERE, 0))
-        return cls(held.getsockname()[1], held)
-
-    def freed(self) -> int:
-        self.held.close()
-        return self.port
+def _free_ports(transport: str, number: int) -> list[int]:
+    """Ports of this machine that nobody has at this moment."""
+    kind = socket.SOCK_DGRAM if transport == "udp" else socket.SOCK_STREAM
+    with ExitStack() as held:
+        sockets = [held.enter_context(socket.socket(socket.AF_INET, kind)) for _ in range(number)]
+        for each in sockets:
+            each.bind((_HERE, 0))
+        return [each.getsockname()[1] for each in sockets]
 
 
-def _be(robot: str, order: Order, problem: Problem, places: Mapping[str, _Place], pipe: Connection) -> None:
+def _be(robot: str, order: Order, problem: Problem, ports: Mapping[str, int], pipe: Connection) -> None:
     """The rest of a robot's process."""
     code = 0
     try:
-        _take_part(robot, order, problem, places, pipe)
+        _take_part(robot, order, problem, ports, pipe)
     except OSError as error:  # the starter has ended
         code = 0 if isinstance(error, BrokenPipeError) else _failed(pipe, str(error))
     except MusterError as error:
@@ -116,44 +115,41 @@ def _be(robot: str, order: Order, problem: Problem, places: Mapping[str, _Place]
 
 
 def _failed(pipe: Connection, why: str) -> int:
-    pipe.send(Failed(why))
+    _tell(pipe, Failed(why))
     return 2
 
 
-def _take_part(robot: str, order: Order, problem: Problem, places: Mapping[str, _Place], pipe: Connection) -> None:
+def _take_part(robot: str, order: Order, problem: Problem, ports: Mapping[str, int], pipe: Connection) -> None:
     orders = _Orders(pipe)
     negotiator = method_named(order.method).negotiator(
         problem, order.terms, robot, incarnation=1, patience=order.patience
     )
     codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
     seal = Seal(order.key, mission_digest(problem, order.terms), robot, 1)
-    with Node(negotiator, _transport(robot, order, problem, places), codec, seal) as node:
+    with Node(negotiator, _transport(robot, order, problem, ports), codec, seal) as node:
         pipe.send(Ready())
         orders.go.wait()
-        node.start()
-        told, told_s = negotiator.stage, 0.0
+        told_s = 0.0
         while not orders.leave.is_set():
             node.step(_STEP_S)
             now_s = time.monotonic()
             asked = orders.show.is_set()
-            if asked or now_s >= told_s + (NEWS_EVERY_S if told == negotiator.stage else NEWS_EVERY_S / 2):
+            if asked or now_s >= told_s + NEWS_EVERY_S:
                 orders.show.clear()
-                told, told_s = negotiator.stage, now_s
+                told_s = now_s
                 pipe.send(News(node.status(), negotiator.stage, view_of(negotiator) if asked else None))
 
 
-def _transport(robot: str, order: Order, problem: Problem, places: Mapping[str, _Place]) -> Transport:
-    ports = {other: place.port for other, place in places.items()}
-    port = places[robot].freed()
+def _transport(robot: str, order: Order, problem: Problem, ports: Mapping[str, int]) -> Transport:
     if order.transport == "udp":
         from muster.negotiation.udp import UdpTransport
 
-        return UdpTransport((_HERE, port), {other: (_HERE, p) for other, p in ports.items() if other != robot})
+        return UdpTransport((_HERE, ports[robot]), {other: (_HERE, p) for other, p in ports.items() if other != robot})
     from muster.negotiation.zenoh_transport import ZenohTransport
 
     entrances = [f"tcp/{_HERE}:{p}" for other, p in list(ports.items())[:_ZENOH_ENTRANCES] if other != robot]
     name = problem.mission.name or "mission"
-    return ZenohTransport(name, robot, connect=entrances, listen=(f"tcp/{_HERE}:{port}",))
+    return ZenohTransport(name, robot, connect=entrances, listen=(f"tcp/{_HERE}:{ports[robot]}",))
 
 
 class _Orders:
@@ -171,6 +167,7 @@ class _Orders:
                 events[self._pipe.recv()].set()
         except (EOFError, OSError):
             self.leave.set()
+            self.go.set()  # whoever waits for it goes, and leaves
             time.sleep(_CLOSING_S)
             os._exit(0)
 

@@ -55,7 +55,6 @@ def take_part(
     clock = clock or SystemClock()
     began_s = clock.now()
     agreed_s: float | None = None
-    node.start()
     while True:
         node.step(_STEP_S)
         status, passed_s = node.status(), clock.now() - began_s

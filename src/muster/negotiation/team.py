@@ -8,13 +8,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
 from types import TracebackType
 
 from muster.mission.errors import MusterError
+from muster.negotiation.members import Patience
 from muster.negotiation.view import View
 from muster.negotiation.watch import GO, SHOW, Born, Failed, Gone, News, Order, Ready
 
@@ -42,7 +43,7 @@ class Team:
     """
 
     def __init__(self, order: Order) -> None:
-        self.robots = [robot.id for robot in order.problem.robots]
+        self.robots = [robot.id for robot in order.problem.mission.robots]
         self.pids: dict[str, int] = {}
         self.news: dict[str, News] = {}
         self.gone: dict[str, str] = {}
@@ -68,14 +69,15 @@ class Team:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if kind is not None:
+            self._kill_all()
         for pipe in (*self._pipes.values(), self._nursery_pipe):
-            pipe.close()
+            pipe.close()  # who has not ended yet hears that
         try:
             self._nursery.wait(_ENDING_S)
+        except subprocess.TimeoutExpired:
+            self._kill_all()
         finally:
-            for robot in self.living if self._nursery.poll() is None else ():
-                if robot in self.pids:
-                    _kill(self.pids[robot])
             self._nursery.kill()
             self._nursery.wait()
 
@@ -123,10 +125,8 @@ class Team:
 
     def _tell(self, command: str) -> None:
         for pipe in self._pipes.values():
-            try:
+            with suppress(OSError):  # if it has just ended; that is heard next
                 pipe.send(command)
-            except OSError:
-                continue  # it has just ended; that is heard next
 
     def _hear_nursery(self) -> None:
         try:
@@ -152,6 +152,12 @@ class Team:
             before = self.news.get(robot)
             self.news[robot] = replace(word, view=word.view if before is None else word.view or before.view)
 
+    def _kill_all(self) -> None:
+        for robot in self.living:
+            if robot in self.pids:
+                with suppress(ProcessLookupError):
+                    os.kill(self.pids[robot], signal.SIGKILL)
+
     def _lose(self, robot: str, why: str) -> None:
         self.gone[robot] = why
         pipe = self._pipes.pop(robot, None)
@@ -161,19 +167,22 @@ class Team:
             raise MusterError(f"{robot}: {why} before the auction began; expected it to take part")
 
 
+def patience_here(robots: int) -> Patience:
+    """The patience of robots that share this machine: the more there are, the longer an answer takes.
+
+    Robots that ask again too soon make each other slower still: 50 of them on two cores sent seven times what they had
+    to, and took twice as long.
+    """
+    usual = Patience()
+    return replace(usual, beat_s=max(usual.beat_s, 0.02 * robots), retry_s=max(usual.retry_s, 0.02 * robots))
+
+
 def _light(order: Order) -> Order:
     """The order with what was measured on a map, so that it need not be measured again."""
     problem = order.problem
     if problem.mission.travel_rule != "map":
         return order
     return replace(order, problem=replace(problem, known=problem.measured))
-
-
-def _kill(pid: int) -> None:
-    try:
-        os.kill(pid, signal.SIGKILL)
-    except ProcessLookupError:
-        return
 
 
 @contextmanager
