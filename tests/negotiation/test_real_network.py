@@ -68,7 +68,9 @@ def test_all_agree_through_loss_and_delay(mission, loss):
 
 def test_all_agree_when_a_cut_has_healed(mission):
     with RealNetwork(ROBOTS, delay_s=0.05, loss=0.1) as network:
-        processes = start(network, "--wait", "50", "--linger", "10")  # nobody leaves before the cut, or with half the team
+        processes = start(
+            network, "--wait", "50", "--linger", "10"
+        )  # nobody leaves before the cut, or with half the team
         time.sleep(1.5)
         network.cut([1, 2, 3, 4], [5, 6])
         time.sleep(6)  # longer than it takes to be taken for lost

@@ -21,7 +21,7 @@ from muster.cli.options import (
     require_complete_option,
     settings_of,
 )
-from muster.cli.outputs import require_csv, require_drawable, require_writable
+from muster.cli.outputs import require_csv, require_drawable, require_folder, require_writable
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
@@ -105,6 +105,7 @@ def command(
     _check_together(others)
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
     require_csv(book)
+    require_folder(views)
     require_drawable(plot, gantt)
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)

@@ -93,7 +93,7 @@ class Team:
             robot = ends.get(end)
             if robot is None:
                 self._hear_nursery()
-            else:
+            elif robot in self._pipes:  # else the nursery has just told of its end
                 self._hear_robot(robot)
         if self.began_s is None and self._ready == set(self.robots):
             self.began_s = time.monotonic()
