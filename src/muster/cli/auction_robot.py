@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +13,7 @@ import click
 from muster.allocation.problem import Problem
 from muster.allocation.terms import Terms
 from muster.cli.auction import Agreement
-from muster.mission.errors import ParameterError
+from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.codec import Codec
 from muster.negotiation.keys import read_key
@@ -27,6 +28,7 @@ from muster.negotiation.transport import Transport
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
 _PORT = 7783
+_AGAIN_S = 0.5
 
 
 def agree_with_others(
@@ -92,7 +94,10 @@ class _Watch:
                 self._say(f"{robot} is silent; going on without it")
         self._there = heard
         if status.settled != self._settled and status.settled:
-            self._say(f"all {len(status.members)} agree, in round {status.round} of epoch {status.epoch}")
+            who = (
+                f"all {len(status.members)} agree" if len(status.members) > 1 else "alone, with nothing left to bid for"
+            )
+            self._say(f"{who}, in round {status.round} of epoch {status.epoch}")
         self._settled = status.settled
         route = self._negotiator.route
         if self._file is not None and route != self._memory.claims:
@@ -103,7 +108,7 @@ class _Watch:
         kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats"))
         volume = sum(status.sent_bytes.values()) / 1000
         refused = "".join(
-            f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if count
+            f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
         )
         self._say(f"agreed after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}")
 
@@ -113,10 +118,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
     if transport == "zenoh":
         if multicast is not None:
             raise ParameterError("--multicast given; expected it with --transport udp (Zenoh scouts by itself)")
-        from muster.negotiation.zenoh_transport import ZenohTransport
-
-        name = problem.mission.name or "mission"
-        return ZenohTransport(name, options["robot"], connect=_listed(connect), listen=_listed(listen))
+        return _zenoh(problem.mission.name or "mission", options["robot"], connect, listen, options["wait"])
     if (connect is None) == (multicast is None):
         raise ParameterError("--connect or --multicast: expected one of them with --robot")
     from muster.negotiation.udp import UdpTransport
@@ -127,6 +129,24 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
         return UdpTransport.multicast(_address("--multicast", multicast))
     bind = (_ANYWHERE, _PORT) if listen is None else _address("--listen", listen)
     return UdpTransport(bind, _peers(connect, problem, options["robot"]))
+
+
+def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wait_s: float) -> Transport:
+    """A Zenoh session; where the robot only connects, it waits for somebody to be there."""
+    from muster.negotiation.zenoh_transport import ZenohTransport
+
+    for option, text in (("--connect", connect), ("--listen", listen)):
+        for endpoint in _listed(text):
+            if "/" not in endpoint:
+                raise ParameterError(f"{option}: {endpoint}; expected an endpoint of Zenoh, such as tcp/HOST:PORT")
+    until_s = time.monotonic() + wait_s
+    while True:
+        try:
+            return ZenohTransport(mission, robot, connect=_listed(connect), listen=_listed(listen))
+        except NetworkError:
+            if listen is not None or time.monotonic() > until_s:
+                raise
+            time.sleep(_AGAIN_S)
 
 
 def _peers(text: str, problem: Problem, robot: str) -> dict[str, tuple[str, int]]:

@@ -15,6 +15,7 @@ from multiprocessing.connection import Connection, wait
 from types import TracebackType
 
 from muster.mission.errors import MusterError
+from muster.negotiation.extra import require_net
 from muster.negotiation.members import Patience
 from muster.negotiation.view import View
 from muster.negotiation.watch import GO, SHOW, Born, Failed, Gone, News, Order, Ready
@@ -38,11 +39,14 @@ class Team:
 
     Raises
     ------
+    MissingExtraError
+        if the extra `net` is not installed.
     MusterError
         from `hear`, if a robot cannot take part at all.
     """
 
     def __init__(self, order: Order) -> None:
+        require_net()
         self.robots = [robot.id for robot in order.problem.mission.robots]
         self.pids: dict[str, int] = {}
         self.news: dict[str, News] = {}
