@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 
 msgpack = pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 
+from tests.negotiation.messages import ROBOTS, TASKS, messages  # noqa: E402
+
 from muster.negotiation.codec import PARTED, PROTOCOL, Codec, OtherVersion  # noqa: E402
 from muster.negotiation.forms import Garbled  # noqa: E402
 from muster.negotiation.messages import Claim, Declaration, Message, Pulse, RoundBids, Sold, Stage  # noqa: E402
-from tests.negotiation.messages import ROBOTS, TASKS, messages  # noqa: E402
 
 CODEC = Codec(ROBOTS, TASKS)
 BID = Message("r_1", 7, 12, Stage(1, b"12345678", 3), bids=(RoundBids("r_1", 3, (("t_2", 0.1 + 0.2),)),))
@@ -54,7 +55,12 @@ def test_a_message_with_bytes_changed_lost_or_added_is_a_message_or_garbled(mess
 
 
 plain = st.recursive(
-    st.none() | st.booleans() | st.integers(-(2**63), 2**64 - 1) | st.floats() | st.text(max_size=4) | st.binary(max_size=4),
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**63), 2**64 - 1)
+    | st.floats()
+    | st.text(max_size=4)
+    | st.binary(max_size=4),
     lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
 )
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
-from muster.negotiation import seal as sealing  # noqa: E402
-from muster.negotiation.seal import OVERHEAD, WINDOW, Seal, Window, new_key  # noqa: E402
+from muster.negotiation import seal as sealing
+from muster.negotiation.seal import OVERHEAD, WINDOW, Seal, Window, new_key
 
 KEY = bytes(range(32))
 HEADER = 25
