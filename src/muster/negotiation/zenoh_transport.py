@@ -7,8 +7,8 @@ all but letters, digits and `_.-~` is written as in addresses of the web (`%2F`)
 Zenoh is asked to promise nothing: best effort, drop where a link is congested. Its threads call one function, which
 puts what came in a queue; nothing of Muster runs on them. The session is closed by `close`, at the latest at exit.
 
-For a callback that is a plain function Zenoh starts a thread of Python's, for whose end the interpreter waits, for ever,
-before it runs what was registered for the exit; so this one is called by Zenoh's own threads (`indirect=False`).
+For a callback that is a plain function Zenoh starts a thread of Python's, for whose end the interpreter waits before it
+runs what was registered for the exit, so for ever; this one is called by Zenoh's own threads (`indirect=False`).
 """
 
 from __future__ import annotations
