@@ -108,7 +108,7 @@ class Codec:
     """
 
     def __init__(self, robots: Sequence[str], tasks: Sequence[str]) -> None:
-        require_net()
+        require_net("msgpack")
         import msgpack
 
         self._packb, self._unpackb = msgpack.packb, msgpack.unpackb

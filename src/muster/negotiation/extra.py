@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
 from muster.mission.errors import MissingExtraError
 
 
-def require_net() -> None:
-    """Raise MissingExtraError where the extra `net` is not installed."""
-    try:
-        import cryptography
-        import msgpack
-        import zenoh  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("net", "an auction over a network") from None
+def require_net(*modules: str) -> None:
+    """Raise MissingExtraError where one of these modules of the extra `net` is not installed."""
+    if not all(find_spec(name) for name in modules):
+        raise MissingExtraError("net", "an auction over a network")

@@ -109,7 +109,7 @@ class Seal:
     """
 
     def __init__(self, key: bytes, context: bytes, robot: str, incarnation: int) -> None:
-        require_net()
+        require_net("cryptography")
         assert len(key) == KEY_BYTES
         self.counts: Counter[str] = Counter()
         self._key, self._whose = key, f"{robot} {incarnation}"
@@ -145,8 +145,9 @@ class Seal:
         self._peers[session] = peer
         return opened if peer.window.take(int.from_bytes(header[-_COUNTER:], "big")) else self._refused("replayed")
 
-    def _refused(self, why: str) -> None:
+    def _refused(self, why: str) -> bytes | None:
         self.counts[why] += 1
+        return None
 
     def _begin_session(self) -> None:
         self._process, self._counter = os.getpid(), 0

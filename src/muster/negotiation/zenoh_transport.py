@@ -1,14 +1,14 @@
 """Messages over Zenoh (extra `net`): peer to peer, or through routers, for teams that span networks.
 
-Robot r publishes under its own name alone: `muster/MISSION/r/auction` for all, `muster/MISSION/r/auction/x` for robot x.
-Each listens to `muster/MISSION/*/auction` and, in all namespaces, to what is for itself; so may other tools. In ids all
-but letters, digits and `_.-~` is written as in addresses of the web (`%2F`).
+Robot r publishes under its own name alone: `muster/MISSION/r/auction` for all, `muster/MISSION/r/auction/x` for robot
+x. Each listens to `muster/MISSION/*/auction` and, in all namespaces, to what is for itself; so may other tools. In ids
+all but letters, digits and `_.-~` is written as in addresses of the web (`%2F`).
 
-Zenoh is asked to promise nothing: best effort, drop where a link is congested. Its threads call one function, which puts
-what came in a queue; nothing of Muster runs on them. The session is closed by `close`, at the latest at exit.
+Zenoh is asked to promise nothing: best effort, drop where a link is congested. Its threads call one function, which
+puts what came in a queue; nothing of Muster runs on them. The session is closed by `close`, at the latest at exit.
 
-A callback that is a plain function gets a thread of Python's own, for whose end the interpreter waits before it runs what
-was registered for the exit, so for ever; this one is called by Zenoh's threads (`indirect=False`).
+For a callback that is a plain function Zenoh starts a thread of Python's, for whose end the interpreter waits before it
+runs what was registered for the exit, so for ever; this one is called by Zenoh's own threads (`indirect=False`).
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class ZenohTransport:
         listen: Sequence[str] = (),
         mode: str | None = None,
     ) -> None:
-        require_net()
+        require_net("zenoh")
         mode = mode or ("client" if connect and not listen else "peer")
         if mode not in ("client", "peer"):
             raise ParameterError(f"mode: {mode}; expected client or peer")
@@ -107,7 +107,7 @@ class ZenohTransport:
         """Leave the network."""
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            self._session.close()
+            self._session.close()  # type: ignore[no-untyped-call]
 
     def _take(self, sample: zenoh.Sample) -> None:
         """Called by Zenoh's threads."""
