@@ -129,3 +129,19 @@ def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[
             hint = did_you_mean(name, IGNORABLE)
             raise click.BadParameter(f"{name!r} is not one of {', '.join(IGNORABLE)}{hint}", param_hint="'--ignore'")
     return names
+
+
+def settings_of(settings: tuple[str, ...]) -> dict[str, Any]:
+    """What `--set NAME=VALUE` gives, by name."""
+    values: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if name.strip() in values:
+            raise ParameterError(f"--set: {name.strip()} given twice; expected it once")
+        if not equals or not name.strip() or not text.strip():
+            raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
+        try:
+            values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
+        except ValueError:
+            values[name.strip()] = text.strip()
+    return values

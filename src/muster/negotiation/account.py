@@ -1,0 +1,80 @@
+"""The book of an auction without a centre, from one robot's view of it.
+
+Robots publish what the winner rule needs, no more; but what each would bid follows from the routes that all know. So
+the auctions are held again, and every bid is told as the book of the auction in one process tells it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from muster.allocation.auctioneer import Auctioneer
+from muster.allocation.bookkeeping import bids_of_round
+from muster.allocation.problem import Problem
+from muster.allocation.terms import Terms
+from muster.allocation.winners import Sale
+from muster.mission.book import Award, Book, TakeBid
+from muster.negotiation.messages import Claim
+from muster.negotiation.view import Held, View
+
+OnSale = Callable[[Auctioneer, Sale, Sequence[int]], None]
+"""Is told of a sale before the task has its owner, and of the robots that could bid."""
+
+
+def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
+    """The book: awards of all that the view's robots own, and the bids of all rounds that the robot has seen.
+
+    Of a task that was won where the robot could not see it, the book knows the price alone. `messages` is None where
+    the whole team took part throughout, so that every robot has bid for all that it could do; else it tells how many
+    the robot has sent.
+    """
+    auctions = view.auctions
+
+    def recite(take: TakeBid) -> None:
+        def tell(auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+            for bid in bids_of_round(problem, auctioneer, sale, members):
+                take(bid)
+
+        _hold_again(problem, terms, auctions, tell)
+
+    whole = all(len(held.members) == len(problem.robots) for held in auctions)
+    awards = tuple(_awards(problem, terms, auctions, view.claims))
+    return Book(rounds=view.rounds, messages=None if whole else view.sent, awards=awards, recite=recite)
+
+
+def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
+    members: list[int] = []
+    auctioneer = Auctioneer(problem, terms, on_round=lambda asker, sale: on_sale(asker, sale, members))
+    for held in auctions:
+        members = [problem.robot_index[robot] for robot in held.members]
+        routes: list[list[int]] = [[] for _ in problem.robots]
+        for robot, tasks in held.routes.items():
+            routes[problem.robot_index[robot]] = [problem.task_index[task] for task in tasks]
+        auctioneer.restore(routes, {})
+        auctioneer.round = held.rounds
+        for sold in held.sales:
+            auctioneer.assign(Sale(problem.robot_index[sold.robot], problem.task_index[sold.task], sold.price))
+
+
+def _awards(
+    problem: Problem, terms: Terms, auctions: Sequence[Held], claims: Mapping[str, Sequence[Claim]]
+) -> list[Award]:
+    """How each task came to the robot that owns it, in the order of rounds."""
+    seen: dict[tuple[str, str, int], Award] = {}
+
+    def note(auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+        bids = auctioneer.bids_for(sale.task)
+        bidders = [i for i in members if np.isfinite(bids[i])]
+        named = [(problem.robots[i].id, float(bids[i])) for i in sorted(bidders, key=lambda i: bids[i])]
+        robot, task = problem.robots[sale.robot].id, problem.tasks[sale.task].id
+        seen[robot, task, auctioneer.round] = Award.of(auctioneer.round, task, robot, sale.price, named)
+
+    _hold_again(problem, terms, auctions, note)
+    awards = [
+        seen.get((robot, c.task, c.round)) or Award.of(c.round, c.task, robot, c.price, [(robot, c.price)])
+        for robot, owned in claims.items()
+        for c in owned
+    ]
+    return sorted(awards, key=lambda award: (award.round, problem.task_index[award.task]))

@@ -1,0 +1,73 @@
+"""What takes a robot into an auction, its negotiator, and what comes out of it: the plan as the robot sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from muster.allocation.allocator import Outcome, finished_plan
+from muster.allocation.auction import AUCTION
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.terms import Terms
+from muster.mission.plan import Plan
+from muster.negotiation.account import book_of_view
+from muster.negotiation.base import Rules
+from muster.negotiation.members import Patience
+from muster.negotiation.messages import Claim
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.valuation import AuctionValuer
+from muster.negotiation.view import View, view_of
+
+
+def rules_of(problem: Problem) -> Rules:
+    """What the robots' agreement must hold."""
+    linked = problem.holds("prerequisites")
+    return Rules(
+        robots={robot.id: i for i, robot in enumerate(problem.robots)},
+        tasks={task.id: j for j, task in enumerate(problem.tasks)},
+        prerequisites={task.id: task.prerequisites if linked else () for task in problem.tasks},
+        once=frozenset(task.id for task in problem.tasks if task.across_partition == "at-most-once"),
+    )
+
+
+def negotiator_of(
+    problem: Problem,
+    terms: Terms,
+    robot: str,
+    *,
+    incarnation: int,
+    patience: Patience = Patience(),  # noqa: B008 - frozen
+    remembered: Sequence[Claim] = (),
+) -> Negotiator:
+    """A robot that takes part; `incarnation` is above all that it had before, `remembered` what it owned."""
+    return Negotiator(
+        robot=robot,
+        rules=rules_of(problem),
+        valuer=AuctionValuer(problem, terms, robot),
+        patience=patience,
+        incarnation=incarnation,
+        remembered=tuple(remembered),
+    )
+
+
+def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
+    """The plan as a robot sees it, with its book.
+
+    Where nothing failed it is, seconds aside, that of the auction in one process.
+    """
+    valuer = negotiator.valuer
+    assert isinstance(valuer, AuctionValuer)
+    return plan_of_view(problem, valuer.terms, view_of(negotiator))
+
+
+def plan_of_view(problem: Problem, terms: Terms, view: View, elapsed_s: float | None = None) -> Plan:
+    """The plan in a view; `elapsed_s` is how long the robots took to agree, seconds."""
+    stop = Stop()
+    routes = [[problem.task_index[task] for task in view.routes.get(robot.id, ())] for robot in problem.robots]
+    stop.improved(*problem.value(routes))
+    outcome = Outcome(routes, book_of_view(problem, terms, view))
+    plan = finished_plan(problem, stop, outcome, allocator=AUCTION.name, seed=0)
+    if elapsed_s is None:
+        return plan
+    return replace(plan, elapsed_s=elapsed_s, history=tuple((elapsed_s, value) for _, value in plan.history))
