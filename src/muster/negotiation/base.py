@@ -10,7 +10,11 @@ from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
 
+from muster.negotiation.knowledge import holders, in_order
 from muster.negotiation.messages import Claim, Declaration, Fact
+from muster.negotiation.tasks import task_of
+
+Routes = dict[str, list[Claim]]
 
 
 @dataclass(frozen=True)
@@ -25,12 +29,32 @@ class Rules:
         of each task; empty where they are ignored.
     once
         tasks that must not be begun twice, whatever happens to the network.
+    linked
+        whether tasks that are added may wait for others.
     """
 
     robots: Mapping[str, int]
     tasks: Mapping[str, int]
     prerequisites: Mapping[str, Sequence[str]]
     once: frozenset[str] = frozenset()
+    linked: bool = True
+
+    @property
+    def majority(self) -> int:
+        """Any two groups of so many robots of the mission have one in common."""
+        return len(self.robots) // 2 + 1
+
+    def with_added(self, added: Sequence[Fact]) -> Rules:
+        """The rules when these tasks belong to the mission."""
+        if not added:
+            return self
+        tasks = [task_of(fact.content) for fact in added]
+        return replace(
+            self,
+            tasks={**self.tasks, **{task.id: k for k, task in enumerate(tasks, len(self.tasks))}},
+            prerequisites={**self.prerequisites, **{t.id: t.prerequisites if self.linked else () for t in tasks}},
+            once=self.once | {task.id for task in tasks if task.across_partition == "at-most-once"},
+        )
 
 
 @dataclass(frozen=True)
@@ -40,9 +64,13 @@ class Base:
     Parameters
     ----------
     routes
-        claims of each member, in the order of its route.
+        claims of each member, in the order of its route; what it has begun stands first.
     facts
-        what has been done, and begun for good, as far as any member knows.
+        all that any member knows for good.
+    done, added
+        of them what was done, in order, and those by which there are more tasks, in tie order.
+    closed
+        tasks that are not for sale, whoever owns them.
     dropped
         (robot, task) that were declared, and are not kept.
     twice
@@ -55,40 +83,97 @@ class Base:
 
     routes: Mapping[str, tuple[Claim, ...]]
     facts: frozenset[Fact]
+    done: tuple[Fact, ...]
+    added: tuple[Fact, ...]
+    closed: frozenset[str]
     dropped: tuple[tuple[str, str], ...]
     twice: Mapping[str, tuple[str, ...]]
     rounds: int
     digest: bytes
 
+    def keeping(self, kept: Mapping[str, Sequence[str]]) -> Base:
+        """The base in which of what waits to be begun only this is kept: the rest does not fit any more."""
+        lost = {
+            (robot, claim.task)
+            for robot, claims in self.routes.items()
+            for claim in claims
+            if not claim.begun and claim.task not in kept.get(robot, ())
+        }
+        if not lost:
+            return self
+        routes = {r: tuple(c for c in claims if (r, c.task) not in lost) for r, claims in self.routes.items()}
+        return replace(self, routes=routes, dropped=(*self.dropped, *sorted(lost)))
+
 
 def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
-    """The base that follows from the declarations of all members, in tie order.
+    """The base that follows from the declarations of all members, in any order.
 
     A task that several claim stays with the one that has begun it; if nobody has, with the lowest price, then with the
     first in tie order. What waits for a task that nobody owns or has done is dropped, and of routes that wait for each
     other for ever the tasks that come last in tie order; work that was begun never.
     """
+    declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
-    done = {fact.task for fact in facts if fact.done}
-    taken = {fact.task: fact.robot for fact in facts if not fact.done and fact.task not in done}
-    routes = {declaration.robot: list(declaration.route) for declaration in declarations}
-    before = {robot: list(claims) for robot, claims in routes.items()}
-    for robot, claims in routes.items():
-        claims[:] = [c for c in claims if c.begun or (c.task not in done and taken.get(c.task, robot) == robot)]
+    added = _added(facts, rules)
+    rules = rules.with_added(added)
+    known = frozenset(fact for fact in facts if fact.task in rules.tasks)  # of a task it may be heard that it was done
+    finished = tuple(fact for fact in in_order(known) if fact.done)  # before it is heard that there is such a task
+    done = {fact.task for fact in finished}
+    gone = done.union(fact.task for fact in known if fact.kind == "cancelled")
+    reserved = _reserved(declarations, known)
+    routes: Routes = {}
+    for declaration in declarations:
+        robot = declaration.robot
+        kept = [c for c in declaration.route if c.task not in gone and reserved.get(c.task, robot) == robot]
+        routes[robot] = [*(c for c in declaration.route if c.begun), *(c for c in kept if not c.begun)]
     twice = _one_owner_each(routes, rules)
     _drop_orphans(routes, done, rules)
     while (last := _last_of_a_cycle(routes, rules)) is not None:
         for claims in routes.values():
             claims[:] = [c for c in claims if c.begun or c.task != last]
         _drop_orphans(routes, done, rules)
-    kept = {robot: tuple(claims) for robot, claims in routes.items()}
-    still = {robot: {claim.task for claim in claims} for robot, claims in kept.items()}
-    dropped = tuple((robot, c.task) for robot, claims in before.items() for c in claims if c.task not in still[robot])
-    rounds = max(declaration.rounds for declaration in declarations)
-    return Base(kept, facts, dropped, twice, rounds, _digest(declarations, kept))
+    still = {robot: {claim.task for claim in claims} for robot, claims in routes.items()}
+    few = sum(declaration.knows for declaration in declarations) < rules.majority
+    return Base(
+        routes={robot: tuple(claims) for robot, claims in routes.items()},
+        facts=facts,
+        done=finished,
+        added=added,
+        closed=frozenset(gone.union(reserved, rules.once if few else ())),
+        dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),
+        twice=twice,
+        rounds=max(declaration.rounds for declaration in declarations),
+        digest=_digest(declarations),
+    )
 
 
-def _one_owner_each(routes: Mapping[str, list[Claim]], rules: Rules) -> dict[str, tuple[str, ...]]:
+def _added(facts: frozenset[Fact], rules: Rules) -> tuple[Fact, ...]:
+    """The facts by which there are more tasks: of several of one name the first."""
+    first: dict[str, Fact] = {}
+    for fact in in_order(facts):
+        if fact.kind == "added" and fact.task not in rules.tasks:
+            first.setdefault(fact.task, fact)
+    return tuple(first.values())
+
+
+def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:
+    """By task that a robot may have begun for good that robot; nobody (the empty name) where that is not clear.
+
+    Of several it is clear if all are here to tell: then it is the one that has begun, or else the first to say so.
+    """
+    claims = {(d.robot, claim.task): claim for d in declarations for claim in d.route}
+    reserved = {}
+    for task, robots in holders(facts).items():
+        claimed = [claims.get((robot, task)) for robot in robots]
+        if len(robots) > 1 and None in claimed:
+            reserved[task] = ""
+        else:
+            begun = [robot for robot, claim in zip(robots, claimed, strict=True) if claim is not None and claim.begun]
+            reserved[task] = (begun or robots)[0]
+    return reserved
+
+
+def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
     """Leave each task to one robot, or to all that have begun it; these tasks, and their robots."""
     owners: dict[str, list[tuple[bool, float, int, str]]] = {}
     for robot, claims in routes.items():
@@ -107,7 +192,7 @@ def _one_owner_each(routes: Mapping[str, list[Claim]], rules: Rules) -> dict[str
     return twice
 
 
-def _drop_orphans(routes: Mapping[str, list[Claim]], done: set[str], rules: Rules) -> None:
+def _drop_orphans(routes: Routes, done: set[str], rules: Rules) -> None:
     """Drop tasks that wait for one that nobody owns or has done."""
     while True:
         there = done.union(claim.task for claims in routes.values() for claim in claims)
@@ -123,7 +208,7 @@ def _drop_orphans(routes: Mapping[str, list[Claim]], done: set[str], rules: Rule
             claims[:] = [claim for claim in claims if claim.begun or claim.task not in orphans]
 
 
-def _last_of_a_cycle(routes: Mapping[str, list[Claim]], rules: Rules) -> str | None:
+def _last_of_a_cycle(routes: Routes, rules: Rules) -> str | None:
     """A task that waits for itself, by routes and prerequisites; None if there is none that has not been begun."""
     graph: dict[str, set[str]] = {}
     begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
@@ -142,10 +227,8 @@ def _last_of_a_cycle(routes: Mapping[str, list[Claim]], rules: Rules) -> str | N
     return None
 
 
-def _digest(declarations: Sequence[Declaration], routes: Mapping[str, tuple[Claim, ...]]) -> bytes:
-    first = declarations[0]
-    said = [(d.robot, d.incarnation, d.route, sorted((f.task, f.robot, f.done) for f in d.facts)) for d in declarations]
-    return blake2b(repr((first.epoch, first.members, said)).encode(), digest_size=8).digest()
+def _digest(declarations: Sequence[Declaration]) -> bytes:
+    return blake2b(repr([replace(d, facts=in_order(d.facts)) for d in declarations]).encode(), digest_size=8).digest()
 
 
 def with_begun(claims: Sequence[Claim], task: str) -> tuple[Claim, ...]:

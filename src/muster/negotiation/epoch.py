@@ -7,12 +7,13 @@ declarations and from bids that follow from these, so what one has resolved is w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from muster.negotiation.base import Base, Rules, agreed
 from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
-from muster.negotiation.valuation import Valuer
+from muster.negotiation.valuation import Opening, Valuer
 
 
 @dataclass
@@ -25,11 +26,14 @@ class Epoch:
         the member's declaration, with the epoch's number and members.
     rules, valuer
         of the mission.
+    refused
+        tasks for which this member does not bid.
     """
 
     own: Declaration
     rules: Rules
     valuer: Valuer
+    refused: Collection[str] = ()
     base: Base | None = None
     ended: bool = False
     sales: list[Sold] = field(default_factory=list)
@@ -90,7 +94,7 @@ class Epoch:
         while not self.ended:
             heard = self._bids.setdefault(len(self.sales), {})
             if self.own.robot not in heard:
-                heard[self.own.robot] = RoundBids(self.own.robot, len(self.sales), self.valuer.bids())
+                heard[self.own.robot] = RoundBids(self.own.robot, len(self.sales), self.valuer.bids(self.refused))
                 published.append(heard[self.own.robot])
             if len(heard) < len(self.own.members):
                 break
@@ -111,6 +115,14 @@ class Epoch:
         heard = self._bids.get(len(self.sales), {})
         return tuple(robot for robot in self.own.members if robot not in heard)
 
+    @property
+    def said_last(self) -> dict[str, Any]:
+        """What this member said last, as fields of a message: somebody may wait for it as this one waits."""
+        if self.base is None:
+            return {"declarations": (self.own,)}
+        said = None if self.ended else self.bids_of(self.own.robot, len(self.sales))
+        return {} if said is None else {"bids": (said,)}
+
     def declaration_of(self, robot: str) -> Declaration | None:
         return self._declared.get(robot)
 
@@ -126,24 +138,20 @@ class Epoch:
         """What this member owns now, in the order of its route."""
         if self.base is None:
             return self.own.route
-        claims = {claim.task: claim for claim in self.base.routes[self.own.robot]}
+        owned = self.base.routes[self.own.robot]
+        claims = {claim.task: claim for claim in owned if not claim.begun}
         for number, sold in enumerate(self.sales, self.base.rounds + 1):
             if sold.robot == self.own.robot:
                 claims[sold.task] = Claim(sold.task, sold.price, number)
-        return tuple(claims[task] for task in self.valuer.route(self.own.robot) if task in claims)
+        ahead = (claims[task] for task in self.valuer.route(self.own.robot) if task in claims)
+        return (*(claim for claim in owned if claim.begun), *ahead)
 
     def _begin(self) -> bool:
         """Find the base, if all members have declared the same members."""
         if self.lacks:
             return False
-        self.base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
-        done: dict[str, list[str]] = {}
-        for fact in sorted(self.base.facts, key=lambda fact: self.rules.tasks[fact.task]):
-            if fact.done:
-                done.setdefault(fact.robot, []).append(fact.task)
-        robots = {*done, *self.base.routes}
-        owned = {robot: [claim.task for claim in self.base.routes.get(robot, ())] for robot in robots}
-        self.valuer.begin({robot: [*done.get(robot, ()), *owned[robot]] for robot in robots})
+        base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
+        self.base = base.keeping(self.valuer.begin(_opening(base)))
         for digest, bids in self._early:
             self.hear_bids(digest, bids)
         self._early.clear()
@@ -156,3 +164,17 @@ class Epoch:
         self.valuer.award(sold)
         self.sales.append(sold)
         self.book.append(heard)
+
+
+def _opening(base: Base) -> Opening:
+    """How things stand on a base; a task that several have done or begun counts for the first of them."""
+    past: dict[str, list[str]] = {}
+    counted: set[str] = set()
+    done = [(fact.robot, fact.task) for fact in base.done]
+    begun = [(robot, claim.task) for robot, claims in base.routes.items() for claim in claims if claim.begun]
+    for robot, task in (*done, *begun):
+        if task not in counted:
+            past.setdefault(robot, []).append(task)
+            counted.add(task)
+    ahead = {robot: [claim.task for claim in claims if not claim.begun] for robot, claims in base.routes.items()}
+    return Opening(past, ahead, base.closed, tuple(fact.content for fact in base.added))

@@ -19,15 +19,17 @@ class Patience:
     retry_s
         the same while it lacks something.
     suspect_s
-        a robot of which nothing was heard for so long is taken for lost.
+        a robot of which nothing was heard for so long is taken for lost. This is the lease on what it owns, too: others
+        honour that for so long, and every beat renews it.
     bid_s
         a robot that is heard, but does not bid, or takes others for members, for so long is left out; more than
         `suspect_s`, so that all have noticed by then who is lost,
     mute_s
-        for so long: one that does not bid twice as long each further time; another at most until it declares anew.
+        for so long, twice as long each further time that nothing was agreed with it in between, at most eight times;
+        one that takes others for members at most until it declares anew.
     """
 
-    beat_s: float = 0.25
+    beat_s: float = 0.2
     retry_s: float = 0.15
     suspect_s: float = 4.0
     bid_s: float = 6.0
@@ -64,11 +66,9 @@ class Members:
 
     def hear(self, pulse: Pulse, now: float) -> bool:
         """Take in that a robot lived; whether it has started anew since it was heard last."""
-        if pulse.robot == self.me:
-            return False
         peer = self._peers.get(pulse.robot)
-        if peer is None:
-            peer = self._peers[pulse.robot] = _Peer()
+        if peer is None:  # this robot itself, or a stranger
+            return False
         if (pulse.incarnation, pulse.number) <= (peer.incarnation, peer.number):
             return False
         anew = -1 < peer.incarnation < pulse.incarnation
@@ -83,9 +83,15 @@ class Members:
     def mute(self, robot: str, now: float, *, bids: bool) -> None:
         """Leave a robot out for a while: one that does not bid, or one with other members."""
         peer = self._peers[robot]
-        peer.muted_until_s = now + self.patience.mute_s * 2.0 ** min(peer.mutings, 6)
-        peer.mutings += bids
+        peer.muted_until_s = now + self.patience.mute_s * 2.0 ** min(peer.mutings, 3)
+        peer.mutings += 1
         peer.may_return = not bids
+
+    def forgive(self, robots: Iterable[str]) -> None:
+        """Something was agreed with these robots."""
+        for robot in robots:
+            if robot in self._peers:
+                self._peers[robot].mutings = 0
 
     def welcome(self, robot: str) -> None:
         """A robot takes this one for a member: if it was left out since it did not, it is back."""
@@ -97,6 +103,9 @@ class Members:
         """Those that take part, this robot included, in no order."""
         since = now - self.patience.suspect_s
         return [self.me, *(r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now)]
+
+    def is_muted(self, robot: str, now: float) -> bool:
+        return self._peers[robot].muted_until_s > now
 
     def silent_s(self, robot: str, now: float) -> float:
         """For how long nothing was heard of a robot."""

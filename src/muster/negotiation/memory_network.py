@@ -5,12 +5,13 @@ from __future__ import annotations
 import heapq
 import itertools
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
+from muster.negotiation.happenings import Outgoing
 from muster.negotiation.messages import Message
-from muster.negotiation.negotiator import Negotiator, Outgoing
+from muster.negotiation.negotiator import Negotiator
 
 TICK_S = 0.05
 """How often robots look at their clocks."""
@@ -46,13 +47,16 @@ class MemoryNetwork:
         the team.
     links
         who hears whom directly; None: everybody everybody.
+    watch
+        is told of a robot after each moment in which it did something.
     """
 
     make: Callable[[str, int], Negotiator]
-    robots: Iterable[str]
+    robots: Sequence[str]
     seed: int = 0
     weather: Weather = field(default_factory=Weather)
     links: Callable[[str, str], bool] | None = None
+    watch: Callable[[str], None] = lambda robot: None
 
     def __post_init__(self) -> None:
         self.now = 0.0
@@ -61,6 +65,7 @@ class MemoryNetwork:
         self._random = Random(self.seed)
         self._side: dict[str, int] = {}
         self._order = itertools.count()
+        self._next_wake: dict[str, float] = {}
         self._queue: list[tuple[float, int, str, Message | None]] = []
         self._born: Counter[str] = Counter()
         self._later: list[tuple[float, int, Callable[[], None]]] = []
@@ -72,6 +77,7 @@ class MemoryNetwork:
             node = self.nodes[robot] = self.make(robot, self._born[robot])
             self._send(robot, node.start(self.now))
             self._wake(robot)
+            self.watch(robot)
 
     def crash(self, robot: str) -> Negotiator:
         """A robot is gone, in the middle of whatever it did; returns what it was."""
@@ -112,8 +118,9 @@ class MemoryNetwork:
         elif self._next_wake.get(robot) == self.now:
             self._send(robot, node.tick(self.now))
             self._wake(robot)
-
-    _next_wake: dict[str, float] = field(default_factory=dict)
+        else:
+            return
+        self.watch(robot)
 
     def _wake(self, robot: str) -> None:
         self._next_wake[robot] = self.now + TICK_S
@@ -122,7 +129,7 @@ class MemoryNetwork:
     def _send(self, robot: str, out: list[Outgoing]) -> None:
         for outgoing in out:
             self.counts["sent"] += 1
-            for to in self.nodes if outgoing.to is None else (outgoing.to,):
+            for to in self.robots if outgoing.to is None else (outgoing.to,):
                 if to != robot and self._joined(robot, to):
                     self._post(to, outgoing.message)
 

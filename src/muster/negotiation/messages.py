@@ -23,16 +23,36 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """A task that a robot has done, or has begun for good: true for ever."""
+    """Something that is true for ever once it is said.
+
+    Parameters
+    ----------
+    task, robot
+        of which task, and who says so.
+    kind
+        "done": the robot has done it. "begun": the robot has begun a task that nobody may begin twice, or is going to.
+        "waived": it has not, and is never going to. "added": the task belongs to the mission from now on.
+        "cancelled": nobody need do it.
+    order
+        above that of all facts that the robot knew: what follows from another fact comes after it.
+    content
+        of "added": the task, as `tasks.content_of` writes it.
+    """
 
     task: str
     robot: str
-    done: bool
+    kind: str
+    order: int = 0
+    content: bytes = b""
+
+    @property
+    def done(self) -> bool:
+        return self.kind == "done"
 
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """What a robot says of itself at the beginning of an epoch; made once for each epoch and set of members.
+    """What a robot says of itself at the beginning of an epoch; made once for each epoch.
 
     Parameters
     ----------
@@ -44,6 +64,10 @@ class Declaration:
         all that it knows, of others too, in order.
     rounds
         how many rounds it has seen in all.
+    incarnations
+        of each member the last that was heard of it; -1: nothing.
+    knows
+        whether it remembers all that it ever said: False from a start without memory until others have told it.
     """
 
     robot: str
@@ -53,6 +77,8 @@ class Declaration:
     route: tuple[Claim, ...] = ()
     facts: tuple[Fact, ...] = ()
     rounds: int = 0
+    incarnations: tuple[int, ...] = ()
+    knows: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +141,8 @@ class Message:
         of whom it has heard.
     agreed
         members of which it knows that they are at the same stage, which has ended.
+    facts, known
+        facts that others may not know yet, and a digest of all that the sender knows; 0: none.
     """
 
     sender: str
@@ -128,8 +156,10 @@ class Message:
     lacks: tuple[str, ...] = ()
     pulses: tuple[Pulse, ...] = ()
     agreed: tuple[str, ...] = ()
+    facts: tuple[Fact, ...] = ()
+    known: int = 0
 
     @property
     def is_idle(self) -> bool:
-        """Whether it carries nothing but that the sender lives, and what it lacks."""
-        return not (self.declarations or self.bids or self.sales)
+        """Whether it is a beat: it tells nothing new, but that the sender lives, and what it lacks."""
+        return bool(self.pulses) and not self.facts

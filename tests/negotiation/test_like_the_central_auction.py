@@ -1,0 +1,63 @@
+"""Without faults robots come to the plan, the sales and the prices of the auction in one process."""
+
+from itertools import product
+
+import pytest
+
+import muster
+from muster.allocation.auction import AUCTION, Parameters
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.library import mission_names
+from muster.mission.errors import MissingExtraError
+from tests.negotiation.networks import agree, line_mission, network
+
+OTHERS = tuple(product(WINNERS, PLACEMENTS))
+
+
+def assert_like_central(problem, terms):
+    central = AUCTION.solve(problem, Stop(), params=terms)
+    net = network(problem, terms)
+    net.start()
+    agree(net)
+    for node in net.nodes.values():
+        assert [(s.task, s.robot, s.price) for s in node.epoch.sales] == [
+            (award.task, award.robot, award.price) for award in central.book.awards
+        ]
+    assert {r.robot: r.tasks for r in central.routes} == {
+        name: tuple(claim.task for claim in node.route) for name, node in net.nodes.items()
+    }
+
+
+@pytest.mark.parametrize(("number", "name"), list(enumerate(mission_names())))
+def test_on_every_shipped_mission(number, name):
+    try:
+        problem = Problem.compile(muster.load(name)).ready()
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+    for k, bid in enumerate(BIDS):
+        winner, placement = OTHERS[(number + k) % len(OTHERS)]  # over all missions every three meet
+        assert_like_central(problem, Parameters(bid=bid, winner=winner, placement=placement))
+
+
+@pytest.mark.parametrize(("bid", "winner", "placement"), list(product(BIDS, WINNERS, PLACEMENTS)))
+def test_under_all_terms(bid, winner, placement):
+    problem = Problem.compile(muster.load("24T-5R")).ready()
+    assert_like_central(problem, Parameters(bid=bid, winner=winner, placement=placement))
+
+
+def test_with_weights():
+    problem = Problem.compile(muster.load("31T-6R50")).ready()
+    assert_like_central(problem, Parameters(battery_weight=2.0, suitability_weight=1.0))
+
+
+@pytest.mark.parametrize("delay_s", [0.001, 0.05, 0.07])
+def test_one_bid_a_robot_a_round_and_no_repairs(delay_s):
+    net = network(line_mission(robots=5, tasks=12), delay_s=delay_s)
+    net.start()
+    agree(net)
+    for node in net.nodes.values():
+        assert len(node.epoch.sales) == 12
+        assert node.counts.news == 1 + 12 + 1  # a declaration, a bid a round, and in the last that it bids nothing
+        assert node.counts.repairs == 0
