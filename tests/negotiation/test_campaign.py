@@ -3,11 +3,11 @@
 from collections import Counter
 
 import pytest
+from tests.negotiation.campaign.trial import trial
 
 from muster.negotiation.negotiator import Negotiator
 from muster.studies.negotiation import replay
 from muster.studies.negotiation.scene import scene
-from tests.negotiation.campaign.trial import trial
 
 RUNS, CHUNK = 1000, 50
 

@@ -3,6 +3,7 @@
 from itertools import product
 
 import pytest
+from tests.negotiation.networks import agree, line_mission, network
 
 import muster
 from muster.allocation.auction import AUCTION, Parameters
@@ -11,7 +12,6 @@ from muster.allocation.stop import Stop
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.library import mission_names
 from muster.mission.errors import MissingExtraError
-from tests.negotiation.networks import agree, line_mission, network
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
 

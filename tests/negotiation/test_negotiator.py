@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import pytest
+from tests.negotiation.networks import agree, line_mission, network, owners, settled_team
 
 from muster import Task
 from muster.mission.errors import MissionError, ParameterError
 from muster.negotiation.happenings import Happening
 from muster.negotiation.messages import Message, Stage
 from muster.negotiation.negotiator import Negotiator
-from tests.negotiation.networks import agree, line_mission, network, owners, settled_team
 
 ALL = {str(k) for k in range(6)}
 

@@ -6,8 +6,9 @@ import time
 from collections import Counter
 from multiprocessing import get_context
 
-from muster.studies.negotiation import replay
 from tests.negotiation.campaign.trial import trial
+
+from muster.studies.negotiation import replay
 
 
 def main():
