@@ -1,7 +1,6 @@
 """`muster auction`: on this machine, one robot of a team, in a network in memory; and all that may be wrong."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -298,7 +297,7 @@ def test_what_does_not_go_together_is_told(muster, three, options, message):
 
 
 def test_a_key_is_not_overwritten_and_is_its_owners_alone(muster, three):
-    assert os.stat("key").st_mode & 0o777 == 0o600
+    assert Path("key").stat().st_mode & 0o777 == 0o600
     code, _, err = muster("auction", "--new-key", "key")
     assert (code, err.startswith("key: ")) == (2, True)
 
