@@ -82,8 +82,9 @@ def choice(*words: str) -> Form:
     numbers = {word: k for k, word in enumerate(words)}
 
     def unpack(value: Any) -> str:
-        if count(value) < len(words):
-            return words[value]
+        number = count(value)
+        if number < len(words):
+            return words[number]
         raise Garbled("not one of the words")
 
     return Form(numbers.__getitem__, unpack)

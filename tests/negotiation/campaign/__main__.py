@@ -1,4 +1,4 @@
-"""Run the campaign: `python -m tests.negotiation.campaign [RUNS] [--first SEED] [--processes N]`, or one seed in full."""
+"""Run the campaign: `python -m tests.negotiation.campaign [RUNS] [--first SEED] [--processes N]`, or one seed."""
 
 import argparse
 import sys
