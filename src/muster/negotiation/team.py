@@ -67,7 +67,11 @@ class Team:
         for end in ends:
             end.close()
         self._pipes: dict[str, Connection] = {r: pipe for r, (pipe, _) in zip(self.robots, pairs, strict=True)}
-        self._nursery_pipe.send(_light(self._order))
+        try:
+            self._nursery_pipe.send(_light(self._order))
+        except BaseException:
+            self.__exit__(*sys.exc_info())
+            raise
         return self
 
     def __exit__(
