@@ -1,7 +1,6 @@
 """`muster auction`: on this machine, one robot of a team, in a network in memory; and all that may be wrong."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -178,7 +177,7 @@ def test_without_the_third_the_others_go_on_when_they_have_waited(three, ports):
 def test_with_its_memory_a_robot_that_starts_again_has_what_it_had(three, ports):
     first = [robot(name, ports, "--linger", 30, "--memory", f"{name}.memory", "--wait", 50) for name in "abc"]
     guard_s = time.monotonic() + GUARD_S
-    while not all(Path(f"{name}.memory").exists() and remembered(name)["claims"] for name in "abc"):
+    while not all(Path(f"{name}.memory").exists() and owned(remembered(name)) for name in "abc"):
         assert time.monotonic() < guard_s
         time.sleep(0.05)
     before = remembered("b")
@@ -189,7 +188,7 @@ def test_with_its_memory_a_robot_that_starts_again_has_what_it_had(three, ports)
     assert (code, "all 3 agree" in err) == (0, True)
     after = remembered("b")
     assert after["incarnation"] > before["incarnation"]
-    assert [claim[0] for claim in after["claims"]] == [claim[0] for claim in before["claims"]]
+    assert owned(after) == owned(before)
     assert json.loads(out)["tasks_completed"] == 3
     for process in (first[0], first[2]):
         process.send_signal(signal.SIGINT)
@@ -198,6 +197,39 @@ def test_with_its_memory_a_robot_that_starts_again_has_what_it_had(three, ports)
 
 def remembered(name):
     return json.loads(Path(f"{name}.memory").read_text())
+
+
+def owned(kept):
+    return [claim["task"] for claim in kept["memory"]["claims"]]
+
+
+def test_of_two_processes_of_one_robot_the_first_ends_and_says_why(three, ports):
+    first = robot("a", ports, "--wait", 50)
+    second = robot("b", ports, "--wait", 6, "--linger", 1)
+    for line in second.stderr:
+        if line == "a is there\n":
+            break
+    elsewhere = {"a": ports["c"], "b": ports["b"]}  # not the port that the first has
+    third = robot("a", elsewhere, "--wait", 6, "--linger", 1)
+    [(code, out, err)] = ended(first)
+    assert (code, out) == (2, "")
+    assert err.endswith("a: another process has started under this name; expected one for each robot, this one ends\n")
+    assert [code for code, *_ in ended(second, third)] == [0, 0]
+
+
+def test_a_replay_of_the_campaign_needs_no_mission(muster):
+    runs = [muster("auction", "--simulate-network", 5) for _ in range(2)]
+    assert runs[0] == runs[1]
+    code, out, err = runs[0]
+    assert (code, err) == (0, "")
+    assert out.startswith("seed 5: ")
+    assert out.endswith("nothing failed\n")
+
+
+def test_without_either_something_is_missing(muster):
+    code, out, err = muster("auction")
+    assert (code, out) == (2, "")
+    assert err.endswith("Error: Missing argument 'MISSION'.\n")
 
 
 def test_another_key_is_told(muster, three, ports):
@@ -265,7 +297,7 @@ def test_what_does_not_go_together_is_told(muster, three, options, message):
 
 
 def test_a_key_is_not_overwritten_and_is_its_owners_alone(muster, three):
-    assert os.stat("key").st_mode & 0o777 == 0o600
+    assert Path("key").stat().st_mode & 0o777 == 0o600
     code, _, err = muster("auction", "--new-key", "key")
     assert (code, err.startswith("key: ")) == (2, True)
 
@@ -274,7 +306,7 @@ def test_a_memory_of_something_else_is_refused(muster, three):
     options = ("--robot", "a", "--key-file", "key", "--connect", "127.0.0.1:9", "--memory", "memory")
     Path("memory").write_text("{}", encoding="utf-8")
     assert muster("auction", three, *options)[2] == "memory: other content; expected what --memory has written\n"
-    other = {"schema": "muster-memory/1", "auction": "00", "robot": "a", "incarnation": 1, "claims": []}
+    other = {"schema": "muster-memory/1", "auction": "00", "robot": "a", "incarnation": 1, "memory": None}
     Path("memory").write_text(json.dumps(other), encoding="utf-8")
     assert "memory: auction: of another mission or other terms; expected " in muster("auction", three, *options)[2]
     Path("memory").write_text(json.dumps(other | {"robot": "b"}), encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from hypothesis import strategies as st
 
+from muster.negotiation.codec import FACTS
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
 
 ROBOTS = ("r_0", "r_1", "r_2", "scout")
@@ -18,9 +19,18 @@ def several(values):
 
 
 claims = st.builds(Claim, tasks, prices, counts, st.booleans())
-facts = st.builds(Fact, tasks, robots, st.booleans())
+facts = st.builds(Fact, tasks, robots, st.sampled_from(FACTS), counts, st.binary(max_size=8))
 declarations = st.builds(
-    Declaration, robots, counts, counts, several(robots), several(claims), several(facts), rounds=counts
+    Declaration,
+    robots,
+    counts,
+    counts,
+    several(robots),
+    several(claims),
+    several(facts),
+    rounds=counts,
+    incarnations=several(st.just(-1) | counts),
+    knows=st.booleans(),
 )
 bids = st.builds(RoundBids, robots, counts, several(st.tuples(tasks, prices)))
 stages = st.builds(Stage, counts, st.binary(max_size=8), counts, st.booleans())
@@ -37,4 +47,6 @@ messages = st.builds(
     lacks=several(robots),
     pulses=several(st.builds(Pulse, robots, counts, counts)),
     agreed=several(robots),
+    facts=several(facts),
+    known=counts,
 )

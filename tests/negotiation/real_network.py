@@ -1,8 +1,8 @@
 """A network in user space: network namespaces whose Ethernet frames all go through this program, which may lose them.
 
-Loss, delay, jitter and cuts on every kernel, without netem. Needs root, iproute2 and /dev/net/tun. Run as a program, it is
-the switch: it makes the namespaces, does what lines of JSON on its standard input say, and removes the namespaces when
-the input ends, for whatever reason.
+Loss, delay, jitter and cuts on every kernel, without netem. Needs root, iproute2 and /dev/net/tun. Run as a program, it
+is the switch: it makes the namespaces, does what lines of JSON on its standard input say, and removes the namespaces
+when the input ends, for whatever reason.
 """
 
 import fcntl
@@ -180,7 +180,8 @@ def main():
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the starter, whose end this notices
     try:
         cables = [_plugged_in(owner, host) for host in range(1, hosts + 1)]
-        print("ready", flush=True)
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
         _Switch(cables, seed).run()
     finally:
         _remove(owner, hosts)

@@ -106,7 +106,7 @@ def test_what_is_no_message_is_counted_and_dropped(alone):
     assert node.status().received == len(said())
 
 
-def test_a_robot_of_the_same_name_is_a_rival(alone):
+def test_a_later_robot_of_the_same_name_silences_this_one_which_then_waits(alone):
     _, transport, node = alone
     node.start()
     other = TEAM.negotiator(FIRST)
@@ -114,6 +114,21 @@ def test_a_robot_of_the_same_name_is_a_rival(alone):
     transport.coming = [(0.0, TEAM.codec.encode(outgoing.message)) for outgoing in other.start(0.0)]
     node.step(0.1)
     assert node.status().rivals == (5,)
+    assert node.status().superseded
+    before, transport.waits = len(transport.sent), []
+    node.run(lambda _: False, 5.0)
+    assert len(transport.sent) == before
+    assert len(transport.waits) <= 22
+
+
+def test_what_the_robot_does_is_told_at_the_next_step(alone):
+    _, transport, node = alone
+    node.start()
+    assert node.run(lambda node: node.negotiator.route and node.negotiator.settled, 60.0)
+    before = len(transport.sent)
+    node.negotiator.finish(node.negotiator.route[0].task)
+    node.step(0.0)
+    assert len(transport.sent) == before + 1
 
 
 def test_the_transport_is_closed_when_something_goes_wrong(alone):

@@ -58,6 +58,14 @@ def test_a_part_of_a_message_is_foreign():
     assert receiver.counts == {"foreign": len(closed)}
 
 
+def test_strangers_leave_nothing_behind():
+    _, receiver = pair()
+    for k in range(50):
+        receiver.open(bytes((1, *receiver._tag)) + k.to_bytes(40, "big"))
+    assert receiver.counts == {"foreign": 50}
+    assert not receiver._peers
+
+
 def test_another_key_is_foreign():
     sender, receiver = pair(key=new_key())
     assert receiver.open(sender.close(b"x")) is None

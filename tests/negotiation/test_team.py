@@ -104,21 +104,27 @@ def test_without_faults_it_is_the_plan_of_the_auction_in_one_process():
         assert plan_of_view(problem, Parameters(), view).routes == central.routes
 
 
+def agreement_of(team, when_begun=lambda team: None):
+    with team:
+        until(team, lambda: team.began_s)
+        when_begun(team)
+        return until(team, team.agreement)
+
+
 def test_a_robot_that_cannot_take_part_is_named():
-    with (
-        pytest.raises(MusterError, match="^r_[01]: method: dance; expected auction"),
-        team_of(problem_of(2, 2), method="dance") as team,
-    ):
-        until(team, team.agreement)
+    team = team_of(problem_of(2, 2), method="dance")
+    with pytest.raises(MusterError, match=r"^r_[01]: method: dance; expected auction"):
+        agreement_of(team)
 
 
 def test_when_all_are_killed_there_is_nothing_to_wait_for():
-    problem = problem_of(2, 2)
-    with pytest.raises(MusterError, match="no robot is left: r_1 killed by SIGKILL"), team_of(problem) as team:
-        until(team, lambda: team.began_s)
+    def kill_all(team):
         for pid in team.pids.values():
             os.kill(pid, signal.SIGKILL)
-        until(team, team.agreement)
+
+    team = team_of(problem_of(2, 2))
+    with pytest.raises(MusterError, match="no robot is left: r_1 killed by SIGKILL"):
+        agreement_of(team, kill_all)
 
 
 STARTER = """

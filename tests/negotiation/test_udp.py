@@ -141,9 +141,24 @@ def group():
 def multicast(robots):
     where = group()
     try:
-        return {robot: UdpTransport.multicast(where, interface=HERE) for robot in robots}
+        return {robot: UdpTransport.multicast(where, robot=robot, interface=HERE) for robot in robots}
     except NetworkError as error:
         pytest.skip(f"no multicast here: {error}")
+
+
+def test_in_a_group_each_takes_what_is_for_all_and_for_itself():
+    made = multicast("abc")
+    for transport in made.values():
+        transport.send(b"all")
+    made["a"].send(b"one", "b")
+    made["a"].send(b"", "c")
+    came = {robot: [] for robot in made}
+    for robot, expected in (("a", 3), ("b", 4), ("c", 4)):
+        while len(came[robot]) < expected and (more := made[robot].receive(10)):
+            came[robot] += more
+    assert came == {"a": [b"all"] * 3, "b": [b"all"] * 3 + [b"one"], "c": [b"all"] * 3 + [b""]}
+    for transport in made.values():
+        transport.close()
 
 
 def test_two_robots_agree():

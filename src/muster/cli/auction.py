@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.auction_options import result_options, robot_options, simulation_options, terms_options
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
     format_option,
     ignore_option,
     load_mission,
-    mission_argument,
     objective_option,
+    optional_mission_argument,
     quiet_option,
     require_complete_option,
     settings_of,
@@ -46,7 +46,7 @@ class Agreement:
 
 
 @click.command()
-@mission_argument
+@optional_mission_argument
 @click.option("--method", default="auction", show_default=True, metavar="NAME", help="How robots agree.")
 @click.option(
     "--transport", type=click.Choice(["udp", "zenoh"]), default="udp", show_default=True, help="What carries messages."
@@ -73,7 +73,7 @@ class Agreement:
 @result_options
 @quiet_option
 def command(
-    mission: str,
+    mission: str | None,
     robots: Path | None,
     suitability: Path | None,
     salesmen: int | None,
@@ -98,10 +98,14 @@ def command(
 
     Without --robot the whole team runs on this machine. With --robot this is one robot of a team that runs elsewhere:
     the same MISSION and key, one process on each robot's computer.
+
+    --simulate-network SEED without a MISSION replays that run of `make campaign-auction`.
     """
     from muster.allocation.problem import Problem
     from muster.negotiation.methods import method_named
 
+    if mission is None:
+        return _replayed(others["network_seed"])
     _check_together(others)
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
     require_csv(book)
@@ -122,6 +126,18 @@ def command(
     if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _replayed(seed: int | None) -> int:
+    """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
+    if seed is None:
+        raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
+    from muster.studies.negotiation.trial import replay
+
+    report = replay(seed)
+    for line in report.lines():
+        click.echo(line)
+    return REJECTED if report.failures else DONE
 
 
 def _agree(

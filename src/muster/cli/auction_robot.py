@@ -17,7 +17,7 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.codec import Codec
 from muster.negotiation.keys import read_key
-from muster.negotiation.memory_file import Memory, remembered
+from muster.negotiation.memory_file import Kept, Remembering, kept_in
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
@@ -59,28 +59,49 @@ def agree_with_others(
     if options["key_file"] is None:
         raise ParameterError("--key-file missing; expected with --robot (`muster auction --new-key FILE` makes one)")
     key, digest = read_key(options["key_file"]), mission_digest(problem, terms)
-    memory = Memory(auction=digest.hex(), robot=robot) if file is None else remembered(file, digest.hex(), robot)
-    memory = replace(memory, incarnation=new_incarnation(memory.incarnation))
-    if file is not None:
-        memory.save(file)  # before the others hear of this incarnation
-    negotiator = method.negotiator(problem, terms, robot, incarnation=memory.incarnation, remembered=memory.claims)
+    kept = Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
+    kept = replace(kept, incarnation=new_incarnation(kept.incarnation))
+    forgot = file is None  # for all it knows, it may have taken part before
+    negotiator = method.negotiator(
+        problem, terms, robot, incarnation=kept.incarnation, remembered=kept.memory, forgot=forgot
+    )
+
+    def say(line: str) -> None:
+        if not quiet:
+            click.echo(line, err=True)
+
+    if forgot and negotiator.rules.once:
+        say(f"{len(negotiator.rules.once)} tasks are for at most one robot: without --memory they may find none")
+    transport_of = _transport(problem, transport, options)
+    carrier = transport_of if file is None else Remembering(transport_of, _keeper(file, kept, negotiator))
     codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
-    seal = Seal(key, digest, robot, memory.incarnation)
+    seal = Seal(key, digest, robot, kept.incarnation)
     staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
-    with Node(negotiator, _transport(problem, transport, options), codec, seal) as node:
-        watch = _Watch(
-            negotiator, memory, file, (lambda line: None) if quiet else lambda line: click.echo(line, err=True)
-        )
+    with Node(negotiator, carrier, codec, seal) as node:
+        watch = _Watch(negotiator, say)
         view, took_s = take_part(node, negotiator, staying, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
 
 
-class _Watch:
-    """Says who is there, and writes down what the robot owns."""
+def _keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
+    """Keeps what the robot knows in a file, when that has changed."""
 
-    def __init__(self, negotiator: Negotiator, memory: Memory, file: Path | None, say: Callable[[str], None]) -> None:
-        self._negotiator, self._memory, self._file, self._say = negotiator, memory, file, say
+    def keep() -> None:
+        nonlocal kept
+        now = replace(kept, memory=negotiator.memory)
+        if now != kept:
+            kept = now
+            kept.save(file)
+
+    return keep
+
+
+class _Watch:
+    """Says who is there."""
+
+    def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
+        self._negotiator, self._say = negotiator, say
         self._there: set[str] = set()
         self._settled = False
 
@@ -99,10 +120,6 @@ class _Watch:
             )
             self._say(f"{who}, in round {status.round} of epoch {status.epoch}")
         self._settled = status.settled
-        route = self._negotiator.route
-        if self._file is not None and route != self._memory.claims:
-            self._memory = replace(self._memory, claims=route)
-            self._memory.save(self._file)
 
     def say_how_it_ended(self, status: NodeStatus, took_s: float) -> None:
         kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import Counter
 
@@ -50,7 +51,7 @@ def agree_here(
             for robot in team.gone.keys() - told:
                 told.add(robot)
                 if not quiet:
-                    click.echo(f"{robot}: {team.gone[robot]}; the others go on", err=True)
+                    sys.stderr.write(f"{robot}: {team.gone[robot]}; the others go on\n")  # above the table
             if time.monotonic() > until_s:
                 raise MusterError(f"no agreement within {limit_s:g} s: {_why_not(team)}")
             views = team.agreement()

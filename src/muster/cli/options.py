@@ -33,9 +33,18 @@ _FILE = click.Path(path_type=Path)
 
 
 def mission_argument(verb: Verb) -> Verb:
-    """MISSION, and the flags that some forms of it need; the verb gets them as `mission_flags`."""
+    """MISSION, and the flags that some forms of it need."""
+    return _with_mission(verb, required=True)
+
+
+def optional_mission_argument(verb: Verb) -> Verb:
+    """MISSION, which the verb may do without: it gets None then."""
+    return _with_mission(verb, required=False)
+
+
+def _with_mission(verb: Verb, *, required: bool) -> Verb:
     options = (
-        click.argument("mission"),
+        click.argument("mission", required=required),
         click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
         click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task-list CSV."),
         click.option("--salesmen", type=click.IntRange(min=1), metavar="M", help="Robots of a TSPLIB mission."),

@@ -1,7 +1,8 @@
 """The book of an auction without a centre, from one robot's view of it.
 
 Robots publish what the winner rule needs, no more; but what each would bid follows from the routes that all know. So
-the auctions are held again, and every bid is told as the book of the auction in one process tells it.
+the auctions are held again, and every bid is told as the book of the auction in one process tells it. (A bid that a
+robot did not make, since it had given the task back, is told too: others cannot know.)
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ from muster.allocation.terms import Terms
 from muster.allocation.winners import Sale
 from muster.mission.book import Award, Book, TakeBid
 from muster.negotiation.messages import Claim
+from muster.negotiation.valuation import AuctionValuer
 from muster.negotiation.view import Held, View
 
-OnSale = Callable[[Auctioneer, Sale, Sequence[int]], None]
-"""Is told of a sale before the task has its owner, and of the robots that could bid."""
+OnSale = Callable[[Problem, Auctioneer, Sale, Sequence[int]], None]
+"""Is told of a sale before the task has its owner: of which problem, and which robots could bid."""
 
 
 def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
@@ -33,7 +35,7 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     auctions = view.auctions
 
     def recite(take: TakeBid) -> None:
-        def tell(auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+        def tell(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
             for bid in bids_of_round(problem, auctioneer, sale, members):
                 take(bid)
 
@@ -44,18 +46,23 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     return Book(rounds=view.rounds, messages=None if whole else view.sent, awards=awards, recite=recite)
 
 
+class _Asker(AuctionValuer):
+    """A valuer that asks all robots for their bids, and tells them round by round."""
+
+    def hold_again(self, held: Held, on_sale: OnSale) -> None:
+        self.begin(held.opening)
+        members = [self._robots[robot] for robot in held.members]
+        for number, sold in enumerate(held.sales, held.rounds + 1):
+            self._auctioneer.round = number
+            sale = Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price)
+            on_sale(self._problem, self._auctioneer, sale, members)
+            self.award(sold)
+
+
 def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
-    members: list[int] = []
-    auctioneer = Auctioneer(problem, terms, on_round=lambda asker, sale: on_sale(asker, sale, members))
+    asker = _Asker(problem, terms, problem.robots[0].id)
     for held in auctions:
-        members = [problem.robot_index[robot] for robot in held.members]
-        routes: list[list[int]] = [[] for _ in problem.robots]
-        for robot, tasks in held.routes.items():
-            routes[problem.robot_index[robot]] = [problem.task_index[task] for task in tasks]
-        auctioneer.restore(routes, {})
-        auctioneer.round = held.rounds
-        for sold in held.sales:
-            auctioneer.assign(Sale(problem.robot_index[sold.robot], problem.task_index[sold.task], sold.price))
+        asker.hold_again(held, on_sale)
 
 
 def _awards(
@@ -64,7 +71,7 @@ def _awards(
     """How each task came to the robot that owns it, in the order of rounds."""
     seen: dict[tuple[str, str, int], Award] = {}
 
-    def note(auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+    def note(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
         bids = auctioneer.bids_for(sale.task)
         bidders = [i for i in members if np.isfinite(bids[i])]
         named = [(problem.robots[i].id, float(bids[i])) for i in sorted(bidders, key=lambda i: bids[i])]
@@ -77,4 +84,4 @@ def _awards(
         for robot, owned in claims.items()
         for c in owned
     ]
-    return sorted(awards, key=lambda award: (award.round, problem.task_index[award.task]))
+    return sorted(awards, key=lambda award: award.round)

@@ -16,7 +16,21 @@ from dataclasses import MISSING, fields, replace
 from typing import Any
 
 from muster.negotiation.extra import require_net
-from muster.negotiation.forms import COUNT, DATA, FLAG, NUMBER, Form, Garbled, array, count, many, name_of, record, rows
+from muster.negotiation.forms import (
+    COUNT,
+    DATA,
+    FLAG,
+    NUMBER,
+    Form,
+    Garbled,
+    array,
+    choice,
+    count,
+    many,
+    name_of,
+    record,
+    rows,
+)
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
 
 PROTOCOL = 1
@@ -27,10 +41,14 @@ class OtherVersion(Garbled):
     """A message of another version of the protocol."""
 
 
+FACTS = ("done", "begun", "waived", "added", "cancelled")
+"""Kinds of facts."""
+
+
 def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
     """The table: the form of each field of a message, in the order of `Message`."""
     claim = record(Claim, task=task, price=NUMBER, round=COUNT, begun=FLAG)
-    fact = record(Fact, task=task, robot=robot, done=FLAG)
+    fact = record(Fact, task=task, robot=robot, kind=choice(*FACTS), order=COUNT, content=DATA)
     sold = record(Sold, robot=robot, task=task, price=NUMBER)
     declaration = record(
         Declaration,
@@ -39,8 +57,10 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         epoch=COUNT,
         members=many(robot),
         route=rows(claim, 4),
-        facts=rows(fact, 3),
+        facts=rows(fact, 5),
         rounds=COUNT,
+        incarnations=_incarnations(),
+        knows=FLAG,
     )
     return {
         "sender": robot,
@@ -54,10 +74,12 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "lacks": many(robot),
         "pulses": _pulses(robot),
         "agreed": many(robot),
+        "facts": rows(fact, 5),
+        "known": COUNT,
     }
 
 
-PARTED = ("declarations", "bids", "sales", "pulses")
+PARTED = ("declarations", "bids", "sales", "pulses", "facts")
 """Fields of which a message may say one part, and another message the rest."""
 
 
@@ -66,6 +88,22 @@ def _pair(first: Form, second: Form) -> Form:
         lambda pair: (first.pack(pair[0]), second.pack(pair[1])),
         lambda pair: (first.unpack(pair[0]), second.unpack(pair[1])),
     )
+
+
+def _incarnations() -> Form:
+    """Incarnations, as in pulses; nil for none (-1)."""
+
+    def pack(incarnations: Sequence[int]) -> list[int | None]:
+        least = min((k for k in incarnations if k >= 0), default=0)
+        return [least, *(k - least if k >= 0 else None for k in incarnations)]
+
+    def unpack(plain: Any) -> tuple[int, ...]:
+        if not array(plain):
+            raise Garbled("not incarnations")
+        least = count(plain[0])
+        return tuple([-1 if k is None else count(least + count(k)) for k in plain[1:]])
+
+    return Form(pack, unpack)
 
 
 def _pulses(robot: Form) -> Form:

@@ -53,18 +53,12 @@ def _data(value: Any) -> bytes:
     raise Garbled("not bytes")
 
 
-def _text(value: Any) -> str:
-    if type(value) is str:
-        return value
-    raise Garbled("not a text")
-
-
 def _itself(value: Any) -> Any:
     return value
 
 
 COUNT, FLAG = Form(_itself, count), Form(_itself, _flag)
-DATA, TEXT = Form(_itself, _data), Form(_itself, _text)
+DATA = Form(_itself, _data)
 NUMBER = Form(float, _number)
 """A float, bit by bit; any but NaN, which is not equal to itself."""
 
@@ -81,6 +75,19 @@ def name_of(ids: Sequence[str]) -> Form:
         raise Garbled("not an id")
 
     return Form(lambda name: numbers.get(name, name), unpack)
+
+
+def choice(*words: str) -> Form:
+    """One of a few words: its number among these."""
+    numbers = {word: k for k, word in enumerate(words)}
+
+    def unpack(value: Any) -> str:
+        number = count(value)
+        if number < len(words):
+            return words[number]
+        raise Garbled("not one of the words")
+
+    return Form(numbers.__getitem__, unpack)
 
 
 def many(form: Form) -> Form:

@@ -11,8 +11,9 @@ from typing import Self
 from muster.mission.clock import Clock, SystemClock
 from muster.negotiation.codec import Codec, OtherVersion
 from muster.negotiation.forms import Garbled
+from muster.negotiation.happenings import Outgoing
 from muster.negotiation.messages import RoundBids, Sold
-from muster.negotiation.negotiator import Negotiator, Outgoing
+from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.seal import OVERHEAD, Seal
 from muster.negotiation.transport import Transport
 
@@ -42,8 +43,8 @@ class NodeStatus:
         what was not taken in, by why: as `Seal.counts`, and `garbled`.
     lost_here
         as `Transport.lost_here`.
-    rivals
-        incarnations of other processes that run under this robot's name.
+    rivals, superseded
+        incarnations of other processes that run under this robot's name; whether one is later, so that this is silent.
     """
 
     robot: str
@@ -60,6 +61,7 @@ class NodeStatus:
     refused: Counter[str]
     lost_here: int
     rivals: tuple[int, ...]
+    superseded: bool
 
 
 class Node:
@@ -104,11 +106,11 @@ class Node:
         What came while the robot was busy counts before its absence does: nobody is taken for silent whose messages
         wait in the queue.
         """
-        due_in_s = self.negotiator.due_s - self._clock.now()
-        for data in self.transport.receive(max(0.0, min(wait_s, due_in_s))):
+        if not self.negotiator.superseded:  # or it is never due again
+            wait_s = max(0.0, min(wait_s, self.negotiator.due_s - self._clock.now()))
+        for data in self.transport.receive(wait_s):
             self._take_in(data)
-        if self._clock.now() >= self.negotiator.due_s:
-            self._send(self.negotiator.tick(self._clock.now()))
+        self._send(self.negotiator.tick(self._clock.now()))
 
     def run(self, until: Callable[[Node], bool], at_most_s: float | None = None) -> bool:
         """Step until something is true; whether it came true in time."""
@@ -140,6 +142,7 @@ class Node:
             refused=self._garbled + (Counter() if self._seal is None else self._seal.counts),
             lost_here=self.transport.lost_here,
             rivals=tuple(sorted(negotiator.rivals)),
+            superseded=negotiator.superseded,
         )
 
     def _take_in(self, data: bytes) -> None:

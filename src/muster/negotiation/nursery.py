@@ -40,7 +40,7 @@ def main() -> None:
     starter, *pipes = (Connection(int(descriptor)) for descriptor in sys.argv[1:])
     try:
         order: Order = starter.recv()
-    except EOFError:
+    except (EOFError, OSError):  # the starter has ended meanwhile
         return
     problem = order.problem.ready()
     robots = [robot.id for robot in problem.mission.robots]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from muster.allocation.allocator import Outcome, finished_plan
@@ -13,9 +12,10 @@ from muster.allocation.terms import Terms
 from muster.mission.plan import Plan
 from muster.negotiation.account import book_of_view
 from muster.negotiation.base import Rules
+from muster.negotiation.happenings import Memory
 from muster.negotiation.members import Patience
-from muster.negotiation.messages import Claim
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.tasks import with_tasks
 from muster.negotiation.valuation import AuctionValuer
 from muster.negotiation.view import View, view_of
 
@@ -24,10 +24,11 @@ def rules_of(problem: Problem) -> Rules:
     """What the robots' agreement must hold."""
     linked = problem.holds("prerequisites")
     return Rules(
-        robots={robot.id: i for i, robot in enumerate(problem.robots)},
-        tasks={task.id: j for j, task in enumerate(problem.tasks)},
+        robots=problem.robot_index,
+        tasks=problem.task_index,
         prerequisites={task.id: task.prerequisites if linked else () for task in problem.tasks},
         once=frozenset(task.id for task in problem.tasks if task.across_partition == "at-most-once"),
+        linked=linked,
     )
 
 
@@ -38,16 +39,18 @@ def negotiator_of(
     *,
     incarnation: int,
     patience: Patience = Patience(),  # noqa: B008 - frozen
-    remembered: Sequence[Claim] = (),
+    remembered: Memory | None = None,
+    forgot: bool = False,
 ) -> Negotiator:
-    """A robot that takes part; `incarnation` is above all that it had before, `remembered` what it owned."""
+    """A robot that takes part; `incarnation` is above all that it had before, `remembered` and `forgot` as there."""
     return Negotiator(
         robot=robot,
         rules=rules_of(problem),
         valuer=AuctionValuer(problem, terms, robot),
         patience=patience,
         incarnation=incarnation,
-        remembered=tuple(remembered),
+        remembered=remembered,
+        forgot=forgot,
     )
 
 
@@ -63,10 +66,11 @@ def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
 
 def plan_of_view(problem: Problem, terms: Terms, view: View, elapsed_s: float | None = None) -> Plan:
     """The plan in a view; `elapsed_s` is how long the robots took to agree, seconds."""
-    stop = Stop()
+    book = book_of_view(problem, terms, view)
+    stop, problem = Stop(), with_tasks(problem, view.added)
     routes = [[problem.task_index[task] for task in view.routes.get(robot.id, ())] for robot in problem.robots]
     stop.improved(*problem.value(routes))
-    outcome = Outcome(routes, book_of_view(problem, terms, view))
+    outcome = Outcome(routes, book)
     plan = finished_plan(problem, stop, outcome, allocator=AUCTION.name, seed=0)
     if elapsed_s is None:
         return plan

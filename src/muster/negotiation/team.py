@@ -67,7 +67,11 @@ class Team:
         for end in ends:
             end.close()
         self._pipes: dict[str, Connection] = {r: pipe for r, (pipe, _) in zip(self.robots, pairs, strict=True)}
-        self._nursery_pipe.send(_light(self._order))
+        try:
+            self._nursery_pipe.send(_light(self._order))
+        except BaseException:
+            self.__exit__(*sys.exc_info())
+            raise
         return self
 
     def __exit__(
@@ -175,10 +179,16 @@ def patience_here(robots: int) -> Patience:
     """The patience of robots that share this machine: the more there are, the longer an answer takes.
 
     Robots that ask again too soon make each other slower still: 50 of them on two cores sent seven times what they had
-    to, and took twice as long.
+    to, and took twice as long; and one that waits long for its turn on a core is not lost.
     """
     usual = Patience()
-    return replace(usual, beat_s=max(usual.beat_s, 0.02 * robots), retry_s=max(usual.retry_s, 0.02 * robots))
+    return Patience(
+        beat_s=max(usual.beat_s, 0.02 * robots),
+        retry_s=max(usual.retry_s, 0.02 * robots),
+        suspect_s=max(usual.suspect_s, 0.16 * robots),
+        bid_s=max(usual.bid_s, 0.24 * robots),
+        mute_s=max(usual.mute_s, 0.2 * robots),
+    )
 
 
 def _light(order: Order) -> Order:

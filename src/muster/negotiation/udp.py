@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from os import fstat
 from pathlib import Path
 from typing import Any, Self
+from zlib import crc32
 
 from muster.mission.errors import NetworkError, ParameterError
 
@@ -27,6 +28,9 @@ ROOM = 1200
 _LARGEST = 65_507
 _BUFFER = 4 * 1024 * 1024  # for bursts while the robot thinks; the machine may grant less
 _AT_ONCE = 4096
+
+_TO_ALL = bytes(4)
+_FOR = len(_TO_ALL)  # bytes at the front of what goes to a group: for whom it is
 
 _Sockaddr = tuple[Any, ...]
 
@@ -64,13 +68,23 @@ class UdpTransport:
             raise _cannot_listen(bind, error) from None
 
     @classmethod
-    def multicast(cls, group: Address = GROUP, *, interface: str = "0.0.0.0", hops: int = 1, room: int = ROOM) -> Self:  # noqa: S104
+    def multicast(
+        cls,
+        group: Address = GROUP,
+        *,
+        robot: str | None = None,
+        interface: str = "0.0.0.0",  # noqa: S104
+        hops: int = 1,
+        room: int = ROOM,
+    ) -> Self:
         """Datagrams that all who have joined an IPv4 group receive, other processes of this machine too.
 
         Parameters
         ----------
         group
             224.0.0.0 to 239.255.255.255, and the port.
+        robot
+            who listens: what is for another robot is put aside unread, and need not be opened; None: all is taken.
         interface
             address of the network that is used; 0.0.0.0: as the machine's routes say.
         hops
@@ -90,7 +104,8 @@ class UdpTransport:
         if not 224 <= int(address[0].split(".")[0]) <= 239:
             raise ParameterError(f"group: {group[0]}; expected 224.0.0.0 to 239.255.255.255")
         transport = cls.__new__(cls)
-        transport._open(socket.AF_INET, room, {"": address})
+        transport._open(socket.AF_INET, room - _FOR, {"": address})
+        transport._for_whom = {_TO_ALL, _addressee(robot)} if robot is not None else None
         try:
             transport._join(address, network[0], hops)
         except OSError as error:
@@ -107,11 +122,14 @@ class UdpTransport:
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+        self._in_group = False
+        self._for_whom: set[bytes] | None = None
         self._inode = fstat(self._socket.fileno()).st_ino
         self._arrivals = select.poll()
         self._arrivals.register(self._socket, select.POLLIN)
 
     def _join(self, group: _Sockaddr, interface: str, hops: int) -> None:
+        self._in_group = True
         mine, options = self._socket, socket.IPPROTO_IP
         mine.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         mine.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
@@ -145,6 +163,8 @@ class UdpTransport:
         """
         if len(data) > _LARGEST:
             raise NetworkError(f"a message of {len(data)} bytes; expected at most {_LARGEST}, all that UDP takes")
+        if self._in_group:
+            data = (_TO_ALL if to is None else _addressee(to)) + data
         peer = self._peers.get(to) if to is not None else None
         for address in self._peers.values() if peer is None else (peer,):
             try:
@@ -164,10 +184,16 @@ class UdpTransport:
                     came.append(self._socket.recv(_LARGEST))
                 except OSError:  # nothing more
                     break
+        if self._in_group:
+            return [data[_FOR:] for data in came if self._for_whom is None or data[:_FOR] in self._for_whom]
         return came
 
     def close(self) -> None:
         self._socket.close()
+
+
+def _addressee(robot: str) -> bytes:
+    return crc32(robot.encode()).to_bytes(_FOR, "big")
 
 
 def _resolved(address: Address, family: int) -> tuple[int, _Sockaddr]:

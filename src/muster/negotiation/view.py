@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from muster.negotiation.base import Base, Rules
+from muster.negotiation.base import Base
 from muster.negotiation.epoch import Epoch
+from muster.negotiation.epoch import _opening as opening_of
 from muster.negotiation.messages import Claim, Sold, Stage
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.valuation import Opening
 
 Routes = Mapping[str, tuple[str, ...]]
 """By robot its tasks, in the order in which it does them."""
@@ -24,15 +26,15 @@ class Held:
         who could bid, in tie order.
     rounds
         seen in all before it.
-    routes
-        when it began; what was done stands first.
+    opening
+        how things stood when it began.
     sales
         in order, one a round.
     """
 
     members: tuple[str, ...]
     rounds: int
-    routes: Routes
+    opening: Opening
     sales: tuple[Sold, ...]
 
 
@@ -51,7 +53,9 @@ class View:
     claims
         of members: by robot what it owns, for which price, won in which round.
     twice
-        tasks begun by several robots, with these.
+        tasks begun or done by several robots, with these.
+    added
+        tasks that the mission did not have, as `tasks.content_of` writes them, in tie order.
     auctions
         one an epoch, the last one last.
     sent
@@ -63,6 +67,7 @@ class View:
     routes: Routes
     claims: Mapping[str, tuple[Claim, ...]]
     twice: Routes
+    added: tuple[bytes, ...]
     auctions: tuple[Held, ...]
     sent: int
 
@@ -75,7 +80,7 @@ class View:
 def view_of(negotiator: Negotiator) -> View:
     """What a robot knows now; between two epochs, what it knew in the last."""
     epochs, counts = negotiator.epochs, negotiator.counts
-    auctions = tuple(held for epoch in epochs if (held := _held(epoch, negotiator.rules)) is not None)
+    auctions = tuple(held for epoch in epochs if (held := _held(epoch)) is not None)
     last = epochs[-1].base if epochs else None
     routes = {} if last is None else {robot: tuple(negotiator.valuer.route(robot)) for robot in negotiator.rules.robots}
     return View(
@@ -83,23 +88,17 @@ def view_of(negotiator: Negotiator) -> View:
         stage=negotiator.stage,
         routes={robot: tasks for robot, tasks in routes.items() if tasks},
         claims={} if last is None else _claims(last, epochs[-1]),
-        twice={} if last is None else dict(last.twice),
+        twice={} if last is None else dict(negotiator.twice),
+        added=() if last is None else tuple(fact.content for fact in last.added),
         auctions=auctions,
         sent=counts.news + counts.repairs + counts.beats,
     )
 
 
-def _held(epoch: Epoch, rules: Rules) -> Held | None:
+def _held(epoch: Epoch) -> Held | None:
     if epoch.base is None:
         return None
-    routes: dict[str, list[str]] = {}
-    for fact in sorted(epoch.base.facts, key=lambda fact: rules.tasks[fact.task]):
-        if fact.done:
-            routes.setdefault(fact.robot, []).append(fact.task)
-    for robot, claims in epoch.base.routes.items():
-        routes.setdefault(robot, []).extend(claim.task for claim in claims)
-    frozen = {robot: tuple(tasks) for robot, tasks in routes.items()}
-    return Held(epoch.own.members, epoch.base.rounds, frozen, tuple(epoch.sales))
+    return Held(epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales))
 
 
 def _claims(base: Base, epoch: Epoch) -> dict[str, tuple[Claim, ...]]:

@@ -129,7 +129,7 @@ class ZenohTransport:
                 self._own if to is None else f"{self._own}/{_escaped(to)}",
                 congestion_control=zenoh.CongestionControl.DROP,
                 reliability=zenoh.Reliability.BEST_EFFORT,
-                express=True,  # not kept back to be sent with others
+                express=False,  # several go as one where a link is busy: a router would drop most of them one by one
                 allowed_destination=zenoh.Locality.REMOTE,
             )
         return self._publishers[to]

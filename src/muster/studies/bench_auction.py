@@ -1,7 +1,7 @@
 """The auction without a centre: part of what `muster bench` measures.
 
-Twenty robots and fifty tasks at random places; each robot is a process of this machine. Measured from when all are ready
-until the last of them is known to agree.
+Twenty robots and fifty tasks at random places; each robot is a process of this machine. Measured from when all are
+ready until the last of them is known to agree.
 """
 
 from __future__ import annotations
@@ -72,9 +72,13 @@ def auction(runs: int) -> list[Measurement]:
         messages = sum(sum(sent.values()) for _, sent, _ in outcomes) / share
         repairs = sum(sent["repairs"] for _, sent, _ in outcomes) / share
         volume = sum(volume for *_, volume in outcomes) / share
-        note = f"{messages:.2f} messages ({repairs:.2f} repairs), {volume:.0f} bytes given to {transport}, per task and robot"
+        cost = f"{messages:.2f} messages ({repairs:.2f} repairs), {volume:.0f} bytes given to {transport}"
         name = f"auction of {ROBOTS} processes, {TASKS} tasks, over {transport}"
-        found.append(Measurement.over_runs(name, "s", [seconds for seconds, *_ in outcomes], "< 10", note))
+        found.append(
+            Measurement.over_runs(
+                name, "s", [seconds for seconds, *_ in outcomes], "< 10", f"per task and robot {cost}"
+            )
+        )
     return found
 
 
