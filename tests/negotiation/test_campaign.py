@@ -3,11 +3,13 @@
 from collections import Counter
 
 import pytest
+from tests.negotiation.campaign.trial import trial
+from tests.negotiation.networks import line_mission, settled_team
 
 from muster.negotiation.negotiator import Negotiator
 from muster.studies.negotiation import replay
+from muster.studies.negotiation.observer import Observer
 from muster.studies.negotiation.scene import scene
-from tests.negotiation.campaign.trial import trial
 
 RUNS, CHUNK = 1000, 50
 
@@ -22,11 +24,23 @@ def test_a_run_is_the_same_each_time():
     assert list(replay(11).lines()) == list(replay(11).lines())
 
 
-def test_an_owner_too_many_is_a_failure(monkeypatch):
-    claims = Negotiator.route.fget
-    first = claims(_agreed(3))[:1]
-    monkeypatch.setattr(Negotiator, "route", property(lambda node: first or claims(node)))
-    assert any("both own" in failure for failure in trial(3)[1])
+def test_an_owner_too_many_is_seen(monkeypatch):
+    net = settled_team(line_mission())
+    claims = net.nodes["r_0"].route
+    monkeypatch.setattr(Negotiator, "route", claims)
+    watching = Observer(net.nodes, set())
+    watching.look("r_0")
+    watching.look("r_1")
+    assert watching.broken == [f"r_1 and r_0 both own {claim.task}" for claim in sorted(claims, key=lambda c: c.task)]
+
+
+def test_a_task_begun_twice_is_seen():
+    watching = Observer({}, {"0"})
+    watching.begins("a", "0", again=False)
+    watching.begins("a", "0", again=True)
+    assert watching.broken == []
+    watching.begins("b", "0", again=False)
+    assert watching.broken == ["b begins 0, begun by a"]
 
 
 def test_an_error_is_a_failure(monkeypatch):
@@ -47,11 +61,3 @@ def test_scenes_have_everything():
     assert any(task.across_partition == "at-most-once" for one in scenes for task in one.mission.tasks)
     dying = [{i.robot for i in one.incidents if i.kind == "crash"} for one in scenes]
     assert any(len(dead) == len(one.mission.robots) - 1 for dead, one in zip(dying, scenes, strict=True))
-
-
-def _agreed(seed):
-    from muster.studies.negotiation.trial import Play
-
-    play = Play(scene(seed))
-    play.run()
-    return max(play.network.nodes.values(), key=lambda node: len(node.route))

@@ -1,15 +1,15 @@
-"""What robots promise each other: one owner each, through restarts, cuts, names claimed twice, new and cancelled work."""
+"""What robots promise each other: one owner a task, through restarts, cuts, names claimed twice, new work."""
 
 from dataclasses import replace
 
 import pytest
+from tests.negotiation.networks import agree, line_mission, network, owners, settled_team
 
 from muster import Task
 from muster.mission.errors import MissionError, ParameterError
 from muster.negotiation.happenings import Happening
 from muster.negotiation.messages import Message, Stage
 from muster.negotiation.negotiator import Negotiator
-from tests.negotiation.networks import agree, line_mission, network, owners, settled_team
 
 ALL = {str(k) for k in range(6)}
 
@@ -85,7 +85,7 @@ def test_a_restart_with_memory_goes_on_and_never_declares_in_an_old_epoch():
     assert net.nodes["r_0"].stage.epoch > before.stage.epoch
     assert net.nodes["r_0"].route == ()  # until it has heard whether others own it now
     agree(net)
-    assert [claim.task for claim in net.nodes["r_0"].route][0] == task
+    assert first_task(net, "r_0") == task
     assert net.nodes["r_0"].route[0].begun
 
 
@@ -206,6 +206,7 @@ def test_nothing_is_begun_while_it_is_not_known_who_owns_it():
 def test_a_task_that_appears_comes_to_one_owner_although_its_herald_dies():
     net = settled_team(line_mission(robots=4))
     net.nodes["r_3"].announce(Task(id="n", position=(299.0, 0.0)))
+    net.run(net.now + 0.2)
     net.crash("r_3")
     agree(net)
     assert len(owners(net)["n"]) == 1

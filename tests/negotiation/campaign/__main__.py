@@ -1,4 +1,4 @@
-"""Run the campaign: `python -m tests.negotiation.campaign [RUNS] [--first SEED] [--processes N]`, or one seed in full."""
+"""Run the campaign: `python -m tests.negotiation.campaign [RUNS] [--first SEED] [--processes N]`, or one seed."""
 
 import argparse
 import sys
@@ -6,8 +6,9 @@ import time
 from collections import Counter
 from multiprocessing import get_context
 
-from muster.studies.negotiation import replay
 from tests.negotiation.campaign.trial import trial
+
+from muster.studies.negotiation import replay
 
 
 def main():

@@ -58,7 +58,7 @@ class Observer:
         self._seen[robot] = now
         self._look_at_epoch(robot, node)
         owned = frozenset(claim.task for claim in node.route)
-        for task in owned - self._owned.get(robot, frozenset()):
+        for task in sorted(owned - self._owned.get(robot, frozenset())):
             for other, theirs in self._owned.items():
                 if task in theirs and other != robot:
                     self._clash(task, robot, other)
