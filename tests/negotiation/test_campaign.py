@@ -39,6 +39,7 @@ def test_a_task_begun_twice_is_seen():
     watching.begins("a", "0", again=False)
     watching.begins("a", "0", again=True)
     assert watching.broken == []
+    watching.gone("a")
     watching.begins("b", "0", again=False)
     assert watching.broken == ["b begins 0, begun by a"]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from muster.negotiation.base import Base, Rules, agreed
 from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
@@ -114,14 +113,6 @@ class Epoch:
             return ()
         heard = self._bids.get(len(self.sales), {})
         return tuple(robot for robot in self.own.members if robot not in heard)
-
-    @property
-    def said_last(self) -> dict[str, Any]:
-        """What this member said last, as fields of a message: somebody may wait for it as this one waits."""
-        if self.base is None:
-            return {"declarations": (self.own,)}
-        said = None if self.ended else self.bids_of(self.own.robot, len(self.sales))
-        return {} if said is None else {"bids": (said,)}
 
     def declaration_of(self, robot: str) -> Declaration | None:
         return self._declared.get(robot)

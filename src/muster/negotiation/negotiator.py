@@ -388,7 +388,7 @@ class Negotiator:
         self._work.fresh.clear()
         self.counts.news += bool(fresh)
         self.counts.beats += not fresh
-        known, said = self._work.known.digest, self.epoch.said_last
+        known, said = self._work.known.digest, self._repairs.passed_on(self.epoch)
         return self._message(now, lacks=self.epoch.lacks, pulses=self._pulses(), facts=fresh, known=known, **said)
 
     def _message(self, sent_s: float | None, **said: Any) -> Message:

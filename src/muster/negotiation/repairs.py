@@ -1,7 +1,9 @@
 """Anti-entropy: what the sender of a message lacks, and whether it is this robot that sends it.
 
 A beat tells how far its sender is and what it lacks. The robot whose word is lacking answers always; of all others that
-could, about HELPERS do, as a number drawn from the beat says, so that nobody need know who else answers.
+could, about HELPERS do, as a number drawn from the beat says, so that nobody need know who else answers. Who asks for
+the same again and again may not hear the others at all: then all that hear it help, and pass on in their own beats what
+it lacks as soon as they know it. So words go on from neighbour to neighbour where not all hear each other.
 """
 
 from __future__ import annotations
@@ -13,6 +15,9 @@ from zlib import crc32
 from muster.negotiation.epoch import Epoch
 from muster.negotiation.knowledge import Knowledge
 from muster.negotiation.messages import Message, Stage
+
+URGENT = 3
+"""Who asks so often for the same is in need."""
 
 HELPERS = 2
 """Of those that could send what somebody lacks, about so many do, besides the one whose it is."""
@@ -33,11 +38,15 @@ class Repairs:
     me: str
     rest_s: float
     _stages: dict[str, Stage] = field(default_factory=dict)  # of those that are heard directly
+    _asked: dict[str, tuple[Stage, tuple[str, ...], int]] = field(default_factory=dict)  # what, and how often
     _answered: dict[str, tuple[float, Stage, int]] = field(default_factory=dict)
 
     def hear(self, message: Message) -> None:
-        """Take in how far a robot is."""
+        """Take in how far a robot is, and what it lacks."""
         self._stages[message.sender] = message.stage
+        if message.pulses:
+            stage, _, times = self._asked.get(message.sender, (None, (), 0))
+            self._asked[message.sender] = message.stage, message.lacks, times + 1 if stage == message.stage else 1
 
     def answer(self, message: Message, epoch: Epoch, known: Knowledge, now: float) -> dict[str, Any] | None:
         """What to tell the sender of a message, as fields of one to it; None: nothing."""
@@ -53,6 +62,20 @@ class Repairs:
         if what is not None:
             self._answered[to] = now, *state
         return what
+
+    def passed_on(self, epoch: Epoch) -> dict[str, Any]:
+        """What robots in need lack and this one knows, with its own last words, as fields of a message."""
+        declared, bid = {self.me}, {self.me}
+        for stage, lacks, times in self._asked.values():
+            if times >= URGENT and stage.epoch == epoch.stage.epoch:
+                (bid if stage.base else declared).update(lacks)
+        at_base = epoch.base is not None
+        declarations = [epoch.declaration_of(r) for r in sorted(declared if not at_base else declared - {self.me})]
+        bids = [epoch.bids_of(r, len(epoch.sales)) for r in sorted(bid)] if at_base and not epoch.ended else []
+        return {
+            "declarations": tuple(d for d in declarations if d is not None),
+            "bids": tuple(b for b in bids if b is not None),
+        }
 
     def _lacking(self, message: Message, epoch: Epoch) -> dict[str, Any] | None:
         stage, own = message.stage, epoch.stage
@@ -78,8 +101,8 @@ class Repairs:
         return [robot for robot in message.lacks if self._helps(message, robot)]
 
     def _helps(self, message: Message, whose: str | None) -> bool:
-        """Whether it is this robot that sends what is lacking: its own always, else about HELPERS of all."""
-        if whose == self.me:
+        """Whether it is this robot that sends what is lacking: its own, or to one in need; else about HELPERS do."""
+        if whose == self.me or self._asked.get(message.sender, (None, (), 0))[2] >= URGENT:
             return True
         able = 1 + sum(stage != message.stage for robot, stage in self._stages.items() if robot != message.sender)
         return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS

@@ -32,6 +32,7 @@ class Observer:
     counts: Counter[str] = field(default_factory=Counter)
     begun: dict[str, list[str]] = field(default_factory=dict)
     """By task those that have begun it, each as often as it began it anew."""
+    _lives: set[tuple[str, str]] = field(default_factory=set)  # who has begun what since it started
     _lost: set[frozenset[str]] = field(default_factory=set)
     _entered: dict[str, int] = field(default_factory=dict)
     _based: dict[str, bytes] = field(default_factory=dict)
@@ -45,6 +46,7 @@ class Observer:
         self._based.pop(robot, None)
 
     def gone(self, robot: str) -> None:
+        self._lives = {(other, task) for other, task in self._lives if other != robot}
         self._owned.pop(robot, None)
         self._seen.pop(robot, None)
 
@@ -58,7 +60,7 @@ class Observer:
         self._seen[robot] = now
         self._look_at_epoch(robot, node)
         owned = frozenset(claim.task for claim in node.route)
-        for task in owned - self._owned.get(robot, frozenset()):
+        for task in sorted(owned - self._owned.get(robot, frozenset())):
             for other, theirs in self._owned.items():
                 if task in theirs and other != robot:
                     self._clash(task, robot, other)
@@ -67,13 +69,14 @@ class Observer:
     def begins(self, robot: str, task: str, *, again: bool) -> None:
         """A robot begins a task; `again`: it goes on with it after a restart."""
         before = self.begun.setdefault(task, [])
+        self._lives.add((robot, task))
         if again and robot in before:
             return
         if before and task in self.once:
             self.broken.append(f"{robot} begins {task}, begun by {', '.join(before)}")
         for other in before:
             self.counts["begun twice"] += 1
-            if other != robot and frozenset((robot, other)) not in self._lost and other in self.nodes:
+            if other != robot and frozenset((robot, other)) not in self._lost and (other, task) in self._lives:
                 self.broken.append(f"{robot} begins {task}, begun by {other}, which it has not lost")
         before.append(robot)
 
