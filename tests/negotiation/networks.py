@@ -5,8 +5,8 @@ from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.taking_part import rules_of
 from muster.negotiation.valuation import AuctionValuer
-from muster.studies.negotiation.trial import rules_of
 
 
 def line_mission(robots=3, tasks=6, once=(), **more):

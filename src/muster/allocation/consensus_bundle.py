@@ -226,6 +226,12 @@ class Bidder:
         self._reach, self._loss, self._growth = (row[None] for row in self._gap(self._place(0), None))
         self._measure()
 
+    def refuse(self, tasks: Sequence[int]) -> None:
+        """Bid for none of these, but for what is in the bundle."""
+        for j in tasks:
+            if j in self._column:
+                self._free[self._column[j]] = False
+
     def build_bundle(self, beliefs: Beliefs, limit: int, ledger: Ledger) -> bool:
         """Algorithm 3: add the task of highest score that outbids the winner known; whether any was added."""
         z, y = beliefs.z[self._i], beliefs.y[self._i]

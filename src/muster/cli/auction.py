@@ -28,7 +28,6 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
-    from muster.allocation.terms import Terms
     from muster.negotiation.methods import Method
     from muster.negotiation.view import View
 
@@ -114,7 +113,7 @@ def command(
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
     chosen = method_named(method)
-    terms = _terms(others, settings)
+    terms = _terms(chosen, others, settings)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     problem = Problem.compile(loaded, objective, ignore).ready()
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
@@ -141,7 +140,7 @@ def _replayed(seed: int | None) -> int:
 
 
 def _agree(
-    problem: Problem, terms: Terms, method: Method, transport: str, others: dict[str, Any], **speech: bool
+    problem: Problem, terms: Any, method: Method, transport: str, others: dict[str, Any], **speech: bool
 ) -> Agreement:
     """Let the robots agree: simulated, all here, or one of them here."""
     if others["network_seed"] is not None:
@@ -169,16 +168,14 @@ def _check_together(others: dict[str, Any]) -> None:
         raise ParameterError("--robot and --simulate-network given; expected one of them")
 
 
-def _terms(others: dict[str, Any], settings: tuple[str, ...]) -> Terms:
+def _terms(method: Method, others: dict[str, Any], settings: tuple[str, ...]) -> Any:
     from muster.allocation.allocator import make_parameters
-    from muster.allocation.auction import AUCTION
 
     words = {name: others[name] for name in ("bid", "placement", "winner") if others[name] is not None}
     weights = settings_of(settings)
     for name in words.keys() & weights.keys():
         raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
-    terms: Terms = make_parameters(AUCTION, words | weights)
-    return terms
+    return make_parameters(method.allocator, words | weights)
 
 
 def _write_views(folder: Path, plans: dict[str, Plan]) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.allocation.terms import Terms
 from muster.cli.auction import Agreement
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
@@ -33,7 +32,7 @@ _AGAIN_S = 0.5
 
 def agree_with_others(
     problem: Problem,
-    terms: Terms,
+    terms: Any,
     method: Method,
     transport: str,
     options: dict[str, Any],
@@ -143,7 +142,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
     if multicast is not None:
         if listen is not None:
             raise ParameterError("--listen given; expected it without --multicast, which tells the port")
-        return UdpTransport.multicast(_address("--multicast", multicast))
+        return UdpTransport.multicast(_address("--multicast", multicast), robot=options["robot"])
     bind = (_ANYWHERE, _PORT) if listen is None else _address("--listen", listen)
     return UdpTransport(bind, _peers(connect, problem, options["robot"]))
 

@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.allocation.terms import Terms
 from muster.cli.auction import Agreement
 from muster.mission.errors import MusterError, ParameterError
 from muster.negotiation.memory_network import MemoryNetwork, Weather
@@ -17,7 +16,7 @@ from muster.negotiation.view import view_of
 
 
 def agree_in_memory(
-    problem: Problem, terms: Terms, method: Method, options: dict[str, Any], *, quiet: bool, verbose: bool
+    problem: Problem, terms: Any, method: Method, options: dict[str, Any], *, quiet: bool, verbose: bool
 ) -> Agreement:
     """Let the robots agree in virtual time; the same seed and options give the same run.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
+from typing import Any
 
 import click
 
 from muster.allocation.problem import Problem
-from muster.allocation.terms import Terms
 from muster.cli.auction import Agreement
 from muster.cli.auction_table import auction_table
 from muster.cli.tables import counted
@@ -24,7 +24,7 @@ _LOOK_S = 0.05
 
 
 def agree_here(
-    problem: Problem, terms: Terms, method: Method, transport: str, limit_s: float, *, quiet: bool, verbose: bool
+    problem: Problem, terms: Any, method: Method, transport: str, limit_s: float, *, quiet: bool, verbose: bool
 ) -> Agreement:
     """Start a process for each robot, and wait until all that live agree.
 

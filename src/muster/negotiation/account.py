@@ -13,10 +13,13 @@ import numpy as np
 
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.bookkeeping import bids_of_round
+from muster.allocation.consensus import neighbours, score
+from muster.allocation.consensus_bundle import Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.terms import Terms
 from muster.allocation.winners import Sale
 from muster.mission.book import Award, Book, TakeBid
+from muster.negotiation.bundles import BundleValuer
 from muster.negotiation.messages import Claim
 from muster.negotiation.valuation import AuctionValuer
 from muster.negotiation.view import Held, View
@@ -85,3 +88,20 @@ def _awards(
         for c in owned
     ]
     return sorted(awards, key=lambda award: award.round)
+
+
+def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:
+    """The book of CBBA: that of the last epoch, held again if the robot heard it whole, else what was won alone."""
+    held = view.auctions[-1]
+    if not held.whole:
+        owned = [(c.round, c.task, robot, score(c.price)) for robot, claims in view.claims.items() for c in claims]
+        awards = tuple(Award.of(*won, [(won[2], won[3])]) for won in sorted(owned))
+        return Book(rounds=view.rounds, messages=view.sent, awards=awards)
+    watcher = BundleValuer(problem, params, held.members[0])
+    watcher.begin(held.opening)
+    for bids in held.published:
+        watcher.bids()
+        for sold in watcher.resolve(bids).sales:
+            watcher.award(sold)
+    routes = [[problem.task_index[task] for task in watcher.route(robot.id)] for robot in problem.robots]
+    return watcher.ledger.book(problem, routes, neighbours("complete", len(problem.robots)))

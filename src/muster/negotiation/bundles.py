@@ -9,16 +9,17 @@ robots are going to do what they won, which only they themselves know.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
 from enum import Enum
 
 import numpy as np
 
+from muster.allocation.allocator import Routes
 from muster.allocation.consensus import NO_BID, NOBODY, Beliefs, Ledger
 from muster.allocation.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
 from muster.allocation.problem import Problem
 from muster.negotiation.messages import Bid, RoundBids, Sold
+from muster.negotiation.valuation import Resolution, TeamValuer
 
 
 class _Phase(Enum):
@@ -27,48 +28,33 @@ class _Phase(Enum):
     TELLING = "telling"
 
 
-@dataclass(frozen=True)
-class Resolution:
-    """What comes of a round: tasks that have an owner now, and whether it was the last round."""
+class BundleValuer(TeamValuer):
+    """One robot's part in CBBA; `params` are the same for all, but for the topology, which does not count.
 
-    sales: tuple[Sold, ...] = ()
-    over: bool = False
-
-
-class BundleAuction:
-    """One robot's part in CBBA. The network is complete, or the protocol's relays make it so.
-
-    Parameters
-    ----------
-    problem, params
-        the same for all robots; the topology does not count.
-    robot
-        which one this is.
+    The network is complete, or the protocol's relays make it so.
     """
 
+    told_by_sales = False
+
     def __init__(self, problem: Problem, params: Parameters, robot: str) -> None:
-        self._problem, self._params = problem, params
-        self._clock = ScoreClock(problem, params.discount)
-        self._robots = {r.id: i for i, r in enumerate(problem.robots)}
-        self._tasks = {t.id: j for j, t in enumerate(problem.tasks)}
-        self._me = self._robots[robot]
-        self._routes: list[list[int]] = []
+        super().__init__(problem, robot)
+        self.params = params
+        self._routes: Routes = []
         self._limit = 0
         self._phase = _Phase.BUILDING
 
-    def begin(self, routes: Mapping[str, Sequence[str]]) -> None:
-        """An auction begins: these tasks have owners, all others are for sale."""
-        self._routes = [[] for _ in self._robots]
-        for robot, tasks in routes.items():
-            self._routes[self._robots[robot]] = [self._tasks[task] for task in tasks]
-        self._bidder = Bidder(self._problem, self._clock, self._me, self._routes[self._me])
-        self._ledger = Ledger()
-        self._done = {j for route in self._routes for j in route}
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        self._routes = [list(route) for route in routes]
+        clock = ScoreClock(self._problem, self.params.discount)
+        self._bidder = Bidder(self._problem, clock, self._me, self._routes[self._me])
+        self.ledger = Ledger()
+        self._done = {j for route in self._routes for j in route}.union(closed)
         self._layers = layers(self._problem, self._done)
         self._next_layer()
 
-    def bids(self) -> tuple[Bid, ...]:
+    def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
         """What the robot publishes in this round: what it adds, or that it could take more, or its order."""
+        self._bidder.refuse([self._tasks[task] for task in refused if task in self._tasks])
         if self._phase is _Phase.TELLING:
             mine = self._beliefs.z[self._me] == self._me
             return tuple(self._bid(j) for j in self._bidder.route if mine[j] and j not in self._done)
@@ -76,7 +62,7 @@ class BundleAuction:
             more = len(self._offered) and self._bidder.could_take_more(self._beliefs)
             return ((self._problem.tasks[int(self._offered[0])].id, 0.0),) if more else ()
         before = len(self._bidder.bundle)
-        self._bidder.build_bundle(self._beliefs, self._limit, self._ledger)
+        self._bidder.build_bundle(self._beliefs, self._limit, self.ledger)
         return tuple(self._bid(j) for j in self._bidder.bundle[before:])
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
@@ -91,17 +77,15 @@ class BundleAuction:
             return Resolution()
         self._take_in(bids)
         if not any(said.bids for said in bids) and self._agree(members):
-            self._phase = _Phase.TELLING if self._params.bundle_size else _Phase.ASKING
+            self._phase = _Phase.TELLING if self.params.bundle_size else _Phase.ASKING
         else:
             self._exchange(members)
         return Resolution()
 
     def award(self, sold: Sold) -> None:
-        """A task has an owner."""
         self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])
 
     def route(self, robot: str) -> list[str]:
-        """The tasks of a robot, in the order in which it is going to do them."""
         return [self._problem.tasks[j].id for j in self._routes[self._robots[robot]]]
 
     def _next_layer(self) -> bool:
@@ -112,7 +96,7 @@ class BundleAuction:
         layer = self._layers.pop(0) if self._layers else []
         offered = [j for j in layer if self._done.issuperset(self._problem.prerequisites[j])]
         self._offered = np.array(offered, dtype=np.int64)
-        self._limit = self._params.bundle_size or first_limit(len(offered), m)
+        self._limit = self.params.bundle_size or first_limit(len(offered), m)
         self._bidder.offer(self._offered)
         return bool(layer)
 
@@ -123,12 +107,14 @@ class BundleAuction:
             for task, bid in said.bids:
                 j = self._tasks[task]
                 self._bundles[i].append(j)
+                if i != self._me:
+                    self.ledger.note(j, i, bid)
                 self._beliefs.z[i, j], self._beliefs.y[i, j] = i, bid
 
     def _exchange(self, members: Sequence[int]) -> None:
         """Phase 2: all members read each other, and release what they lost."""
         network = [[k for k in members if k != i] if i in members else [] for i in range(len(self._robots))]
-        self._beliefs.exchange(network, self._ledger.end_round())
+        self._beliefs.exchange(network, self.ledger.end_round())
         for i in members:
             self._release(i)
         self._bidder.release(self._beliefs)

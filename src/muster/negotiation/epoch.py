@@ -34,10 +34,9 @@ class Epoch:
     valuer: Valuer
     refused: Collection[str] = ()
     base: Base | None = None
+    round: int = 0
     ended: bool = False
     sales: list[Sold] = field(default_factory=list)
-    book: list[dict[str, RoundBids]] = field(default_factory=list)
-    """By round the bids heard, or found out by others: then there are none."""
     _declared: dict[str, Declaration] = field(default_factory=dict)
     _bids: dict[int, dict[str, RoundBids]] = field(default_factory=dict)
     _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
@@ -49,7 +48,7 @@ class Epoch:
     def stage(self) -> Stage:
         if self.base is None:
             return Stage(self.own.epoch)
-        return Stage(self.own.epoch, self.base.digest, len(self.sales), self.ended)
+        return Stage(self.own.epoch, self.base.digest, self.round, self.ended)
 
     def hear_declaration(self, declaration: Declaration) -> bool:
         """Take in what a member declared; whether that is new."""
@@ -78,11 +77,15 @@ class Epoch:
         """Take in what another member has resolved on the same base; whether that is new."""
         if self.base is None or stage.base != self.base.digest:
             return False
-        before = self.stage
-        for sold in sales[max(0, len(self.sales) - sales_from) :] if sales_from <= len(self.sales) else ():
-            self._sell(sold, self._bids.get(len(self.sales), {}))
-        if stage.ended and stage.round == len(self.sales):
-            self.ended = True
+        if not (self.valuer.told_by_sales or (stage.ended and sales)):
+            return False  # it has to go through the rounds itself, or take over all that came of them
+        before, known = self.stage, len(self.sales)
+        for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
+            self._sell(sold)
+            self.round += self.valuer.told_by_sales
+        complete = self.round == stage.round if self.valuer.told_by_sales else sales_from <= known
+        if stage.ended and complete and not self.ended:
+            self.round, self.ended = stage.round, True
         return self.stage != before
 
     def advance(self) -> list[RoundBids]:
@@ -91,17 +94,17 @@ class Epoch:
         if self.base is None and not self._begin():
             return published
         while not self.ended:
-            heard = self._bids.setdefault(len(self.sales), {})
+            heard = self._bids.setdefault(self.round, {})
             if self.own.robot not in heard:
-                heard[self.own.robot] = RoundBids(self.own.robot, len(self.sales), self.valuer.bids(self.refused))
+                heard[self.own.robot] = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
                 published.append(heard[self.own.robot])
             if len(heard) < len(self.own.members):
                 break
-            sold = self.valuer.winner([heard[robot] for robot in self.own.members])
-            if sold is None:
-                self.ended = True
-            else:
-                self._sell(sold, heard)
+            resolution = self.valuer.resolve([heard[robot] for robot in self.own.members])
+            for sold in resolution.sales:
+                self._sell(sold)
+            self.ended = resolution.over
+            self.round += bool(resolution.sales) or not resolution.over
         return published
 
     @property
@@ -111,8 +114,18 @@ class Epoch:
             return tuple(robot for robot in self.own.members if not self._fits(self._declared.get(robot)))
         if self.ended:
             return ()
-        heard = self._bids.get(len(self.sales), {})
+        heard = self._bids.get(self.round, {})
         return tuple(robot for robot in self.own.members if robot not in heard)
+
+    def published(self) -> tuple[tuple[RoundBids, ...], ...]:
+        """What members bid, by round, up to the first round that was not heard whole."""
+        rounds = []
+        for number in range(self.round):
+            heard = self._bids.get(number, {})
+            if len(heard) < len(self.own.members):
+                break
+            rounds.append(tuple(heard[robot] for robot in self.own.members))
+        return tuple(rounds)
 
     def declaration_of(self, robot: str) -> Declaration | None:
         return self._declared.get(robot)
@@ -123,7 +136,7 @@ class Epoch:
     @property
     def rounds(self) -> int:
         """How many rounds were seen in all."""
-        return (self.own.rounds if self.base is None else self.base.rounds) + len(self.sales)
+        return (self.own.rounds if self.base is None else self.base.rounds) + self.round
 
     def route(self) -> tuple[Claim, ...]:
         """What this member owns now, in the order of its route."""
@@ -142,7 +155,7 @@ class Epoch:
         if self.lacks:
             return False
         base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
-        self.base = base.keeping(self.valuer.begin(_opening(base)))
+        self.base = base.keeping(self.valuer.begin(opening_of(base)))
         for digest, bids in self._early:
             self.hear_bids(digest, bids)
         self._early.clear()
@@ -151,13 +164,12 @@ class Epoch:
     def _fits(self, declaration: Declaration | None) -> bool:
         return declaration is not None and declaration.members == self.own.members
 
-    def _sell(self, sold: Sold, heard: dict[str, RoundBids]) -> None:
+    def _sell(self, sold: Sold) -> None:
         self.valuer.award(sold)
         self.sales.append(sold)
-        self.book.append(heard)
 
 
-def _opening(base: Base) -> Opening:
+def opening_of(base: Base) -> Opening:
     """How things stand on a base; a task that several have done or begun counts for the first of them."""
     past: dict[str, list[str]] = {}
     counted: set[str] = set()

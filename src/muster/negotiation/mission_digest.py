@@ -16,7 +16,7 @@ from muster.motion.world import World
 DIGEST_BYTES = 16
 
 
-def mission_digest(problem: Problem, terms: Terms) -> bytes:
+def mission_digest(problem: Problem, terms: Any) -> bytes:
     """Sixteen bytes that are equal where robots hold the same auction.
 
     It holds what the mission says, not how its file is written: the order of robots, tasks and keys does not count, nor
@@ -36,7 +36,7 @@ def mission_digest(problem: Problem, terms: Terms) -> bytes:
         "objective": problem.objective,
         "ignored": problem.ignored,
         "fixed": problem.fixed,
-        "terms": {f.name: getattr(terms, f.name) for f in fields(Terms)} | {"bid": terms.bid or problem.objective},
+        "terms": _terms(problem, terms),
     }
     del said["mission"]["robots"], said["mission"]["tasks"]
     digest = blake2b(json.dumps(_numbers_alike(said), sort_keys=True).encode(), digest_size=DIGEST_BYTES)
@@ -54,3 +54,11 @@ def _numbers_alike(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_numbers_alike(item) for item in value]
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _terms(problem: Problem, terms: Any) -> dict[str, Any]:
+    """The parameters of the way to agree, with its name; no bid is that of the objective."""
+    said = {f.name: getattr(terms, f.name) for f in fields(terms)}
+    if isinstance(terms, Terms):
+        said["bid"] = terms.bid or problem.objective
+    return {"of": type(terms).__module__, **said}

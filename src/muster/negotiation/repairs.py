@@ -88,11 +88,11 @@ class Repairs:
             return {"declarations": said} if said else None
         if stage.base != own.base:
             return None
-        if stage.round < own.round or (own.ended and not stage.ended):
-            if not self._helps(message, None):
-                return None
-            return {"sales": tuple(epoch.sales[stage.round :]), "sales_from": stage.round}
-        if stage.round == own.round:
+        behind = stage.round < own.round or (own.ended and not stage.ended)
+        if behind and (epoch.valuer.told_by_sales or (own.ended and epoch.sales)):
+            known = stage.round if epoch.valuer.told_by_sales else 0
+            return {"sales": tuple(epoch.sales[known:]), "sales_from": known} if self._helps(message, None) else None
+        if stage.round <= own.round:
             bids = tuple(b for robot in self._lacked(message) if (b := epoch.bids_of(robot, stage.round)) is not None)
             return {"bids": bids} if bids else None
         return None

@@ -7,12 +7,14 @@ each other's routes without a word.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
+from muster.allocation.allocator import Routes
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.fixed import admissible_part, with_past
 from muster.allocation.problem import Problem
@@ -45,8 +47,21 @@ class Opening:
     added: tuple[bytes, ...] = ()
 
 
+@dataclass(frozen=True)
+class Resolution:
+    """What comes of a round: tasks that have owners now, and whether it was the last."""
+
+    sales: tuple[Sold, ...] = ()
+    over: bool = False
+
+
 class Valuer(Protocol):
     """What one robot's part in the auction needs to know of the mission."""
+
+    @property
+    def told_by_sales(self) -> bool:
+        """Whether who missed rounds need only know what was sold in them; else also what was bid."""
+        ...
 
     def check(self, task: Task) -> None:
         """Whether a new task fits into the mission; raises MissionError if not."""
@@ -60,8 +75,8 @@ class Valuer(Protocol):
         """What the robot bids in this round, as the winner rule wants it; nothing for what it has refused."""
         ...
 
-    def winner(self, bids: Sequence[RoundBids]) -> Sold | None:
-        """What comes of a round in which all members bid this; None: nobody bids any more."""
+    def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
+        """What comes of a round in which all members bid this; it is not awarded yet."""
         ...
 
     def award(self, sold: Sold) -> None:
@@ -73,24 +88,22 @@ class Valuer(Protocol):
         ...
 
 
-class AuctionValuer:
-    """The auction of `allocation`, held by one of its robots.
+class TeamValuer(ABC):
+    """What all ways to sell tasks have in common: the mission with its new tasks, and what robots own already.
 
     Parameters
     ----------
-    problem, terms
+    problem
         the same for all robots.
     robot
         which one this is.
     """
 
-    def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
-        self.terms = terms
-        self._given, self._robots = problem, problem.robot_index
+    def __init__(self, problem: Problem, robot: str) -> None:
+        self._given = self._whole = self._problem = problem
+        self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
-        self._whole = problem
-        self._take_up(problem)
 
     def check(self, task: Task) -> None:
         with_tasks(self._whole, [content_of(task)])
@@ -100,12 +113,40 @@ class AuctionValuer:
             self._added, self._whole = opening.added, with_tasks(self._given, opening.added)
         number = self._whole.task_index
         past, ahead = self._by_index(opening.past, number), self._by_index(opening.ahead, number)
-        self._take_up(with_past(self._whole, past) if any(past) else self._whole)
+        self._problem = with_past(self._whole, past) if any(past) else self._whole
+        self._tasks = self._problem.task_index
         begun = [self._problem.beginning(i) for i in range(len(past))]
         routes = admissible_part(self._problem, [[*before, *after] for before, after in zip(begun, ahead, strict=True)])
         closed = {number[task] for task in opening.closed}.union(*past)
-        self._auctioneer.restore(routes, {}, closed)
+        self._open(routes, closed)
         return {robot.id: self.route(robot.id)[len(begun[i]) :] for i, robot in enumerate(self._problem.robots)}
+
+    @abstractmethod
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        """An auction begins: these tasks have owners, all others are for sale but those that are closed."""
+
+    @abstractmethod
+    def route(self, robot: str) -> list[str]: ...
+
+    def _by_index(self, routes: Mapping[str, Sequence[str]], number: Mapping[str, int]) -> list[list[int]]:
+        by_index: list[list[int]] = [[] for _ in self._robots]
+        for robot, tasks in routes.items():
+            by_index[self._robots[robot]] = [number[task] for task in tasks]
+        return by_index
+
+
+class AuctionValuer(TeamValuer):
+    """The auction of `allocation`, held by one of its robots; `terms` are the same for all."""
+
+    told_by_sales = True
+
+    def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
+        super().__init__(problem, robot)
+        self.terms = terms
+
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        self._auctioneer = Auctioneer(self._problem, self.terms)
+        self._auctioneer.restore(routes, {}, closed)
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
         if not self._tasks:
@@ -118,30 +159,20 @@ class AuctionValuer:
             return ((self._problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
         return tuple((self._problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
 
-    def winner(self, bids: Sequence[RoundBids]) -> Sold | None:
+    def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
         heard = _Heard(self._robots, self._tasks, bids)
         if not any(said.bids for said in bids):
-            return None
+            return Resolution(over=True)
         rule = WINNER_RULES[self.terms.winner](heard)
         rule.note(range(len(self._robots)))
         sale = rule.winner()
-        return None if sale is None else self._sold(sale)
+        return Resolution(over=True) if sale is None else Resolution((self._sold(sale),))
 
     def award(self, sold: Sold) -> None:
         self._auctioneer.assign(Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price))
 
     def route(self, robot: str) -> list[str]:
         return [self._problem.tasks[j].id for j in self._auctioneer.routes[self._robots[robot]]]
-
-    def _take_up(self, problem: Problem) -> None:
-        self._problem, self._tasks = problem, problem.task_index
-        self._auctioneer = Auctioneer(problem, self.terms)
-
-    def _by_index(self, routes: Mapping[str, Sequence[str]], number: Mapping[str, int]) -> list[list[int]]:
-        by_index: list[list[int]] = [[] for _ in self._robots]
-        for robot, tasks in routes.items():
-            by_index[self._robots[robot]] = [number[task] for task in tasks]
-        return by_index
 
     def _sold(self, sale: Sale) -> Sold:
         return Sold(self._problem.robots[sale.robot].id, self._problem.tasks[sale.task].id, sale.price)

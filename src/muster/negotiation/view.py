@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from muster.negotiation.base import Base
 from muster.negotiation.epoch import Epoch
-from muster.negotiation.epoch import _opening as opening_of
-from muster.negotiation.messages import Claim, Sold, Stage
+from muster.negotiation.epoch import opening_of as opening_of
+from muster.negotiation.messages import Claim, RoundBids, Sold, Stage
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.valuation import Opening
 
@@ -29,13 +29,19 @@ class Held:
     opening
         how things stood when it began.
     sales
-        in order, one a round.
+        in order.
+    published
+        what members bid, by round; empty where sales tell all.
+    whole
+        whether that is all rounds.
     """
 
     members: tuple[str, ...]
     rounds: int
     opening: Opening
     sales: tuple[Sold, ...]
+    published: tuple[tuple[RoundBids, ...], ...] = ()
+    whole: bool = True
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,9 @@ def view_of(negotiator: Negotiator) -> View:
 def _held(epoch: Epoch) -> Held | None:
     if epoch.base is None:
         return None
-    return Held(epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales))
+    published = () if epoch.valuer.told_by_sales else epoch.published()
+    whole = epoch.valuer.told_by_sales or len(published) == epoch.round
+    return Held(epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales), published, whole)
 
 
 def _claims(base: Base, epoch: Epoch) -> dict[str, tuple[Claim, ...]]:

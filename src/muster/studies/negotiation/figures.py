@@ -15,9 +15,9 @@ from muster.mission.model import Mission, Robot, Task
 from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import TICK_S, MemoryNetwork, Weather
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.taking_part import rules_of
 from muster.negotiation.valuation import AuctionValuer
 from muster.studies.negotiation.missions import place
-from muster.studies.negotiation.trial import rules_of
 
 DELAY_S = 0.05
 END_S = 600.0

@@ -10,11 +10,11 @@ from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
-from muster.negotiation.base import Rules
 from muster.negotiation.happenings import Memory
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.memory_network import MemoryNetwork
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.taking_part import rules_of
 from muster.negotiation.tasks import task_of
 from muster.negotiation.valuation import AuctionValuer
 from muster.studies.negotiation.observer import Observer
@@ -45,17 +45,6 @@ class Report:
 def replay(seed: int) -> Report:
     """The run of a seed, the same each time."""
     return Play(scene(seed)).run()
-
-
-def rules_of(problem: Problem) -> Rules:
-    linked = problem.holds("prerequisites")
-    return Rules(
-        robots=problem.robot_index,
-        tasks=problem.task_index,
-        prerequisites={task.id: task.prerequisites if linked else () for task in problem.tasks},
-        once=frozenset(task.id for task in problem.tasks if task.across_partition == "at-most-once"),
-        linked=linked,
-    )
 
 
 class Play:
