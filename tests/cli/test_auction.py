@@ -282,7 +282,7 @@ def test_a_port_in_use_is_told(three, ports):
         (("--connect", "h:1"), "--connect given; expected it together with --robot\n"),
         (("--loss", "0.1"), "--loss given; expected it together with --simulate-network\n"),
         (("--robot", "a", "--simulate-network", "1"), "--robot and --simulate-network given; expected one of them\n"),
-        (("--method", "dance"), "method: dance; expected auction\n"),
+        (("--method", "dance"), "method: dance; expected auction or consensus-bundle\n"),
         (("--set", "speed=3"), "auction has no parameter speed"),
         (("--bid", "max", "--set", "bid=max"), "--set: bid given twice; expected it once, as --bid\n"),
         (("--book", "book.txt"), "--book: book.txt; expected a file that ends in .csv\n"),

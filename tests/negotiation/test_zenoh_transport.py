@@ -3,6 +3,7 @@
 import socket
 import subprocess
 import sys
+from uuid import uuid4
 
 import pytest
 
@@ -24,8 +25,8 @@ def endpoint():
 
 
 def transports(mission, robots, mode="peer"):
-    """One for each robot; all but the first know the first alone."""
-    hub = endpoint()
+    """One for each robot; all but the first know the first alone. No other test has a mission of this name."""
+    mission, hub = f"{mission} {uuid4()}", endpoint()
     made = {}
     for robot in robots:
         if not made:
