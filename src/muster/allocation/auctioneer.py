@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 
@@ -49,13 +49,13 @@ class Auctioneer:
     def routes(self) -> Routes:
         return self._bidders.routes
 
-    def restore(self, routes: Routes, sales: Sales) -> None:
-        """Go back to these routes and the sales that led to them; all other tasks are announced."""
+    def restore(self, routes: Routes, sales: Sales, closed: Collection[int] = ()) -> None:
+        """Go back to these routes and the sales that led to them; all other tasks but those `closed` are announced."""
         self.sales = dict(sales)
         self._bidders.set_routes(routes)
         self._look_at_team()
         sold = {j for route in routes for j in route}
-        self.announce([j for j in range(len(self._problem.tasks)) if j not in sold])
+        self.announce([j for j in range(len(self._problem.tasks)) if j not in sold and j not in closed])
 
     def announce(self, tasks: Sequence[int]) -> None:
         """Offer tasks."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -26,7 +26,7 @@ def book_of(problem: Problem, rounds: int, sales: Sales, hold: Hold) -> Book:
         stop = Stop()
 
         def tell(auctioneer: Auctioneer, sale: Sale) -> None:
-            for bid in _bids_of_round(problem, auctioneer, sale):
+            for bid in bids_of_round(problem, auctioneer, sale, range(len(problem.robots))):
                 take(bid)
             if auctioneer.round == rounds:
                 stop.interrupt()
@@ -37,16 +37,17 @@ def book_of(problem: Problem, rounds: int, sales: Sales, hold: Hold) -> Book:
     return Book(rounds=rounds, awards=tuple(_awards(problem, sales)), recite=recite)
 
 
-def _bids_of_round(problem: Problem, auctioneer: Auctioneer, sale: Sale) -> Iterator[Bid]:
+def bids_of_round(problem: Problem, auctioneer: Auctioneer, sale: Sale, robots: Iterable[int]) -> Iterator[Bid]:
+    """Every bid of some robots in the round that ends with this sale."""
     winner = problem.robots[sale.robot].id
-    for i, robot in enumerate(problem.robots):
+    for i in robots:
         bids = auctioneer.bids(i)
         for j in np.flatnonzero(np.isfinite(bids)).tolist():
             won = j == sale.task
             yield Bid(
                 round=auctioneer.round,
                 task=problem.tasks[j].id,
-                robot=robot.id,
+                robot=problem.robots[i].id,
                 bid=float(bids[j]),
                 winner=winner if won else None,
                 price=sale.price if won else None,

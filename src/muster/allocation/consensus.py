@@ -161,22 +161,22 @@ class Ledger:
 
         def award(row: int, j: int) -> Award:
             ranked = sorted(last[j].items(), key=lambda item: (-self._rows[item[1]][3], item[0]))
-            bids = [(robots[i], _score(self._rows[k][3])) for i, k in ranked]
+            bids = [(robots[i], score(self._rows[k][3])) for i, k in ranked]
             number, _, i, bid = self._rows[row]
-            return Award.of(number, tasks[j], robots[i], _score(bid), bids)
+            return Award.of(number, tasks[j], robots[i], score(bid), bids)
 
         def recite(take: TakeBid) -> None:
             for number, j, i, bid in self._rows:
                 row = sold.get((number, j))
                 won_by = None if row is None else robots[self._rows[row][2]]
-                price = None if row is None else _score(self._rows[row][3])
-                take(Bid(number, tasks[j], robots[i], _score(bid), won_by, price))
+                price = None if row is None else score(self._rows[row][3])
+                take(Bid(number, tasks[j], robots[i], score(bid), won_by, price))
 
         messages = self.rounds * sum(map(len, network))
         awards = tuple(award(row, j) for row, j in sorted(won.items()))
         return Book(rounds=self.rounds, messages=messages, awards=awards, recite=recite)
 
 
-def _score(bid: float) -> float:
+def score(bid: float) -> float:
     """The score that a bid is the logarithm of."""
     return math.exp(min(bid, _MOST))

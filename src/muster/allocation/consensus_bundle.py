@@ -82,9 +82,9 @@ class Parameters:
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """CBBA on one layer of tasks after the other."""
-    clock = _Clock(problem, params.discount)
+    clock = ScoreClock(problem, params.discount)
     routes = start or [[] for _ in problem.robots]
-    team = [_Bidder(problem, clock, i, route) for i, route in enumerate(routes)]
+    team = [Bidder(problem, clock, i, route) for i, route in enumerate(routes)]
     done = {j for route in routes for j in route}
     ledger = Ledger()
     for layer in layers(problem, done):
@@ -100,12 +100,12 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
 
 def _agree(
-    problem: Problem, team: list[_Bidder], offered: Indices, ledger: Ledger, stop: Stop, params: Parameters
+    problem: Problem, team: list[Bidder], offered: Indices, ledger: Ledger, stop: Stop, params: Parameters
 ) -> Indices:
     """(n,) winners of the tasks offered: rounds of the two phases until all agree and nobody takes one more."""
     m, network = len(team), neighbours(params.topology, len(team))
     beliefs = Beliefs(m, len(problem.tasks))
-    limit = params.bundle_size or 2 * math.ceil(len(offered) / m)
+    limit = params.bundle_size or first_limit(len(offered), m)
     most_rounds = _PATIENCE * len(offered) * diameter(params.topology, m)
     last_round = ledger.rounds + most_rounds
     for bidder in team:
@@ -126,6 +126,11 @@ def _agree(
     return beliefs.agreed_winners()
 
 
+def first_limit(tasks: int, robots: int) -> int:
+    """How many tasks a bundle may hold at first: twice the even share."""
+    return 2 * math.ceil(tasks / robots)
+
+
 def layers(problem: Problem, done: set[int]) -> list[list[int]]:
     """The tasks not done, those first that wait for none of the others, then those that wait for these, and so on."""
     waits_for = [[k for k in before if k not in done] for before in problem.prerequisites]
@@ -144,7 +149,7 @@ def layers(problem: Problem, done: set[int]) -> list[list[int]]:
     return result
 
 
-class _Clock:
+class ScoreClock:
     """Time as scores see it: what passes is the logarithm of what a reward loses."""
 
     def __init__(self, problem: Problem, discount: float) -> None:
@@ -176,7 +181,7 @@ def extent(problem: Problem) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-class _Bidder:
+class Bidder:
     """One robot: its settled route, and the bundle and path of the layer that is auctioned.
 
     Of the tasks of the layer those that the robot may do are the columns of its arrays. A gap is where a task could go:
@@ -185,7 +190,7 @@ class _Bidder:
     lost; `_growth`: what the usage grows by.
     """
 
-    def __init__(self, problem: Problem, clock: _Clock, i: int, route: Sequence[int]) -> None:
+    def __init__(self, problem: Problem, clock: ScoreClock, i: int, route: Sequence[int]) -> None:
         self._problem, self._i = problem, i
         self._capacity = float(problem.capacity[i])
         self._priority = np.array([task.priority for task in problem.tasks])
@@ -203,6 +208,11 @@ class _Bidder:
     def route(self) -> list[int]:
         return self._settled + self._path
 
+    @property
+    def bundle(self) -> tuple[int, ...]:
+        """The tasks of the bundle, in the order in which they were added."""
+        return tuple(self._bundle)
+
     def offer(self, tasks: Indices) -> None:
         """Begin with an empty bundle."""
         self._columns = tasks[self._problem.allowed_by_kind[self._problem.kinds[self._i], tasks]]
@@ -215,6 +225,12 @@ class _Bidder:
         self._to: dict[int, Floats] = {}
         self._reach, self._loss, self._growth = (row[None] for row in self._gap(self._place(0), None))
         self._measure()
+
+    def refuse(self, tasks: Sequence[int]) -> None:
+        """Bid for none of these, but for what is in the bundle."""
+        for j in tasks:
+            if j in self._column:
+                self._free[self._column[j]] = False
 
     def build_bundle(self, beliefs: Beliefs, limit: int, ledger: Ledger) -> bool:
         """Algorithm 3: add the task of highest score that outbids the winner known; whether any was added."""

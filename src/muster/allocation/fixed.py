@@ -6,6 +6,7 @@ The tasks that stay are a plan by themselves, so that whatever is planned behind
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from muster import core
@@ -25,6 +26,33 @@ def keeping(problem: Problem, plan: Plan) -> Problem:
     """
     routes = admissible_routes(problem, plan, "fixed")
     return replace(problem, fixed=tuple(tuple(route) for route in routes))
+
+
+def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
+    """The same problem for plans whose routes begin with what robots have done or begun: what has happened may be.
+
+    These tasks wait for nothing, and a robot that has used more than it could has that for its capacity. Where the
+    problem knows no way along what a robot has done, it is taken to be at its start, and nobody waits for that.
+    """
+    begun = {j for route in past for j in route}
+    free = tuple(replace(task, prerequisites=()) if j in begun else task for j, task in enumerate(problem.tasks))
+    kept = replace(problem, tasks=free, fixed=tuple(map(tuple, past)), known=problem.measured)
+    usages = core.Inspection(kept.core, [list(route) for route in past]).usages
+    capacity = problem.capacity
+    usable = 1.0 - problem.mission.rules.capacity_reserve
+    robots = tuple(
+        replace(robot, work_capacity=usage / usable) if math.isfinite(usage) and _too_much(usage, most) else robot
+        for robot, usage, most in zip(problem.robots, usages, capacity, strict=True)
+    )
+    lost = {problem.tasks[j].id for route, usage in zip(past, usages, strict=True) if math.isinf(usage) for j in route}
+    if robots == problem.robots and not lost:
+        return kept
+    return replace(
+        kept,
+        robots=robots,
+        tasks=tuple(replace(t, prerequisites=tuple(p for p in t.prerequisites if p not in lost)) for t in free),
+        fixed=tuple(() if math.isinf(usage) else tuple(route) for route, usage in zip(past, usages, strict=True)),
+    )
 
 
 def admissible_part(problem: Problem, routes: Routes) -> Routes:

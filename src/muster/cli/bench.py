@@ -19,7 +19,7 @@ from muster.mission.hints import did_you_mean
     "--only",
     metavar="NAMES",
     help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up, path, travel, avoidance, "
-    "simulation, reallocation.",
+    "simulation, reallocation, auction.",
 )
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option

@@ -17,7 +17,20 @@ import click
 from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
 from muster.mission.errors import MusterError
 
-VERBS = ("missions", "init", "check", "solve", "verify", "explain", "path", "simulate", "replay", "study", "bench")
+VERBS = (
+    "missions",
+    "init",
+    "check",
+    "solve",
+    "auction",
+    "verify",
+    "explain",
+    "path",
+    "simulate",
+    "replay",
+    "study",
+    "bench",
+)
 
 
 class _OutputClosedError(Exception):
@@ -61,6 +74,7 @@ _SUMMARIES = {
     "init": "Write a mission file to start from.",
     "check": "Find what is wrong with a mission, and the tasks that can never be done.",
     "solve": "Plan a mission.",
+    "auction": "Let robots agree among themselves who does what, a process a robot.",
     "verify": "Judge a plan from scratch.",
     "explain": "Say why a task is done by this robot, not by that one, or left out.",
     "path": "Find a way over the map of a mission, from one point to another.",

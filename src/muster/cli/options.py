@@ -33,9 +33,18 @@ _FILE = click.Path(path_type=Path)
 
 
 def mission_argument(verb: Verb) -> Verb:
-    """MISSION, and the flags that some forms of it need; the verb gets them as `mission_flags`."""
+    """MISSION, and the flags that some forms of it need."""
+    return _with_mission(verb, required=True)
+
+
+def optional_mission_argument(verb: Verb) -> Verb:
+    """MISSION, which the verb may do without: it gets None then."""
+    return _with_mission(verb, required=False)
+
+
+def _with_mission(verb: Verb, *, required: bool) -> Verb:
     options = (
-        click.argument("mission"),
+        click.argument("mission", required=required),
         click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
         click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task-list CSV."),
         click.option("--salesmen", type=click.IntRange(min=1), metavar="M", help="Robots of a TSPLIB mission."),
@@ -129,3 +138,19 @@ def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[
             hint = did_you_mean(name, IGNORABLE)
             raise click.BadParameter(f"{name!r} is not one of {', '.join(IGNORABLE)}{hint}", param_hint="'--ignore'")
     return names
+
+
+def settings_of(settings: tuple[str, ...]) -> dict[str, Any]:
+    """What `--set NAME=VALUE` gives, by name."""
+    values: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if name.strip() in values:
+            raise ParameterError(f"--set: {name.strip()} given twice; expected it once")
+        if not equals or not name.strip() or not text.strip():
+            raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
+        try:
+            values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
+        except ValueError:
+            values[name.strip()] = text.strip()
+    return values

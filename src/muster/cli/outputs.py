@@ -13,6 +13,11 @@ def require_csv(book: Path | None) -> None:
         raise ParameterError(f"--book: {book}; expected a file that ends in .csv")
 
 
+def require_folder(views: Path | None) -> None:
+    if views is not None and views.exists() and not views.is_dir():
+        raise ParameterError(f"--views: {views} is a file; expected a folder, or a name for a new one")
+
+
 def require_writable(
     plan: Path | None,
     others: tuple[Path | None, ...],

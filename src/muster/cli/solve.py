@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import signal
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
@@ -25,17 +24,17 @@ from muster.cli.options import (
     objective_option,
     quiet_option,
     require_complete_option,
+    settings_of,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.mission.errors import MusterError, ParameterError
-from muster.mission.model import Mission
+from muster.cli.results import show_plan, write_book
+from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Stop
-    from muster.verification import Verdict
 
 _FILE = click.Path(path_type=Path)
 
@@ -145,7 +144,7 @@ def command(
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
     terms = _given(chosen, threads=threads, ray=ray, bid=bid, placement=placement, winner=winner)
-    others = _settings(settings)
+    others = settings_of(settings)
     for name in terms.keys() & others.keys():
         raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
     params = make_parameters(chosen, terms | others)
@@ -167,8 +166,8 @@ def command(
                 proof = prove(problem, plan, bound, stop, time_limit)
                 plan = proof.plan
     with _ctrl_c_interrupts(stop):
-        _show(loaded, plan, form, output, plot, gantt)
-    if book is not None and not _write_book(plan, book, quiet):
+        show_plan(loaded, plan, form, output, plot, gantt)
+    if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     if stop.interrupted:
         if not quiet:
@@ -213,21 +212,6 @@ def _default(value: object) -> object:
     return "(objective)" if value is None else value
 
 
-def _settings(settings: tuple[str, ...]) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for setting in settings:
-        name, equals, text = setting.partition("=")
-        if name.strip() in values:
-            raise ParameterError(f"--set: {name.strip()} given twice; expected it once")
-        if not equals or not name.strip() or not text.strip():
-            raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
-        try:
-            values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
-        except ValueError:
-            values[name.strip()] = text.strip()
-    return values
-
-
 def _given(allocator: Allocator, **words: str | int | None) -> dict[str, Any]:
     """Parameters that have options of their own, where these are given."""
     from muster.allocation.registry import ALLOCATORS
@@ -246,19 +230,6 @@ def _auctions() -> str:
     return " or ".join(allocator.name for allocator in ALLOCATORS.values() if allocator.auctions)
 
 
-def _write_book(plan: Plan, file: Path, quiet: bool) -> bool:
-    """Write every bid, which takes a while where there are many; whether all are written."""
-    if not quiet and sys.stderr.isatty():
-        click.echo(f"writing {file} ...", err=True)
-    try:
-        if plan.book is not None:
-            plan.book.save(file)
-    except KeyboardInterrupt:
-        click.echo(f"interrupted: {file} does not hold all bids", err=True)
-        return False
-    return True
-
-
 @contextmanager
 def _ctrl_c_interrupts(stop: Stop) -> Iterator[None]:
     """The first Ctrl-C ends the search and keeps its plan; the second leaves out reasons; the third ends everything."""
@@ -273,29 +244,3 @@ def _ctrl_c_interrupts(stop: Stop) -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-def _show(mission: Mission, plan: Plan, form: str, output: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    from muster.cli.plan_tables import print_plan
-    from muster.verification import verify
-
-    verdict = verify(mission, plan)
-    if not verdict.valid:
-        details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
-        raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
-    if output is not None:
-        plan.save(output)
-    _draw(mission, plan, verdict, plot, gantt)
-    if form == "json":
-        click.echo(plan.text(), nl=False)
-    else:
-        print_plan(plan, verdict)
-
-
-def _draw(mission: Mission, plan: Plan, verdict: Verdict, plot: Path | None, gantt: Path | None) -> None:
-    from muster.report import plot_gantt, plot_routes, save_figure
-
-    if plot is not None:
-        save_figure(plot_routes(mission, plan, verdict), plot)
-    if gantt is not None:
-        save_figure(plot_gantt(mission, verdict), gantt)

@@ -184,12 +184,17 @@ void Bidders::take_in(int robot) {
   done_[robot] = time;
 }
 
+// The first place in the robot's route where the task may go: behind what stays, and what it waits for.
+int Bidders::earliest(int robot, int task) const {
+  return std::max(problem_.fixed(robot), precedence_.earliest(robot, task));
+}
+
 // Finds the robot's best place for an open task.
 void Bidders::look(int robot, int task) {
   growth_[index(robot, task)] = kNever;
   if (!problem_.allowed(robot, task)) return;
   const int last = draft_.length(robot);
-  for (int at = insert_ ? precedence_.earliest(robot, task) : last; at <= last; ++at) consider(robot, task, at);
+  for (int at = insert_ ? earliest(robot, task) : last; at <= last; ++at) consider(robot, task, at);
 }
 
 // The same after a task was put into the robot's route at a place: all other places are as they were.
@@ -199,9 +204,9 @@ void Bidders::look_again(int robot, int task, int at) {
   const bool had_none = !std::isfinite(growth_[index(robot, task)]);
   if (!insert_ || had_none || place == at) return look(robot, task);
   if (place > at) ++place;
-  const int earliest = precedence_.earliest(robot, task);
+  const int first = earliest(robot, task);
   for (const int candidate : {at, at + 1}) {
-    if (candidate >= earliest) consider(robot, task, candidate);
+    if (candidate >= first) consider(robot, task, candidate);
   }
 }
 

@@ -56,6 +56,7 @@ class Bidders {
   void close(int task);
   void take_in(int robot);
   bool waiting_counts() const { return figure_ == Figure::end && problem_.has_prerequisites(); }
+  int earliest(int robot, int task) const;
   void prefer(int robot, int task);
   void look(int robot, int task);
   void look_again(int robot, int task, int at);

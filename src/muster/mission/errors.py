@@ -10,6 +10,7 @@
     │   ├── UnknownFrameError, DisconnectedFramesError
     │   ├── ExtrapolationError   not at that time
     │   └── FrameTreeError       what was to be added would be no tree
+    ├── NetworkError          the network cannot be used as asked: a port in use, a host that nobody knows
     └── MissingExtraError     an optional part of the installation is absent
 
 Outcomes that are to be expected (nobody can do a task, no admissible plan) are values, not exceptions.
@@ -93,6 +94,10 @@ class ExtrapolationError(TransformError):
 
 class FrameTreeError(TransformError):
     """A transform would make a cycle or a second parent, or change what is static."""
+
+
+class NetworkError(MusterError):
+    """The network cannot be used as asked; the message names the address, and what to do."""
 
 
 class MissingExtraError(MusterError, ImportError):

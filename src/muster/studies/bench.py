@@ -17,6 +17,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
+from muster.studies.bench_auction import AUCTION_BENCHES
 from muster.studies.bench_avoidance import compared
 from muster.studies.bench_execution import EXECUTION_BENCHES
 from muster.studies.bench_motion import MOTION_BENCHES
@@ -197,4 +198,5 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     **MOTION_BENCHES,
     **SIMULATION_BENCHES,
     **EXECUTION_BENCHES,
+    **AUCTION_BENCHES,
 }

@@ -1,0 +1,194 @@
+"""`muster auction`: robots agree among themselves who does what, a process a robot."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.auction_options import result_options, robot_options, simulation_options, terms_options
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
+from muster.cli.options import (
+    format_option,
+    ignore_option,
+    load_mission,
+    objective_option,
+    optional_mission_argument,
+    quiet_option,
+    require_complete_option,
+    settings_of,
+)
+from muster.cli.outputs import require_csv, require_drawable, require_folder, require_writable
+from muster.cli.results import show_plan, write_book
+from muster.mission.errors import ParameterError
+from muster.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from muster.allocation.problem import Problem
+    from muster.negotiation.methods import Method
+    from muster.negotiation.view import View
+
+_FILE = click.Path(path_type=Path)
+_OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file")
+_OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """What robots have agreed on: how each sees it (by robot), and how long it took, seconds."""
+
+    views: dict[str, View]
+    took_s: float
+
+
+@click.command()
+@optional_mission_argument
+@click.option("--method", default="auction", show_default=True, metavar="NAME", help="How robots agree.")
+@click.option(
+    "--transport", type=click.Choice(["udp", "zenoh"]), default="udp", show_default=True, help="What carries messages."
+)
+@objective_option
+@ignore_option
+@terms_options
+@click.option(
+    "--time-limit", type=click.FloatRange(min=0), default=60.0, show_default=True, metavar="S", help="To agree within."
+)
+@robot_options
+@click.option(
+    "--new-key",
+    type=_FILE,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda *a: _new_key(*a),
+    metavar="FILE",
+    help="Make a key for --key-file, and do nothing else.",
+)
+@simulation_options
+@require_complete_option
+@format_option
+@result_options
+@quiet_option
+def command(
+    mission: str | None,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    method: str,
+    transport: str,
+    objective: str | None,
+    ignore: tuple[str, ...],
+    settings: tuple[str, ...],
+    require_complete: bool,
+    form: str,
+    output: Path | None,
+    book: Path | None,
+    plot: Path | None,
+    gantt: Path | None,
+    views: Path | None,
+    quiet: bool,
+    verbose: bool,
+    **others: Any,
+) -> int:
+    """Hold the auction of a MISSION without a centre: each robot is a process, and bids for itself.
+
+    Without --robot the whole team runs on this machine. With --robot this is one robot of a team that runs elsewhere:
+    the same MISSION and key, one process on each robot's computer.
+
+    --simulate-network SEED without a MISSION replays that run of `make campaign-auction`.
+    """
+    from muster.allocation.problem import Problem
+    from muster.negotiation.methods import method_named
+
+    if mission is None:
+        return _replayed(others["network_seed"])
+    _check_together(others)
+    require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
+    require_csv(book)
+    require_folder(views)
+    require_drawable(plot, gantt)
+    if quiet:
+        logging.getLogger("muster").setLevel(logging.ERROR)
+    chosen = method_named(method)
+    terms = _terms(chosen, others, settings)
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    problem = Problem.compile(loaded, objective, ignore).ready()
+    agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
+    first = next(iter(agreement.views.values()))
+    plan = chosen.plan(problem, terms, first, agreement.took_s)
+    show_plan(loaded, plan, form, output, plot, gantt)
+    if views is not None:
+        _write_views(views, {r: chosen.plan(problem, terms, v, agreement.took_s) for r, v in agreement.views.items()})
+    if book is not None and not write_book(plan, book, quiet):
+        return INTERRUPTED
+    return INCOMPLETE if require_complete and not plan.complete else DONE
+
+
+def _replayed(seed: int | None) -> int:
+    """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
+    if seed is None:
+        raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
+    from muster.studies.negotiation.trial import replay
+
+    report = replay(seed)
+    for line in report.lines():
+        click.echo(line)
+    return REJECTED if report.failures else DONE
+
+
+def _agree(
+    problem: Problem, terms: Any, method: Method, transport: str, others: dict[str, Any], **speech: bool
+) -> Agreement:
+    """Let the robots agree: simulated, all here, or one of them here."""
+    if others["network_seed"] is not None:
+        from muster.cli.auction_simulated import agree_in_memory
+
+        return agree_in_memory(problem, terms, method, others, **speech)
+    if others["robot"] is not None:
+        from muster.cli.auction_robot import agree_with_others
+
+        return agree_with_others(problem, terms, method, transport, others, **speech)
+    from muster.cli.auction_team import agree_here
+
+    return agree_here(problem, terms, method, transport, others["time_limit"], **speech)
+
+
+def _check_together(others: dict[str, Any]) -> None:
+    """Options that mean something beside others alone."""
+    given = {name for name, value in others.items() if value is not None}
+    for names, needed in ((_OF_ONE_ROBOT, "robot"), (_OF_A_SIMULATED_NETWORK, "network_seed")):
+        for name in names:
+            if name in given and needed not in given:
+                word = {"robot": "--robot", "network_seed": "--simulate-network"}[needed]
+                raise ParameterError(f"--{name.replace('_', '-')} given; expected it together with {word}")
+    if {"robot", "network_seed"} <= given:
+        raise ParameterError("--robot and --simulate-network given; expected one of them")
+
+
+def _terms(method: Method, others: dict[str, Any], settings: tuple[str, ...]) -> Any:
+    from muster.allocation.allocator import make_parameters
+
+    words = {name: others[name] for name in ("bid", "placement", "winner") if others[name] is not None}
+    weights = settings_of(settings)
+    for name in words.keys() & weights.keys():
+        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
+    return make_parameters(method.allocator, words | weights)
+
+
+def _write_views(folder: Path, plans: dict[str, Plan]) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    for robot, plan in plans.items():
+        plan.save(folder / f"{robot}.json")
+
+
+def _new_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
+    if file is None or ctx.resilient_parsing:
+        return
+    from muster.negotiation.keys import new_key, write_key
+
+    write_key(file, new_key())
+    click.echo(f"{file}: a new key; give every robot a copy, and nobody else")
+    ctx.exit()

@@ -1,0 +1,188 @@
+"""`muster auction --robot NAME`: one robot of a team whose other robots run elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+
+from muster.allocation.problem import Problem
+from muster.cli.auction import Agreement
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.hints import did_you_mean
+from muster.negotiation.codec import Codec
+from muster.negotiation.keys import read_key
+from muster.negotiation.memory_file import Kept, Remembering, kept_in
+from muster.negotiation.methods import Method
+from muster.negotiation.mission_digest import mission_digest
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.node import Node, NodeStatus
+from muster.negotiation.one_robot import Staying, new_incarnation, take_part
+from muster.negotiation.seal import Seal
+from muster.negotiation.transport import Transport
+
+_ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
+_PORT = 7783
+_AGAIN_S = 0.5
+
+
+def agree_with_others(
+    problem: Problem,
+    terms: Any,
+    method: Method,
+    transport: str,
+    options: dict[str, Any],
+    *,
+    quiet: bool,
+    verbose: bool,
+) -> Agreement:
+    """Be one robot until all that are there agree.
+
+    Raises
+    ------
+    ParameterError
+        if the options do not tell who it is, which key the team has, or where the others are.
+    NetworkError
+        as `one_robot.take_part`; or if the network cannot be used so.
+    InputError
+        if the key or the memory cannot be read.
+    """
+    robot, file = options["robot"], options["memory"]
+    if robot not in problem.robot_index:
+        names = list(problem.robot_index)
+        raise ParameterError(f"--robot: {robot}; expected one of {', '.join(names)}{did_you_mean(robot, names)}")
+    if options["key_file"] is None:
+        raise ParameterError("--key-file missing; expected with --robot (`muster auction --new-key FILE` makes one)")
+    key, digest = read_key(options["key_file"]), mission_digest(problem, terms)
+    kept = Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
+    kept = replace(kept, incarnation=new_incarnation(kept.incarnation))
+    forgot = file is None  # for all it knows, it may have taken part before
+    negotiator = method.negotiator(
+        problem, terms, robot, incarnation=kept.incarnation, remembered=kept.memory, forgot=forgot
+    )
+
+    def say(line: str) -> None:
+        if not quiet:
+            click.echo(line, err=True)
+
+    if forgot and negotiator.rules.once:
+        say(f"{len(negotiator.rules.once)} tasks are for at most one robot: without --memory they may find none")
+    transport_of = _transport(problem, transport, options)
+    carrier = transport_of if file is None else Remembering(transport_of, _keeper(file, kept, negotiator))
+    codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
+    seal = Seal(key, digest, robot, kept.incarnation)
+    staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
+    with Node(negotiator, carrier, codec, seal) as node:
+        watch = _Watch(negotiator, say)
+        view, took_s = take_part(node, negotiator, staying, watch)
+        watch.say_how_it_ended(node.status(), took_s)
+    return Agreement({robot: view}, took_s)
+
+
+def _keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
+    """Keeps what the robot knows in a file, when that has changed."""
+
+    def keep() -> None:
+        nonlocal kept
+        now = replace(kept, memory=negotiator.memory)
+        if now != kept:
+            kept = now
+            kept.save(file)
+
+    return keep
+
+
+class _Watch:
+    """Says who is there."""
+
+    def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
+        self._negotiator, self._say = negotiator, say
+        self._there: set[str] = set()
+        self._settled = False
+
+    def __call__(self, status: NodeStatus) -> None:
+        members = self._negotiator.members
+        heard = {robot for robot in status.members if members.incarnation(robot) >= 0}
+        for robot in self._negotiator.rules.robots:
+            if robot in heard and robot not in self._there:
+                self._say(f"{robot} is there")
+            elif robot in self._there and robot not in heard:
+                self._say(f"{robot} is silent; going on without it")
+        self._there = heard
+        if status.settled != self._settled and status.settled:
+            who = (
+                f"all {len(status.members)} agree" if len(status.members) > 1 else "alone, with nothing left to bid for"
+            )
+            self._say(f"{who}, in round {status.round} of epoch {status.epoch}")
+        self._settled = status.settled
+
+    def say_how_it_ended(self, status: NodeStatus, took_s: float) -> None:
+        kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats"))
+        volume = sum(status.sent_bytes.values()) / 1000
+        refused = "".join(
+            f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
+        )
+        self._say(f"agreed after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}")
+
+
+def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Transport:
+    connect, listen, multicast = options["connect"], options["listen"], options["multicast"]
+    if transport == "zenoh":
+        if multicast is not None:
+            raise ParameterError("--multicast given; expected it with --transport udp (Zenoh scouts by itself)")
+        return _zenoh(problem.mission.name or "mission", options["robot"], connect, listen, options["wait"])
+    if (connect is None) == (multicast is None):
+        raise ParameterError("--connect or --multicast: expected one of them with --robot")
+    from muster.negotiation.udp import UdpTransport
+
+    if multicast is not None:
+        if listen is not None:
+            raise ParameterError("--listen given; expected it without --multicast, which tells the port")
+        return UdpTransport.multicast(_address("--multicast", multicast), robot=options["robot"])
+    bind = (_ANYWHERE, _PORT) if listen is None else _address("--listen", listen)
+    return UdpTransport(bind, _peers(connect, problem, options["robot"]))
+
+
+def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wait_s: float) -> Transport:
+    """A Zenoh session; where the robot only connects, it waits for somebody to be there."""
+    from muster.negotiation.zenoh_transport import ZenohTransport
+
+    for option, text in (("--connect", connect), ("--listen", listen)):
+        for endpoint in _listed(text):
+            if "/" not in endpoint:
+                raise ParameterError(f"{option}: {endpoint}; expected an endpoint of Zenoh, such as tcp/HOST:PORT")
+    until_s = time.monotonic() + wait_s
+    while True:
+        try:
+            return ZenohTransport(mission, robot, connect=_listed(connect), listen=_listed(listen))
+        except NetworkError:
+            if listen is not None or time.monotonic() > until_s:
+                raise
+            time.sleep(_AGAIN_S)
+
+
+def _peers(text: str, problem: Problem, robot: str) -> dict[str, tuple[str, int]]:
+    """By robot where it is; by address where the list names none, which works too, with more messages."""
+    peers = {}
+    for item in _listed(text):
+        name, equals, address = item.rpartition("=")
+        if equals and name not in problem.robot_index:
+            raise ParameterError(f"--connect: robot {name} is not in the mission; expected ROBOT=HOST:PORT")
+        if name != robot:
+            peers[name or address] = _address("--connect", address)
+    return peers
+
+
+def _listed(text: str | None) -> list[str]:
+    return [item.strip() for item in (text or "").split(",") if item.strip()]
+
+
+def _address(option: str, text: str) -> tuple[str, int]:
+    host, colon, port = text.rpartition(":")
+    if not colon or not host or not port.isdigit() or int(port) > 65535:
+        raise ParameterError(f"{option}: {text}; expected HOST:PORT")
+    return host.strip("[]"), int(port)

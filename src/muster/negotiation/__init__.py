@@ -1,0 +1,1 @@
+"""Who does what, agreed without a centre: one process a robot, a protocol over a transport."""

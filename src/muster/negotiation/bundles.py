@@ -1,0 +1,144 @@
+"""CBBA on the rounds of an epoch: the consensus-based bundle algorithm, held by one of its robots.
+
+Choi, Brunet and How, 2009; see `allocation.consensus_bundle`, which holds it in one process. A round is one of the
+paper's: each robot adds to its bundle and publishes what it added, then all read each other. What comes of reading
+follows from what was published, so every robot keeps the beliefs of all, and nothing else is sent. Where nobody adds
+any more and all agree, one round asks who could take one more than bundles may hold, and one tells in which order
+robots are going to do what they won, which only they themselves know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from enum import Enum
+
+import numpy as np
+
+from muster.allocation.allocator import Routes
+from muster.allocation.consensus import NO_BID, NOBODY, Beliefs, Ledger
+from muster.allocation.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
+from muster.allocation.problem import Problem
+from muster.negotiation.messages import Bid, RoundBids, Sold
+from muster.negotiation.valuation import Resolution, TeamValuer
+
+
+class _Phase(Enum):
+    BUILDING = "building"
+    ASKING = "asking"
+    TELLING = "telling"
+
+
+class BundleValuer(TeamValuer):
+    """One robot's part in CBBA; `params` are the same for all, but for the topology, which does not count.
+
+    The network is complete, or the protocol's relays make it so.
+    """
+
+    told_by_sales = False
+
+    def __init__(self, problem: Problem, params: Parameters, robot: str) -> None:
+        super().__init__(problem, robot)
+        self.params = params
+        self._routes: Routes = []
+        self._limit = 0
+        self._phase = _Phase.BUILDING
+
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        self._routes = [list(route) for route in routes]
+        clock = ScoreClock(self._problem, self.params.discount)
+        self._bidder = Bidder(self._problem, clock, self._me, self._routes[self._me])
+        self.ledger = Ledger()
+        self._done = {j for route in self._routes for j in route}.union(closed)
+        self._layers = layers(self._problem, self._done)
+        self._next_layer()
+
+    def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
+        """What the robot publishes in this round: what it adds, or that it could take more, or its order."""
+        self._bidder.refuse([self._tasks[task] for task in refused if task in self._tasks])
+        if self._phase is _Phase.TELLING:
+            mine = self._beliefs.z[self._me] == self._me
+            return tuple(self._bid(j) for j in self._bidder.route if mine[j] and j not in self._done)
+        if self._phase is _Phase.ASKING:
+            more = len(self._offered) and self._bidder.could_take_more(self._beliefs)
+            return ((self._problem.tasks[int(self._offered[0])].id, 0.0),) if more else ()
+        before = len(self._bidder.bundle)
+        self._bidder.build_bundle(self._beliefs, self._limit, self.ledger)
+        return tuple(self._bid(j) for j in self._bidder.bundle[before:])
+
+    def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
+        """What comes of a round in which all members published this."""
+        members = [self._robots[said.robot] for said in bids]
+        if self._phase is _Phase.TELLING:
+            return self._settle(bids)
+        if self._phase is _Phase.ASKING:
+            more = any(said.bids for said in bids)
+            self._limit *= 2 if more else 1
+            self._phase = _Phase.BUILDING if more else _Phase.TELLING
+            return Resolution()
+        self._take_in(bids)
+        if not any(said.bids for said in bids) and self._agree(members):
+            self._phase = _Phase.TELLING if self.params.bundle_size else _Phase.ASKING
+        else:
+            self._exchange(members)
+        return Resolution()
+
+    def award(self, sold: Sold) -> None:
+        self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])
+
+    def route(self, robot: str) -> list[str]:
+        return [self._problem.tasks[j].id for j in self._routes[self._robots[robot]]]
+
+    def _next_layer(self) -> bool:
+        """Offer the tasks of the next layer of which all prerequisites are owned; whether there is one."""
+        m, n = len(self._problem.robots), len(self._problem.tasks)
+        self._beliefs, self._phase = Beliefs(m, n), _Phase.BUILDING
+        self._bundles: list[list[int]] = [[] for _ in range(m)]
+        layer = self._layers.pop(0) if self._layers else []
+        offered = [j for j in layer if self._done.issuperset(self._problem.prerequisites[j])]
+        self._offered = np.array(offered, dtype=np.int64)
+        self._limit = self.params.bundle_size or first_limit(len(offered), m)
+        self._bidder.offer(self._offered)
+        return bool(layer)
+
+    def _take_in(self, bids: Sequence[RoundBids]) -> None:
+        """Note what others have added; this robot's own is noted already."""
+        for said in bids:
+            i = self._robots[said.robot]
+            for task, bid in said.bids:
+                j = self._tasks[task]
+                self._bundles[i].append(j)
+                if i != self._me:
+                    self.ledger.note(j, i, bid)
+                self._beliefs.z[i, j], self._beliefs.y[i, j] = i, bid
+
+    def _exchange(self, members: Sequence[int]) -> None:
+        """Phase 2: all members read each other, and release what they lost."""
+        network = [[k for k in members if k != i] if i in members else [] for i in range(len(self._robots))]
+        self._beliefs.exchange(network, self.ledger.end_round())
+        for i in members:
+            self._release(i)
+        self._bidder.release(self._beliefs)
+
+    def _release(self, i: int) -> None:
+        z, y, bundle = self._beliefs.z[i], self._beliefs.y[i], self._bundles[i]
+        kept = next((k for k, j in enumerate(bundle) if z[j] != i), len(bundle))
+        if i != self._me:  # its own bidder does this for the robot itself
+            for j in bundle[kept:]:
+                if z[j] == i:
+                    z[j], y[j] = NOBODY, NO_BID
+        del bundle[kept:]
+
+    def _agree(self, members: Sequence[int]) -> bool:
+        z, y = self._beliefs.z[members], self._beliefs.y[members]
+        return bool((z == z[0]).all() and (y == y[0]).all())
+
+    def _settle(self, bids: Sequence[RoundBids]) -> Resolution:
+        """Give the layer's tasks to their robots, in their order, and go on to the next."""
+        sold = [Sold(said.robot, task, price) for said in bids for task, price in said.bids]
+        for one in sold:
+            self._done.add(self._tasks[one.task])
+        self._bidder.settle(self._beliefs.z[self._me])
+        return Resolution(tuple(sold), over=not self._next_layer())
+
+    def _bid(self, j: int) -> Bid:
+        return self._problem.tasks[j].id, float(self._beliefs.y[self._me, j])

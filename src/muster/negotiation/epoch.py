@@ -1,0 +1,183 @@
+"""One epoch: all members declare what they own, then sell what nobody owns, round by round.
+
+Auction thesis, section 4.2.3 and Algorithm 1: each robot publishes one bid a round under its own name, listens to the
+others, finds the winner itself, and takes the task out of its list. All that members do in an epoch follows from their
+declarations and from bids that follow from these, so what one has resolved is what another would, and can be told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+from muster.negotiation.base import Base, Rules, agreed
+from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
+from muster.negotiation.valuation import Opening, Valuer
+
+
+@dataclass
+class Epoch:
+    """An epoch as one member sees it.
+
+    Parameters
+    ----------
+    own
+        the member's declaration, with the epoch's number and members.
+    rules, valuer
+        of the mission.
+    refused
+        tasks for which this member does not bid.
+    """
+
+    own: Declaration
+    rules: Rules
+    valuer: Valuer
+    refused: Collection[str] = ()
+    base: Base | None = None
+    round: int = 0
+    ended: bool = False
+    sales: list[Sold] = field(default_factory=list)
+    _declared: dict[str, Declaration] = field(default_factory=dict)
+    _bids: dict[int, dict[str, RoundBids]] = field(default_factory=dict)
+    _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
+
+    def __post_init__(self) -> None:
+        self._declared[self.own.robot] = self.own
+
+    @property
+    def stage(self) -> Stage:
+        if self.base is None:
+            return Stage(self.own.epoch)
+        return Stage(self.own.epoch, self.base.digest, self.round, self.ended)
+
+    def hear_declaration(self, declaration: Declaration) -> bool:
+        """Take in what a member declared; whether that is new."""
+        robot = declaration.robot
+        if self.base is not None or declaration.epoch != self.own.epoch or robot == self.own.robot:
+            return False
+        if self._declared.get(robot) == declaration:
+            return False
+        self._declared[robot] = declaration
+        return True
+
+    def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
+        """Take in what a member bid on a base; whether that is new."""
+        if self.base is None:
+            self._early.append((digest, bids))
+            return False
+        if digest != self.base.digest or bids.robot not in self.own.members:
+            return False
+        heard = self._bids.setdefault(bids.round, {})
+        if bids.robot in heard:
+            return False
+        heard[bids.robot] = bids
+        return True
+
+    def learn(self, stage: Stage, sales: Sequence[Sold], sales_from: int) -> bool:
+        """Take in what another member has resolved on the same base; whether that is new."""
+        if self.base is None or stage.base != self.base.digest:
+            return False
+        if not (self.valuer.told_by_sales or (stage.ended and sales)):
+            return False  # it has to go through the rounds itself, or take over all that came of them
+        before, known = self.stage, len(self.sales)
+        for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
+            self._sell(sold)
+            self.round += self.valuer.told_by_sales
+        complete = self.round == stage.round if self.valuer.told_by_sales else sales_from <= known
+        if stage.ended and complete and not self.ended:
+            self.round, self.ended = stage.round, True
+        return self.stage != before
+
+    def advance(self) -> list[RoundBids]:
+        """Go on as far as what was heard allows; returns what this member bids for the first time."""
+        published: list[RoundBids] = []
+        if self.base is None and not self._begin():
+            return published
+        while not self.ended:
+            heard = self._bids.setdefault(self.round, {})
+            if self.own.robot not in heard:
+                heard[self.own.robot] = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
+                published.append(heard[self.own.robot])
+            if len(heard) < len(self.own.members):
+                break
+            resolution = self.valuer.resolve([heard[robot] for robot in self.own.members])
+            for sold in resolution.sales:
+                self._sell(sold)
+            self.ended = resolution.over
+            self.round += bool(resolution.sales) or not resolution.over
+        return published
+
+    @property
+    def lacks(self) -> tuple[str, ...]:
+        """Members for whose declaration, or bids in this round, this one waits."""
+        if self.base is None:
+            return tuple(robot for robot in self.own.members if not self._fits(self._declared.get(robot)))
+        if self.ended:
+            return ()
+        heard = self._bids.get(self.round, {})
+        return tuple(robot for robot in self.own.members if robot not in heard)
+
+    def published(self) -> tuple[tuple[RoundBids, ...], ...]:
+        """What members bid, by round, up to the first round that was not heard whole."""
+        rounds = []
+        for number in range(self.round):
+            heard = self._bids.get(number, {})
+            if len(heard) < len(self.own.members):
+                break
+            rounds.append(tuple(heard[robot] for robot in self.own.members))
+        return tuple(rounds)
+
+    def declaration_of(self, robot: str) -> Declaration | None:
+        return self._declared.get(robot)
+
+    def bids_of(self, robot: str, number: int) -> RoundBids | None:
+        return self._bids.get(number, {}).get(robot)
+
+    @property
+    def rounds(self) -> int:
+        """How many rounds were seen in all."""
+        return (self.own.rounds if self.base is None else self.base.rounds) + self.round
+
+    def route(self) -> tuple[Claim, ...]:
+        """What this member owns now, in the order of its route."""
+        if self.base is None:
+            return self.own.route
+        owned = self.base.routes[self.own.robot]
+        claims = {claim.task: claim for claim in owned if not claim.begun}
+        for number, sold in enumerate(self.sales, self.base.rounds + 1):
+            if sold.robot == self.own.robot:
+                claims[sold.task] = Claim(sold.task, sold.price, number)
+        ahead = (claims[task] for task in self.valuer.route(self.own.robot) if task in claims)
+        return (*(claim for claim in owned if claim.begun), *ahead)
+
+    def _begin(self) -> bool:
+        """Find the base, if all members have declared the same members."""
+        if self.lacks:
+            return False
+        base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
+        self.base = base.keeping(self.valuer.begin(opening_of(base)))
+        for digest, bids in self._early:
+            self.hear_bids(digest, bids)
+        self._early.clear()
+        return True
+
+    def _fits(self, declaration: Declaration | None) -> bool:
+        return declaration is not None and declaration.members == self.own.members
+
+    def _sell(self, sold: Sold) -> None:
+        self.valuer.award(sold)
+        self.sales.append(sold)
+
+
+def opening_of(base: Base) -> Opening:
+    """How things stand on a base; a task that several have done or begun counts for the first of them."""
+    past: dict[str, list[str]] = {}
+    counted: set[str] = set()
+    done = [(fact.robot, fact.task) for fact in base.done]
+    begun = [(robot, claim.task) for robot, claims in base.routes.items() for claim in claims if claim.begun]
+    for robot, task in (*done, *begun):
+        if task not in counted:
+            past.setdefault(robot, []).append(task)
+            counted.add(task)
+    ahead = {robot: [claim.task for claim in claims if not claim.begun] for robot, claims in base.routes.items()}
+    return Opening(past, ahead, base.closed, tuple(fact.content for fact in base.added))

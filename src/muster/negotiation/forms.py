@@ -1,0 +1,124 @@
+"""How values of dataclasses are written as plain ones (arrays, numbers, texts, byte strings), and checked when read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
+
+_MOST = 2**63
+
+
+class Garbled(Exception):  # noqa: N818 - what was received, not what went wrong here
+    """Bytes that are no message."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """How a value is written: `pack` makes it plain, `unpack` checks what came (Garbled) and makes the value again."""
+
+    pack: Callable[[Any], Any]
+    unpack: Callable[[Any], Any]
+
+
+def count(value: Any) -> int:
+    if type(value) is int and 0 <= value < _MOST:
+        return value
+    raise Garbled("not a count")
+
+
+def array(value: Any) -> list[Any]:
+    if type(value) is list:
+        return value
+    raise Garbled("not an array")
+
+
+def _number(value: Any) -> float:
+    if type(value) is float and not math.isnan(value):
+        return value
+    raise Garbled("not a number")
+
+
+def _flag(value: Any) -> bool:
+    if type(value) is bool:
+        return value
+    raise Garbled("not a flag")
+
+
+def _data(value: Any) -> bytes:
+    if type(value) is bytes:
+        return value
+    raise Garbled("not bytes")
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+COUNT, FLAG = Form(_itself, count), Form(_itself, _flag)
+DATA = Form(_itself, _data)
+NUMBER = Form(float, _number)
+"""A float, bit by bit; any but NaN, which is not equal to itself."""
+
+
+def name_of(ids: Sequence[str]) -> Form:
+    """An id: its number among these, else its text."""
+    numbers = {name: k for k, name in enumerate(ids)}
+
+    def unpack(value: Any) -> str:
+        if type(value) is int and 0 <= value < len(ids):
+            return ids[value]
+        if type(value) is str and value not in numbers:
+            return value
+        raise Garbled("not an id")
+
+    return Form(lambda name: numbers.get(name, name), unpack)
+
+
+def choice(*words: str) -> Form:
+    """One of a few words: its number among these."""
+    numbers = {word: k for k, word in enumerate(words)}
+
+    def unpack(value: Any) -> str:
+        number = count(value)
+        if number < len(words):
+            return words[number]
+        raise Garbled("not one of the words")
+
+    return Form(numbers.__getitem__, unpack)
+
+
+def many(form: Form) -> Form:
+    """A tuple of values of one form."""
+    pack, unpack = form.pack, form.unpack
+    return Form(
+        lambda values: [pack(value) for value in values],
+        lambda values: tuple([unpack(value) for value in array(values)]),
+    )
+
+
+def record(cls: Callable[..., Any], **forms: Form) -> Form:
+    """A dataclass: an array of its fields, in the order in which it takes them."""
+    parts = attrgetter(*forms)
+    packs, unpacks = [form.pack for form in forms.values()], [form.unpack for form in forms.values()]
+
+    def unpack(values: Any) -> Any:
+        if len(array(values)) != len(unpacks):
+            raise Garbled("not that record")
+        return cls(*[read(value) for read, value in zip(unpacks, values, strict=True)])
+
+    return Form(lambda value: [write(part) for write, part in zip(packs, parts(value), strict=True)], unpack)
+
+
+def rows(form: Form, width: int) -> Form:
+    """A tuple of records of one width: one array, row after row."""
+    pack, unpack = form.pack, form.unpack
+
+    def read(values: Any) -> tuple[Any, ...]:
+        if len(array(values)) % width:
+            raise Garbled("not whole rows")
+        return tuple([unpack(values[k : k + width]) for k in range(0, len(values), width)])
+
+    return Form(lambda several: [plain for value in several for plain in pack(value)], read)

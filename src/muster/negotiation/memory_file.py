@@ -1,0 +1,140 @@
+"""What a robot's process keeps to start again where it stopped: a file of JSON, written before anything is sent.
+
+So a robot that starts again never says in the same epoch something else than it has said before.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from muster.mission.errors import Finding, InputError
+from muster.negotiation.happenings import Memory
+from muster.negotiation.messages import Claim, Fact
+from muster.negotiation.transport import Transport
+
+_SCHEMA = "muster-memory/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept:
+    """What is kept of a robot.
+
+    Parameters
+    ----------
+    auction
+        the digest of the mission and terms, in hexadecimal digits.
+    robot, incarnation
+        whose it is, and how it was numbered when it started last; 0: it never has.
+    memory
+        what it knew; None: nothing yet.
+    """
+
+    auction: str
+    robot: str
+    incarnation: int = 0
+    memory: Memory | None = None
+
+    def save(self, file: Path) -> None:
+        """Write it, so that after a loss of power the file holds this or what it held before."""
+        beside = file.with_name(file.name + ".new")
+        with beside.open("w", encoding="utf-8") as out:
+            json.dump({"schema": _SCHEMA} | asdict(self), out, default=_plain)
+            out.write("\n")
+            out.flush()
+            os.fsync(out.fileno())
+        beside.replace(file)
+
+
+def kept_in(file: Path, auction: str, robot: str) -> Kept:
+    """What a file holds; where there is none, nothing was kept.
+
+    Raises
+    ------
+    InputError
+        if the file cannot be read, or is of another auction or robot.
+    """
+    nothing = Kept(auction=auction, robot=robot)
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        schema = data.pop("schema")
+        memory = None if data["memory"] is None else _memory(data["memory"])
+        found = replace(nothing, **data | {"memory": memory})
+    except FileNotFoundError:
+        return nothing
+    except (UnicodeError, ValueError, AttributeError, KeyError, TypeError):
+        raise _wrong(file, "", "other content", "what --memory has written") from None
+    if schema != _SCHEMA:
+        raise _wrong(file, "schema", str(schema), _SCHEMA)
+    if found.robot != robot:
+        raise _wrong(file, "robot", found.robot, f"{robot}, or a new file")
+    if found.auction != auction:
+        raise _wrong(file, "auction", "of another mission or other terms", "the same as before, or a new file")
+    return found
+
+
+class Remembering:
+    """A transport that sends nothing before what the robot knows has been kept.
+
+    Parameters
+    ----------
+    transport
+        what carries messages.
+    keep
+        keeps what the robot knows.
+    """
+
+    def __init__(self, transport: Transport, keep: Callable[[], None]) -> None:
+        self._transport, self._keep = transport, keep
+
+    @property
+    def room(self) -> int:
+        return self._transport.room
+
+    @property
+    def datagrams(self) -> int:
+        return self._transport.datagrams
+
+    @property
+    def bytes_sent(self) -> int:
+        return self._transport.bytes_sent
+
+    @property
+    def lost_here(self) -> int:
+        return self._transport.lost_here
+
+    def send(self, data: bytes, to: str | None = None) -> None:
+        self._keep()
+        self._transport.send(data, to)
+
+    def receive(self, wait_s: float) -> list[bytes]:
+        return self._transport.receive(wait_s)
+
+    def close(self) -> None:
+        self._transport.close()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.hex()
+    assert isinstance(value, frozenset)
+    return sorted(value)
+
+
+def _memory(data: dict[str, Any]) -> Memory:
+    return Memory(
+        claims=tuple(Claim(**claim) for claim in data["claims"]),
+        facts=tuple(Fact(**fact | {"content": bytes.fromhex(fact["content"])}) for fact in data["facts"]),
+        epoch=int(data["epoch"]),
+        knows=bool(data["knows"]),
+        refused=frozenset(data["refused"]),
+        reserved=frozenset(data["reserved"]),
+    )
+
+
+def _wrong(file: Path, field: str, value: str, expected: str) -> InputError:
+    return InputError([Finding(str(file), None, field, value, expected)])

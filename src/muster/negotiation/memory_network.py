@@ -1,0 +1,149 @@
+"""A network in memory, on a virtual clock: loss, delay, reordering, duplication, partitions, crashes, all by a seed."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from random import Random
+
+from muster.negotiation.happenings import Outgoing
+from muster.negotiation.messages import Message
+from muster.negotiation.negotiator import Negotiator
+
+TICK_S = 0.05
+"""How often robots look at their clocks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weather:
+    """What the network does to each copy of a message.
+
+    Parameters
+    ----------
+    loss, duplication
+        probabilities.
+    delay_s, jitter_s
+        least time on the way, and the most that is added to it, evenly; so messages overtake each other.
+    """
+
+    loss: float = 0.0
+    delay_s: float = 0.001
+    jitter_s: float = 0.0
+    duplication: float = 0.0
+
+
+@dataclass
+class MemoryNetwork:
+    """Robots that send each other messages.
+
+    Parameters
+    ----------
+    make
+        makes a robot's negotiator, by id and incarnation; called again when it restarts.
+    robots
+        the team.
+    links
+        who hears whom directly; None: everybody everybody.
+    watch
+        is told of a robot after each moment in which it did something.
+    """
+
+    make: Callable[[str, int], Negotiator]
+    robots: Sequence[str]
+    seed: int = 0
+    weather: Weather = field(default_factory=Weather)
+    links: Callable[[str, str], bool] | None = None
+    watch: Callable[[str], None] = lambda robot: None
+
+    def __post_init__(self) -> None:
+        self.now = 0.0
+        self.nodes: dict[str, Negotiator] = {}
+        self.counts: Counter[str] = Counter()
+        self._random = Random(self.seed)
+        self._side: dict[str, int] = {}
+        self._order = itertools.count()
+        self._next_wake: dict[str, float] = {}
+        self._queue: list[tuple[float, int, str, Message | None]] = []
+        self._born: Counter[str] = Counter()
+        self._later: list[tuple[float, int, Callable[[], None]]] = []
+
+    def start(self, robots: Iterable[str] | None = None) -> None:
+        """Start robots, by default all."""
+        for robot in self.robots if robots is None else robots:
+            self._born[robot] += 1
+            node = self.nodes[robot] = self.make(robot, self._born[robot])
+            self._send(robot, node.start(self.now))
+            self._wake(robot)
+            self.watch(robot)
+
+    def crash(self, robot: str) -> Negotiator:
+        """A robot is gone, in the middle of whatever it did; returns what it was."""
+        return self.nodes.pop(robot)
+
+    def cut(self, *groups: Collection[str]) -> None:
+        """Only robots of one group hear each other."""
+        self._side = {robot: k for k, group in enumerate(groups) for robot in group}
+
+    def heal(self) -> None:
+        self._side = {}
+
+    def at(self, when_s: float, what: Callable[[], None]) -> None:
+        """Let something happen at a time."""
+        heapq.heappush(self._later, (when_s, next(self._order), what))
+
+    def run(self, until_s: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Let time go by, at most until then; returns whether `until` came true."""
+        while not until():
+            upcoming = min(self._later[0][0] if self._later else until_s, self._queue[0][0] if self._queue else until_s)
+            if upcoming >= until_s:
+                self.now = until_s
+                return False
+            self.now = upcoming
+            if self._later and self._later[0][0] <= upcoming:
+                heapq.heappop(self._later)[2]()
+            else:
+                self._deliver(*heapq.heappop(self._queue)[2:])
+        return True
+
+    def _deliver(self, robot: str, message: Message | None) -> None:
+        node = self.nodes.get(robot)
+        if node is None:
+            return
+        if message is not None:
+            self.counts["delivered"] += 1
+            self._send(robot, node.handle(message, self.now))
+        elif self._next_wake.get(robot) == self.now:
+            self._send(robot, node.tick(self.now))
+            self._wake(robot)
+        else:
+            return
+        self.watch(robot)
+
+    def _wake(self, robot: str) -> None:
+        self._next_wake[robot] = self.now + TICK_S
+        heapq.heappush(self._queue, (self.now + TICK_S, next(self._order), robot, None))
+
+    def _send(self, robot: str, out: list[Outgoing]) -> None:
+        for outgoing in out:
+            self.counts["sent"] += 1
+            for to in self.robots if outgoing.to is None else (outgoing.to,):
+                if to != robot and self._joined(robot, to):
+                    self._post(to, outgoing.message)
+
+    def _joined(self, one: str, other: str) -> bool:
+        if self._side and self._side.get(one, -1) != self._side.get(other, -2):
+            return False
+        return self.links is None or self.links(one, other)
+
+    def _post(self, to: str, message: Message) -> None:
+        weather = self.weather
+        self.counts["copies"] += 1
+        for _ in range(1 + (weather.duplication > 0 and self._random.random() < weather.duplication)):
+            if weather.loss > 0 and self._random.random() < weather.loss:
+                self.counts["lost"] += 1
+                continue
+            late = weather.delay_s + (self._random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0)
+            heapq.heappush(self._queue, (self.now + late, next(self._order), to, message))

@@ -1,0 +1,74 @@
+"""How robots can agree without a centre: the methods, by name. All go through the same network and command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from muster.allocation.allocator import Allocator
+from muster.allocation.auction import AUCTION
+from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
+from muster.allocation.problem import Problem
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.mission.plan import Plan
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.taking_part import bundler_of, negotiator_of, plan_of_bundles, plan_of_view
+from muster.negotiation.view import View
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A way to agree.
+
+    Parameters
+    ----------
+    name, summary
+        for the command.
+    allocator
+        that does the same in one process; robots have its parameters in common.
+    negotiator
+        makes a robot's part, as `taking_part.negotiator_of`.
+    plan
+        makes the plan of a view, as `taking_part.plan_of_view`.
+    """
+
+    name: str
+    summary: str
+    allocator: Allocator
+    negotiator: Callable[..., Negotiator]
+    plan: Callable[[Problem, Any, View, float | None], Plan]
+
+
+_IMPLEMENTATIONS = (
+    Method(
+        name="auction",
+        summary="one task a round to the best bid; the auction thesis",
+        allocator=AUCTION,
+        negotiator=negotiator_of,
+        plan=plan_of_view,
+    ),
+    Method(
+        name="consensus-bundle",
+        summary="bundles of tasks, and rounds until all agree; CBBA of Choi, Brunet and How",
+        allocator=CONSENSUS_BUNDLE,
+        negotiator=bundler_of,
+        plan=plan_of_bundles,
+    ),
+)
+
+METHODS = {method.name: method for method in _IMPLEMENTATIONS}
+
+
+def method_named(name: str) -> Method:
+    """The method.
+
+    Raises
+    ------
+    ParameterError
+        if there is none of this name.
+    """
+    if name not in METHODS:
+        raise ParameterError(f"method: {name}; expected {' or '.join(METHODS)}{did_you_mean(name, METHODS)}")
+    return METHODS[name]

@@ -1,0 +1,169 @@
+"""A robot's process: its negotiator, what carries its messages, and a clock. No threads."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+
+from muster.mission.clock import Clock, SystemClock
+from muster.negotiation.codec import Codec, OtherVersion
+from muster.negotiation.forms import Garbled
+from muster.negotiation.happenings import Outgoing
+from muster.negotiation.messages import RoundBids, Sold
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.seal import OVERHEAD, Seal
+from muster.negotiation.transport import Transport
+
+_LOOK_S = 0.25
+"""How often at least `run` looks whether it is to end."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NodeStatus:
+    """What a robot knows at a moment, for a table of the team.
+
+    Parameters
+    ----------
+    robot, members, silent
+        its id; with whom it holds the auction; who does not take part.
+    epoch, round
+        how far it is: number of the epoch, rounds resolved in it.
+    bid
+        what it bids in this round, or bid in the last; None before that.
+    last_sale
+        what came of the last round; None before that.
+    settled
+        whether all members are known to agree, and nobody bids any more.
+    sent, sent_bytes, received
+        messages sent by kind (`news`, `repairs`, `beats`), their bytes as they travel, messages taken in.
+    refused
+        what was not taken in, by why: as `Seal.counts`, and `garbled`.
+    lost_here
+        as `Transport.lost_here`.
+    rivals, superseded
+        incarnations of other processes that run under this robot's name; whether one is later, so that this is silent.
+    """
+
+    robot: str
+    members: tuple[str, ...]
+    silent: tuple[str, ...]
+    epoch: int
+    round: int
+    bid: RoundBids | None
+    last_sale: Sold | None
+    settled: bool
+    sent: Counter[str]
+    sent_bytes: Counter[str]
+    received: int
+    refused: Counter[str]
+    lost_here: int
+    rivals: tuple[int, ...]
+    superseded: bool
+
+
+class Node:
+    """Drives a negotiator. A context manager: entering it starts the robot's part, leaving it closes the transport.
+
+    Parameters
+    ----------
+    negotiator
+        not started yet: the node does that.
+    transport, codec, seal
+        what its messages go through. Without a seal they travel open: for tests alone.
+    clock
+        the machine's by default.
+    """
+
+    def __init__(
+        self, negotiator: Negotiator, transport: Transport, codec: Codec, seal: Seal | None, clock: Clock | None = None
+    ) -> None:
+        self.negotiator, self.transport = negotiator, transport
+        self.sent: Counter[str] = Counter()
+        self.sent_bytes: Counter[str] = Counter()
+        self.received = 0
+        self._codec, self._seal = codec, seal
+        self._clock = clock or SystemClock()
+        self._garbled: Counter[str] = Counter()
+        self._room = transport.room - (0 if seal is None else OVERHEAD)
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.transport.close()
+
+    def start(self) -> None:
+        """Send what the negotiator says first; comes before all else."""
+        self._send(self.negotiator.start(self._clock.now()))
+
+    def step(self, wait_s: float) -> None:
+        """Wait until something comes, the negotiator is due, or so long; take in all that came, then let time go by.
+
+        What came while the robot was busy counts before its absence does: nobody is taken for silent whose messages
+        wait in the queue.
+        """
+        if not self.negotiator.superseded:  # or it is never due again
+            wait_s = max(0.0, min(wait_s, self.negotiator.due_s - self._clock.now()))
+        for data in self.transport.receive(wait_s):
+            self._take_in(data)
+        self._send(self.negotiator.tick(self._clock.now()))
+
+    def run(self, until: Callable[[Node], bool], at_most_s: float | None = None) -> bool:
+        """Step until something is true; whether it came true in time."""
+        end_s = None if at_most_s is None else self._clock.now() + at_most_s
+        while not until(self):
+            left_s = _LOOK_S if end_s is None else end_s - self._clock.now()
+            if left_s <= 0:
+                return False
+            self.step(min(_LOOK_S, left_s))
+        return True
+
+    def status(self) -> NodeStatus:
+        """How things stand."""
+        negotiator, epoch = self.negotiator, self.negotiator.epoch
+        stage, members = epoch.stage, epoch.own.members
+        bids = (epoch.bids_of(negotiator.robot, number) for number in (stage.round, stage.round - 1))
+        return NodeStatus(
+            robot=negotiator.robot,
+            members=members,
+            silent=tuple(robot for robot in negotiator.rules.robots if robot not in members),
+            epoch=stage.epoch,
+            round=stage.round,
+            bid=next((bid for bid in bids if bid is not None), None),
+            last_sale=epoch.sales[-1] if epoch.sales else None,
+            settled=negotiator.settled,
+            sent=self.sent.copy(),
+            sent_bytes=self.sent_bytes.copy(),
+            received=self.received,
+            refused=self._garbled + (Counter() if self._seal is None else self._seal.counts),
+            lost_here=self.transport.lost_here,
+            rivals=tuple(sorted(negotiator.rivals)),
+            superseded=negotiator.superseded,
+        )
+
+    def _take_in(self, data: bytes) -> None:
+        opened = data if self._seal is None else self._seal.open(data)
+        if opened is None:
+            return
+        try:
+            message = self._codec.decode(opened)
+        except OtherVersion:
+            self._garbled["other_version"] += 1
+        except Garbled:
+            self._garbled["garbled"] += 1
+        else:
+            self.received += 1
+            self._send(self.negotiator.handle(message, self._clock.now()))
+
+    def _send(self, out: Iterable[Outgoing]) -> None:
+        for outgoing in out:
+            kind = "repairs" if outgoing.to is not None else "beats" if outgoing.message.is_idle else "news"
+            self.sent[kind] += 1
+            before = self.transport.bytes_sent
+            for piece in self._codec.parts(outgoing.message, self._room):
+                self.transport.send(piece if self._seal is None else self._seal.close(piece), outgoing.to)
+            self.sent_bytes[kind] += self.transport.bytes_sent - before

@@ -1,0 +1,111 @@
+"""One robot's process in a team that runs elsewhere: for how long it stays, and when it gives up."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import NetworkError
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.node import Node, NodeStatus
+from muster.negotiation.view import View, view_of
+
+_STEP_S = 0.05
+_NAMES_SHOWN = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Staying:
+    """How long a robot stays, seconds.
+
+    Parameters
+    ----------
+    wait_s
+        for robots of the team that are not there; then it agrees with those that are.
+    linger_s
+        when all agree, so that all others hear of it.
+    limit_s
+        in all; then it gives up.
+    """
+
+    wait_s: float = 20.0
+    linger_s: float = 5.0
+    limit_s: float = 60.0
+
+
+def take_part(
+    node: Node,
+    negotiator: Negotiator,
+    staying: Staying,
+    on_look: Callable[[NodeStatus], None],
+    clock: Clock | None = None,
+) -> tuple[View, float]:
+    """Take part until all that are there agree; what the robot knows then, and how long agreement took, seconds.
+
+    `on_look` is told, about twenty times a second, how far the robot is.
+
+    Raises
+    ------
+    NetworkError
+        if another process runs under its name, nobody of the team is there, all that are have another mission or
+        version, or there is no agreement in time.
+    """
+    clock = clock or SystemClock()
+    began_s = clock.now()
+    agreed_s: float | None = None
+    while True:
+        node.step(_STEP_S)
+        status, passed_s = node.status(), clock.now() - began_s
+        on_look(status)
+        _check_name(status, negotiator)
+        _check_company(status, negotiator, passed_s, staying)
+        whole = len(status.members) == len(negotiator.rules.robots)
+        if not status.settled or not (whole or passed_s >= staying.wait_s):
+            agreed_s = None
+        elif agreed_s is None:
+            agreed_s = passed_s
+        if agreed_s is not None and passed_s >= agreed_s + staying.linger_s:
+            return view_of(negotiator), agreed_s
+        if agreed_s is None and passed_s > staying.limit_s:
+            raise NetworkError(f"{status.robot}: no agreement within {staying.limit_s:g} s; {_how_far(status)}")
+
+
+def new_incarnation(before: int = 0) -> int:
+    """A number above all that the robot had: by the machine's clock, or one more than the last that is remembered."""
+    return max(before + 1, time.time_ns() // 1_000_000)
+
+
+def _check_name(status: NodeStatus, negotiator: Negotiator) -> None:
+    if any(rival > negotiator.incarnation for rival in status.rivals):
+        raise NetworkError(
+            f"{status.robot}: another process has started under this name; expected one for each robot, this one ends"
+        )
+
+
+def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, staying: Staying) -> None:
+    """Say why nobody can be understood, as soon as that is certain."""
+    if status.received or len(negotiator.rules.robots) == 1:
+        return
+    refused = status.refused
+    if refused["other_version"]:
+        raise NetworkError(f"{status.robot}: the others speak another version; expected the same Muster everywhere")
+    if refused["other_mission"]:
+        raise NetworkError(
+            f"{status.robot}: the others hold another auction; expected everywhere the same mission and terms"
+        )
+    if passed_s < min(staying.wait_s, staying.limit_s):
+        return
+    if refused["foreign"]:
+        raise NetworkError(
+            f"{status.robot}: {refused['foreign']} messages, none made with this key; expected the same key everywhere"
+        )
+    others = [robot for robot in negotiator.rules.robots if robot != status.robot]
+    names = ", ".join(others[:_NAMES_SHOWN]) + (" ..." if len(others) > _NAMES_SHOWN else "")
+    raise NetworkError(f"{status.robot}: nobody there for {passed_s:.0f} s; expected to hear one of {names}")
+
+
+def _how_far(status: NodeStatus) -> str:
+    silent = f", nothing heard of {', '.join(status.silent[:_NAMES_SHOWN])}" if status.silent else ""
+    return f"in round {status.round} of epoch {status.epoch} with {len(status.members)} robots{silent}"

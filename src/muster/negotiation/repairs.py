@@ -1,0 +1,108 @@
+"""Anti-entropy: what the sender of a message lacks, and whether it is this robot that sends it.
+
+A beat tells how far its sender is and what it lacks. The robot whose word is lacking answers always; of all others that
+could, about HELPERS do, as a number drawn from the beat says, so that nobody need know who else answers. Who asks for
+the same again and again may not hear the others at all: then all that hear it help, and pass on in their own beats what
+it lacks as soon as they know it. So words go on from neighbour to neighbour where not all hear each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+from zlib import crc32
+
+from muster.negotiation.epoch import Epoch
+from muster.negotiation.knowledge import Knowledge
+from muster.negotiation.messages import Message, Stage
+
+URGENT = 3
+"""Who asks so often for the same is in need."""
+
+HELPERS = 2
+"""Of those that could send what somebody lacks, about so many do, besides the one whose it is."""
+
+
+@dataclass
+class Repairs:
+    """What one robot does for others.
+
+    Parameters
+    ----------
+    me
+        its id.
+    rest_s
+        nobody is answered twice within so long, seconds, unless it has got on.
+    """
+
+    me: str
+    rest_s: float
+    _stages: dict[str, Stage] = field(default_factory=dict)  # of those that are heard directly
+    _asked: dict[str, tuple[Stage, tuple[str, ...], int]] = field(default_factory=dict)  # what, and how often
+    _answered: dict[str, tuple[float, Stage, int]] = field(default_factory=dict)
+
+    def hear(self, message: Message) -> None:
+        """Take in how far a robot is, and what it lacks."""
+        self._stages[message.sender] = message.stage
+        if message.pulses:
+            stage, _, times = self._asked.get(message.sender, (None, (), 0))
+            self._asked[message.sender] = message.stage, message.lacks, times + 1 if stage == message.stage else 1
+
+    def answer(self, message: Message, epoch: Epoch, known: Knowledge, now: float) -> dict[str, Any] | None:
+        """What to tell the sender of a message, as fields of one to it; None: nothing."""
+        if not message.pulses:  # who has news is not waiting; if it is, its next beat tells so
+            return None
+        to, state = message.sender, (message.stage, message.known)
+        last_s, *last = self._answered.get(to, (-1.0, None, 0))
+        if tuple(last) == state and now < last_s + self.rest_s:
+            return None
+        what = self._lacking(message, epoch)
+        if message.known != known.digest and known.facts and self._helps(message, None):
+            what = {**(what or {}), "facts": known.some(message.number)}
+        if what is not None:
+            self._answered[to] = now, *state
+        return what
+
+    def passed_on(self, epoch: Epoch) -> dict[str, Any]:
+        """What robots in need lack and this one knows, with its own last words, as fields of a message."""
+        declared, bid = {self.me}, {self.me}
+        for stage, lacks, times in self._asked.values():
+            if times >= URGENT and stage.epoch == epoch.stage.epoch:
+                (bid if stage.base else declared).update(lacks)
+        at_base = epoch.base is not None
+        declarations = [epoch.declaration_of(r) for r in sorted(declared if not at_base else declared - {self.me})]
+        bids = [epoch.bids_of(r, len(epoch.sales)) for r in sorted(bid)] if at_base and not epoch.ended else []
+        return {
+            "declarations": tuple(d for d in declarations if d is not None),
+            "bids": tuple(b for b in bids if b is not None),
+        }
+
+    def _lacking(self, message: Message, epoch: Epoch) -> dict[str, Any] | None:
+        stage, own = message.stage, epoch.stage
+        if stage.epoch < own.epoch:
+            return {"declarations": (epoch.own,)}
+        if stage.epoch > own.epoch:
+            return None
+        if not stage.base:
+            said = tuple(d for robot in self._lacked(message) if (d := epoch.declaration_of(robot)) is not None)
+            return {"declarations": said} if said else None
+        if stage.base != own.base:
+            return None
+        behind = stage.round < own.round or (own.ended and not stage.ended)
+        if behind and (epoch.valuer.told_by_sales or (own.ended and epoch.sales)):
+            known = stage.round if epoch.valuer.told_by_sales else 0
+            return {"sales": tuple(epoch.sales[known:]), "sales_from": known} if self._helps(message, None) else None
+        if stage.round <= own.round:
+            bids = tuple(b for robot in self._lacked(message) if (b := epoch.bids_of(robot, stage.round)) is not None)
+            return {"bids": bids} if bids else None
+        return None
+
+    def _lacked(self, message: Message) -> list[str]:
+        return [robot for robot in message.lacks if self._helps(message, robot)]
+
+    def _helps(self, message: Message, whose: str | None) -> bool:
+        """Whether it is this robot that sends what is lacking: its own, or to one in need; else about HELPERS do."""
+        if whose == self.me or self._asked.get(message.sender, (None, (), 0))[2] >= URGENT:
+            return True
+        able = 1 + sum(stage != message.stage for robot, stage in self._stages.items() if robot != message.sender)
+        return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS

@@ -1,0 +1,197 @@
+"""What a robot bids, and where a task goes that is won: the rules of the auction in one process, asked by one robot.
+
+Every robot keeps all routes, since some bids look at the team (`total+max`), or wait for others (`makespan`); but it
+asks for its own bids alone. The same mission, terms and sales give the same bids, bit by bit, so that robots can follow
+each other's routes without a word.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from muster.allocation.allocator import Routes
+from muster.allocation.auctioneer import Auctioneer
+from muster.allocation.fixed import admissible_part, with_past
+from muster.allocation.problem import Problem
+from muster.allocation.terms import Terms
+from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
+from muster.mission.model import Task
+from muster.negotiation.messages import Bid, RoundBids, Sold
+from muster.negotiation.tasks import content_of, with_tasks
+
+
+@dataclass(frozen=True)
+class Opening:
+    """How things stand when an auction begins.
+
+    Parameters
+    ----------
+    past
+        for each robot what it has done and then what it has begun, in order; no task stands twice.
+    ahead
+        for each robot what else it owns, in order.
+    closed
+        tasks that are not for sale.
+    added
+        tasks that the mission did not have, as `tasks.content_of` writes them, in tie order.
+    """
+
+    past: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    ahead: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    closed: Collection[str] = ()
+    added: tuple[bytes, ...] = ()
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What comes of a round: tasks that have owners now, and whether it was the last."""
+
+    sales: tuple[Sold, ...] = ()
+    over: bool = False
+
+
+class Valuer(Protocol):
+    """What one robot's part in the auction needs to know of the mission."""
+
+    @property
+    def told_by_sales(self) -> bool:
+        """Whether who missed rounds need only know what was sold in them; else also what was bid."""
+        ...
+
+    def check(self, task: Task) -> None:
+        """Whether a new task fits into the mission; raises MissionError if not."""
+        ...
+
+    def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
+        """An auction begins; returns what robots own as far as they can still do it, behind their past."""
+        ...
+
+    def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
+        """What the robot bids in this round, as the winner rule wants it; nothing for what it has refused."""
+        ...
+
+    def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
+        """What comes of a round in which all members bid this; it is not awarded yet."""
+        ...
+
+    def award(self, sold: Sold) -> None:
+        """A task has an owner."""
+        ...
+
+    def route(self, robot: str) -> list[str]:
+        """The tasks of a robot, in the order in which it is going to do them."""
+        ...
+
+
+class TeamValuer(ABC):
+    """What all ways to sell tasks have in common: the mission with its new tasks, and what robots own already.
+
+    Parameters
+    ----------
+    problem
+        the same for all robots.
+    robot
+        which one this is.
+    """
+
+    def __init__(self, problem: Problem, robot: str) -> None:
+        self._given = self._whole = self._problem = problem
+        self._robots, self._tasks = problem.robot_index, problem.task_index
+        self._me = self._robots[robot]
+        self._added: tuple[bytes, ...] = ()
+
+    def check(self, task: Task) -> None:
+        with_tasks(self._whole, [content_of(task)])
+
+    def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
+        if opening.added != self._added:
+            self._added, self._whole = opening.added, with_tasks(self._given, opening.added)
+        number = self._whole.task_index
+        past, ahead = self._by_index(opening.past, number), self._by_index(opening.ahead, number)
+        self._problem = with_past(self._whole, past) if any(past) else self._whole
+        self._tasks = self._problem.task_index
+        begun = [self._problem.beginning(i) for i in range(len(past))]
+        routes = admissible_part(self._problem, [[*before, *after] for before, after in zip(begun, ahead, strict=True)])
+        closed = {number[task] for task in opening.closed}.union(*past)
+        self._open(routes, closed)
+        return {robot.id: self.route(robot.id)[len(begun[i]) :] for i, robot in enumerate(self._problem.robots)}
+
+    @abstractmethod
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        """An auction begins: these tasks have owners, all others are for sale but those that are closed."""
+
+    @abstractmethod
+    def route(self, robot: str) -> list[str]: ...
+
+    def _by_index(self, routes: Mapping[str, Sequence[str]], number: Mapping[str, int]) -> list[list[int]]:
+        by_index: list[list[int]] = [[] for _ in self._robots]
+        for robot, tasks in routes.items():
+            by_index[self._robots[robot]] = [number[task] for task in tasks]
+        return by_index
+
+
+class AuctionValuer(TeamValuer):
+    """The auction of `allocation`, held by one of its robots; `terms` are the same for all."""
+
+    told_by_sales = True
+
+    def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
+        super().__init__(problem, robot)
+        self.terms = terms
+
+    def _open(self, routes: Routes, closed: Collection[int]) -> None:
+        self._auctioneer = Auctioneer(self._problem, self.terms)
+        self._auctioneer.restore(routes, {}, closed)
+
+    def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
+        if not self._tasks:
+            return ()
+        bids = self._auctioneer.bids(self._me)
+        if refused:
+            bids[[j for task, j in self._tasks.items() if task in refused]] = np.inf
+        if self.terms.winner == "lowest":
+            j = int(np.argmin(bids))
+            return ((self._problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
+        return tuple((self._problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
+
+    def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
+        heard = _Heard(self._robots, self._tasks, bids)
+        if not any(said.bids for said in bids):
+            return Resolution(over=True)
+        rule = WINNER_RULES[self.terms.winner](heard)
+        rule.note(range(len(self._robots)))
+        sale = rule.winner()
+        return Resolution(over=True) if sale is None else Resolution((self._sold(sale),))
+
+    def award(self, sold: Sold) -> None:
+        self._auctioneer.assign(Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price))
+
+    def route(self, robot: str) -> list[str]:
+        return [self._problem.tasks[j].id for j in self._auctioneer.routes[self._robots[robot]]]
+
+    def _sold(self, sale: Sale) -> Sold:
+        return Sold(self._problem.robots[sale.robot].id, self._problem.tasks[sale.task].id, sale.price)
+
+
+class _Heard:
+    """The bids of a round, as a winner rule asks for them; who is not a member bids for nothing."""
+
+    def __init__(self, robots: Mapping[str, int], tasks: Mapping[str, int], bids: Sequence[RoundBids]) -> None:
+        self.shape = (len(robots), len(tasks))
+        self._bids = np.full(self.shape, np.inf)
+        for said in bids:
+            for task, bid in said.bids:
+                self._bids[robots[said.robot], tasks[task]] = bid
+
+    def bids(self, robot: int) -> Floats:
+        bids: Floats = self._bids[robot]
+        return bids
+
+    def lowest_bids(self) -> tuple[Indices, Floats]:
+        tasks = np.argmin(self._bids, axis=1)
+        return tasks, self._bids[np.arange(len(tasks)), tasks]

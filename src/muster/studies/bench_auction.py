@@ -1,0 +1,85 @@
+"""The auction without a centre: part of what `muster bench` measures.
+
+Twenty robots and fifty tasks at random places; each robot is a process of this machine. Measured from when all are
+ready until the last of them is known to agree.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from random import Random
+
+from muster.allocation.auction import Parameters
+from muster.allocation.problem import Problem
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission, Robot, Task
+from muster.negotiation.keys import new_key
+from muster.negotiation.team import Team, patience_here
+from muster.negotiation.watch import TRANSPORTS, Order
+from muster.studies.measurement import Measurement
+
+ROBOTS, TASKS, SIDE_M, GUARD_S = 20, 50, 100.0, 120.0
+
+
+def scene(seed: int) -> Problem:
+    """Robots and tasks at random places of a square."""
+    random = Random(seed)
+
+    def place() -> tuple[float, float]:
+        return random.uniform(0, SIDE_M), random.uniform(0, SIDE_M)
+
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=place()) for k in range(ROBOTS)),
+        tasks=tuple(Task(id=str(k), position=place()) for k in range(TASKS)),
+    )
+    return Problem.compile(mission).ready()
+
+
+def held(problem: Problem, transport: str) -> tuple[float, Counter[str], int]:
+    """Seconds to agreement, messages by kind, and bytes that were sent in all.
+
+    Raises
+    ------
+    MusterError
+        if there is no agreement within GUARD_S.
+    """
+    order = Order(
+        problem=problem, terms=Parameters(), key=new_key(), transport=transport, patience=patience_here(ROBOTS)
+    )
+    until_s = time.monotonic() + GUARD_S
+    with Team(order) as team:
+        while team.agreement() is None:
+            team.hear(0.02)
+            if time.monotonic() > until_s:
+                raise MusterError(f"no agreement over {transport} within {GUARD_S:g} s")
+        assert team.began_s is not None
+        seconds = time.monotonic() - team.began_s
+        sent, volume = Counter[str](), 0
+        for news in team.news.values():
+            sent.update(news.status.sent)
+            volume += sum(news.status.sent_bytes.values())
+        return seconds, sent, volume
+
+
+def auction(runs: int) -> list[Measurement]:
+    """Over UDP and over Zenoh, on the loopback interface."""
+    found = []
+    for transport in TRANSPORTS:
+        outcomes = [held(scene(seed), transport) for seed in range(runs)]
+        share = ROBOTS * TASKS * runs
+        messages = sum(sum(sent.values()) for _, sent, _ in outcomes) / share
+        repairs = sum(sent["repairs"] for _, sent, _ in outcomes) / share
+        volume = sum(volume for *_, volume in outcomes) / share
+        cost = f"{messages:.2f} messages ({repairs:.2f} repairs), {volume:.0f} bytes given to {transport}"
+        name = f"auction of {ROBOTS} processes, {TASKS} tasks, over {transport}"
+        found.append(
+            Measurement.over_runs(
+                name, "s", [seconds for seconds, *_ in outcomes], "< 10", f"per task and robot {cost}"
+            )
+        )
+    return found
+
+
+AUCTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"auction": auction}

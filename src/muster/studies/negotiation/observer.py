@@ -1,0 +1,104 @@
+"""Somebody who sees all robots at every moment, and says when a promise is broken.
+
+Two robots have lost each other from when one of them goes into an epoch without the other, or starts anew, until both
+have found the base of one epoch with both. What they own and begin meanwhile may clash; at any other moment it must
+not. A task that nobody may begin twice is never begun twice, whoever has lost whom.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from muster.negotiation.negotiator import Negotiator
+
+
+@dataclass
+class Observer:
+    """Watches the robots of one run.
+
+    Parameters
+    ----------
+    nodes
+        the robots that live, by name.
+    once
+        tasks that nobody may begin twice.
+    """
+
+    nodes: Mapping[str, Negotiator]
+    once: set[str]
+    broken: list[str] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+    begun: dict[str, list[str]] = field(default_factory=dict)
+    """By task those that have begun it, each as often as it began it anew."""
+    _lives: set[tuple[str, str]] = field(default_factory=set)  # who has begun what since it started
+    _lost: set[frozenset[str]] = field(default_factory=set)
+    _entered: dict[str, int] = field(default_factory=dict)
+    _based: dict[str, bytes] = field(default_factory=dict)
+    _seen: dict[str, object] = field(default_factory=dict)
+    _owned: dict[str, frozenset[str]] = field(default_factory=dict)
+
+    def started(self, robot: str) -> None:
+        """A robot starts, or starts anew."""
+        self._lost |= {frozenset((robot, other)) for other in self._entered if other != robot}
+        self._entered.pop(robot, None)
+        self._based.pop(robot, None)
+
+    def gone(self, robot: str) -> None:
+        self._lives = {(other, task) for other, task in self._lives if other != robot}
+        self._owned.pop(robot, None)
+        self._seen.pop(robot, None)
+
+    def look(self, robot: str) -> None:
+        """A robot did something: look what has changed."""
+        node = self.nodes[robot]
+        self.counts["moments"] += 1
+        now = node.epoch.own.epoch, node.incarnation, node.stage, node.known, node.epoch.refused
+        if self._seen.get(robot) == now:
+            return
+        self._seen[robot] = now
+        self._look_at_epoch(robot, node)
+        owned = frozenset(claim.task for claim in node.route)
+        for task in sorted(owned - self._owned.get(robot, frozenset())):
+            for other, theirs in self._owned.items():
+                if task in theirs and other != robot:
+                    self._clash(task, robot, other)
+        self._owned[robot] = owned
+
+    def begins(self, robot: str, task: str, *, again: bool) -> None:
+        """A robot begins a task; `again`: it goes on with it after a restart."""
+        before = self.begun.setdefault(task, [])
+        self._lives.add((robot, task))
+        if again and robot in before:
+            return
+        if before and task in self.once:
+            self.broken.append(f"{robot} begins {task}, begun by {', '.join(before)}")
+        for other in before:
+            self.counts["begun twice"] += 1
+            if other != robot and frozenset((robot, other)) not in self._lost and (other, task) in self._lives:
+                self.broken.append(f"{robot} begins {task}, begun by {other}, which it has not lost")
+        before.append(robot)
+
+    def _look_at_epoch(self, robot: str, node: Negotiator) -> None:
+        epoch = node.epoch
+        if self._entered.get(robot) != epoch.own.epoch:
+            self._entered[robot] = epoch.own.epoch
+            self.counts["epochs entered"] += 1
+            self._lost |= {frozenset((robot, other)) for other in self._entered if other not in epoch.own.members}
+        if epoch.base is None or self._based.get(robot) == epoch.base.digest:
+            return
+        self._based[robot] = epoch.base.digest
+        for other in epoch.own.members:
+            theirs = self.nodes.get(other)
+            mutual = theirs is not None and robot in theirs.epoch.own.members
+            if mutual and self._based.get(other) == epoch.base.digest:
+                self._lost.discard(frozenset((robot, other)))
+
+    def _clash(self, task: str, robot: str, other: str) -> None:
+        if frozenset((robot, other)) in self._lost:
+            self.counts["owned twice by robots that have lost each other"] += 1
+            return
+        began = self.begun.get(task, ())
+        if not (robot in began and other in began):
+            self.broken.append(f"{robot} and {other} both own {task}")

@@ -1,0 +1,313 @@
+"""`muster auction`: on this machine, one robot of a team, in a network in memory; and all that may be wrong."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+MISSION = """\
+schema: muster/1
+name: three
+robots:
+  - {id: a, position: [0, 0]}
+  - {id: b, position: [10, 0]}
+  - {id: c, position: [5, 5]}
+tasks:
+  - {id: "1", position: [1, 1]}
+  - {id: "2", position: [9, 1]}
+  - {id: "3", position: [5, 4]}
+"""
+GUARD_S = 60
+
+
+@pytest.fixture
+def three(folder, muster):
+    """A mission of three robots, and a key."""
+    Path("three.yaml").write_text(MISSION, encoding="utf-8")
+    assert muster("auction", "--new-key", "key")[0] == 0
+    return Path("three.yaml")
+
+
+def without_times(text):
+    data = json.loads(text)
+    del data["elapsed_s"]
+    return data | {"history": [value for _, value in data["history"]]}
+
+
+def test_plan_and_book_are_those_of_the_auction_in_one_process(muster):
+    terms = ("--bid", "max", "--placement", "append", "--winner", "least-contested", "--ignore", "capacity")
+    code, out, err = muster("auction", "yard.yaml", *terms, "--format", "json", "-q", "--book", "here.csv")
+    assert (code, err) == (0, "")
+    code, central, _ = muster("solve", "yard.yaml", "-a", "auction", *terms, "--format", "json", "--book", "there.csv")
+    assert code == 0
+    assert without_times(out) == without_times(central)
+    assert Path("here.csv").read_bytes() == Path("there.csv").read_bytes()
+
+
+def test_each_robot_writes_what_it_knows(muster, three):
+    code, out, err = muster("auction", three, "--views", "views", "-o", "plan.json")
+    assert code == 0
+    assert err.startswith("3 robots agreed after ")
+    assert "tasks completed   3 of 3" in out
+    plan = json.loads(Path("plan.json").read_text())
+    assert sorted(path.name for path in Path("views").iterdir()) == ["a.json", "b.json", "c.json"]
+    for view in Path("views").iterdir():
+        assert json.loads(view.read_text())["routes"] == plan["routes"]
+        assert muster("verify", three, view)[0] == 0
+
+
+def test_a_task_that_nobody_can_do_is_told(muster):
+    assert muster("auction", "yard.yaml", "--require-complete", "-q")[0] == 3
+
+
+def test_a_time_limit_ends_it_and_says_how_far_it_was(muster):
+    code, out, err = muster("auction", "yard.yaml", "--time-limit", 0)
+    assert (code, out) == (2, "")
+    assert err == "no agreement within 0 s: not all processes had started\n"
+
+
+def running(*arguments, **others):
+    """A command in a process of its own."""
+    command = [sys.executable, "-m", "muster.cli", *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **others)
+
+
+def test_ctrl_c_ends_it(three):
+    tasks = "".join(f'  - {{id: "{k}", position: [{k}, {k % 7}]}}\n' for k in range(4, 2000))
+    three.write_text(MISSION + tasks, encoding="utf-8")
+    process = running("auction", three)
+    time.sleep(1.5)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=GUARD_S)
+    assert (process.returncode, out, err.strip()) == (130, "", "interrupted")
+
+
+# In a network in memory
+
+
+def test_a_seed_gives_one_run(muster, three):
+    faults = ("--loss", 0.3, "--delay", 0.05, "--jitter", 0.1, "--duplication", 0.2, "--crashes", 1, "--cut", 6)
+    runs = [muster("auction", three, "--simulate-network", 5, *faults, "-v", "--format", "json") for _ in range(2)]
+    assert runs[0] == runs[1]
+    code, out, err = runs[0]
+    assert code == 0
+    assert " crashes\n" in err
+    assert "the network is cut: " in err
+    assert "the network is whole again\n" in err
+    assert " wins 1 for " in err
+    assert "all 2 agree" in err
+    assert json.loads(out)["tasks_completed"] == 3
+    assert muster("auction", three, "--simulate-network", 6, *faults, "-v", "--format", "json")[2] != err
+
+
+def test_more_crashes_than_robots_are_refused(muster, three):
+    code, _, err = muster("auction", three, "--simulate-network", 1, "--crashes", 3)
+    assert (code, err) == (2, "--crashes: 3; expected less than the 3 robots\n")
+
+
+def test_a_network_that_loses_too_much_is_told(muster, three):
+    code, _, err = muster("auction", three, "--simulate-network", 1, "--loss", 0.99, "--time-limit", 3, "-q")
+    assert code == 2
+    assert err.startswith("no agreement within 3 virtual s: ")
+
+
+# One robot of a team
+
+
+@pytest.fixture
+def ports():
+    """Ports of this machine that are free at the moment."""
+    import socket
+    from contextlib import ExitStack
+
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in "abc"]
+        for each in sockets:
+            each.bind(("127.0.0.1", 0))
+        return {robot: each.getsockname()[1] for robot, each in zip("abc", sockets, strict=True)}
+
+
+def robot(name, ports, *others, mission="three.yaml", key="key"):
+    peers = ",".join(f"{other}=127.0.0.1:{port}" for other, port in ports.items())
+    address = ("--listen", f"127.0.0.1:{ports[name]}", "--connect", peers)
+    return running("auction", mission, "--robot", name, "--key-file", key, *address, *others)
+
+
+def ended(*processes):
+    """By process exit code, standard output and standard error."""
+    told = [process.communicate(timeout=GUARD_S) for process in processes]
+    return [(process.returncode, *words) for process, words in zip(processes, told, strict=True)]
+
+
+def test_three_processes_agree_and_say_who_is_there(three, ports):
+    processes = [robot(name, ports, "--linger", 1, "-o", f"{name}.json") for name in "abc"]
+    for name, (code, _, err) in zip("abc", ended(*processes), strict=True):
+        assert code == 0
+        for other in set("abc") - {name}:
+            assert f"{other} is there\n" in err
+        assert "all 3 agree, in round 3 of epoch " in err
+    plans = [json.loads(Path(f"{name}.json").read_text())["routes"] for name in "abc"]
+    assert plans[0] == plans[1] == plans[2]
+    assert sorted(task for route in plans[0] for task in route["tasks"]) == ["1", "2", "3"]
+
+
+def test_peers_need_no_names(three, ports):
+    def unnamed(name):
+        peers = ",".join(f"127.0.0.1:{port}" for other, port in ports.items() if other != name)
+        address = ("--listen", f"127.0.0.1:{ports[name]}", "--connect", peers)
+        return running("auction", three, "--robot", name, "--key-file", "key", *address, "--linger", 1)
+
+    assert [code for code, *_ in ended(*[unnamed(name) for name in "abc"])] == [0, 0, 0]
+
+
+def test_without_the_third_the_others_go_on_when_they_have_waited(three, ports):
+    processes = [robot(name, ports, "--wait", 6, "--linger", 1, "--format", "json") for name in "ab"]
+    for code, out, err in ended(*processes):
+        assert code == 0
+        assert "all 2 agree" in err
+        assert json.loads(out)["tasks_completed"] == 3
+
+
+def test_with_its_memory_a_robot_that_starts_again_has_what_it_had(three, ports):
+    first = [robot(name, ports, "--linger", 30, "--memory", f"{name}.memory", "--wait", 50) for name in "abc"]
+    guard_s = time.monotonic() + GUARD_S
+    while not all(Path(f"{name}.memory").exists() and owned(remembered(name)) for name in "abc"):
+        assert time.monotonic() < guard_s
+        time.sleep(0.05)
+    before = remembered("b")
+    first[1].send_signal(signal.SIGKILL)
+    first[1].communicate()
+    again = robot("b", ports, "--linger", 1, "--memory", "b.memory", "--wait", 50, "--format", "json")
+    [(code, out, err)] = ended(again)
+    assert (code, "all 3 agree" in err) == (0, True)
+    after = remembered("b")
+    assert after["incarnation"] > before["incarnation"]
+    assert owned(after) == owned(before)
+    assert json.loads(out)["tasks_completed"] == 3
+    for process in (first[0], first[2]):
+        process.send_signal(signal.SIGINT)
+        assert ended(process)[0][0] == 130
+
+
+def remembered(name):
+    return json.loads(Path(f"{name}.memory").read_text())
+
+
+def owned(kept):
+    return [claim["task"] for claim in kept["memory"]["claims"]]
+
+
+def test_of_two_processes_of_one_robot_the_first_ends_and_says_why(three, ports):
+    first = robot("a", ports, "--wait", 50)
+    second = robot("b", ports, "--wait", 6, "--linger", 1)
+    for line in second.stderr:
+        if line == "a is there\n":
+            break
+    elsewhere = {"a": ports["c"], "b": ports["b"]}  # not the port that the first has
+    third = robot("a", elsewhere, "--wait", 6, "--linger", 1)
+    [(code, out, err)] = ended(first)
+    assert (code, out) == (2, "")
+    assert err.endswith("a: another process has started under this name; expected one for each robot, this one ends\n")
+    assert [code for code, *_ in ended(second, third)] == [0, 0]
+
+
+def test_a_replay_of_the_campaign_needs_no_mission(muster):
+    runs = [muster("auction", "--simulate-network", 5) for _ in range(2)]
+    assert runs[0] == runs[1]
+    code, out, err = runs[0]
+    assert (code, err) == (0, "")
+    assert out.startswith("seed 5: ")
+    assert out.endswith("nothing failed\n")
+
+
+def test_without_either_something_is_missing(muster):
+    code, out, err = muster("auction")
+    assert (code, out) == (2, "")
+    assert err.endswith("Error: Missing argument 'MISSION'.\n")
+
+
+def test_another_key_is_told(muster, three, ports):
+    assert muster("auction", "--new-key", "other")[0] == 0
+    processes = [robot("a", ports, "--wait", 2), robot("b", ports, "--wait", 2, key="other")]
+    for name, (code, out, err) in zip("ab", ended(*processes), strict=True):
+        assert (code, out) == (2, "")
+        assert err.startswith(f"{name}: ")
+        assert err.endswith(" messages, none made with this key; expected the same key everywhere\n")
+
+
+def test_another_mission_is_told(three, ports):
+    Path("other.yaml").write_text(MISSION.replace("[1, 1]", "[1, 2]"), encoding="utf-8")
+    results = ended(robot("a", ports, "--wait", 2), robot("b", ports, "--wait", 2, mission="other.yaml"))
+    assert [code for code, *_ in results] == [2, 2]
+    assert any("hold another auction; expected everywhere the same mission and terms\n" in e for *_, e in results)
+
+
+def test_nobody_there_is_told(muster, three, ports):
+    [(code, out, err)] = ended(robot("a", ports, "--wait", 1))
+    assert (code, out, err) == (2, "", "a: nobody there for 1 s; expected to hear one of b, c\n")
+
+
+def test_a_port_in_use_is_told(three, ports):
+    first = robot("a", ports, "--wait", 30)
+    guard_s = time.monotonic() + GUARD_S
+    listing = Path("/proc/net/udp")
+    while f":{ports['a']:04X} " not in listing.read_text():
+        assert time.monotonic() < guard_s
+        time.sleep(0.05)
+    [(code, out, err)] = ended(robot("b", ports | {"b": ports["a"]}))
+    first.kill()
+    first.communicate()
+    assert (code, out) == (2, "")
+    assert err.startswith(f"127.0.0.1:{ports['a']}: Address already in use; expected ")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--robot", "d"), "--robot: d; expected one of a, b, c\n"),
+        (("--robot", "a"), "--key-file missing; expected with --robot (`muster auction --new-key FILE` makes one)\n"),
+        (("--robot", "a", "--key-file", "nowhere"), "nowhere: key: No such file or directory; expected "),
+        (("--robot", "a", "--key-file", "three.yaml"), "three.yaml: key: "),
+        (("--robot", "a", "--key-file", "key"), "--connect or --multicast: expected one of them with --robot\n"),
+        (("--robot", "a", "--key-file", "key", "--connect", "b"), "--connect: b; expected HOST:PORT\n"),
+        (("--robot", "a", "--key-file", "key", "--connect", "z=h:1"), "--connect: robot z is not in the mission; "),
+        (("--robot", "a", "--key-file", "key", "--multicast", "h"), "--multicast: h; expected HOST:PORT\n"),
+        (("--robot", "a", "--key-file", "key", "--multicast", "10.0.0.1:7"), "group: 10.0.0.1; expected 224.0.0.0 "),
+        (("--connect", "h:1"), "--connect given; expected it together with --robot\n"),
+        (("--loss", "0.1"), "--loss given; expected it together with --simulate-network\n"),
+        (("--robot", "a", "--simulate-network", "1"), "--robot and --simulate-network given; expected one of them\n"),
+        (("--method", "dance"), "method: dance; expected auction or consensus-bundle\n"),
+        (("--set", "speed=3"), "auction has no parameter speed"),
+        (("--bid", "max", "--set", "bid=max"), "--set: bid given twice; expected it once, as --bid\n"),
+        (("--book", "book.txt"), "--book: book.txt; expected a file that ends in .csv\n"),
+        (("--views", "three.yaml"), "--views: three.yaml is a file; expected a folder"),
+    ],
+)
+def test_what_does_not_go_together_is_told(muster, three, options, message):
+    code, out, err = muster("auction", three, *options)
+    assert (code, out) == (2, "")
+    assert err.startswith(message)
+    assert err.count("\n") == 1
+
+
+def test_a_key_is_not_overwritten_and_is_its_owners_alone(muster, three):
+    assert Path("key").stat().st_mode & 0o777 == 0o600
+    code, _, err = muster("auction", "--new-key", "key")
+    assert (code, err.startswith("key: ")) == (2, True)
+
+
+def test_a_memory_of_something_else_is_refused(muster, three):
+    options = ("--robot", "a", "--key-file", "key", "--connect", "127.0.0.1:9", "--memory", "memory")
+    Path("memory").write_text("{}", encoding="utf-8")
+    assert muster("auction", three, *options)[2] == "memory: other content; expected what --memory has written\n"
+    other = {"schema": "muster-memory/1", "auction": "00", "robot": "a", "incarnation": 1, "memory": None}
+    Path("memory").write_text(json.dumps(other), encoding="utf-8")
+    assert "memory: auction: of another mission or other terms; expected " in muster("auction", three, *options)[2]
+    Path("memory").write_text(json.dumps(other | {"robot": "b"}), encoding="utf-8")
+    assert "memory: robot: b; expected a, or a new file\n" in muster("auction", three, *options)[2]

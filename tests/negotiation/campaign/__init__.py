@@ -1,0 +1,1 @@
+"""Random teams in a simulated network, with faults: they agree, and nobody owns what another owns."""

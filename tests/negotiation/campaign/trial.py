@@ -1,0 +1,15 @@
+"""One run of the campaign, in a process of its own."""
+
+import traceback
+from collections import Counter
+
+from muster.studies.negotiation import replay
+
+
+def trial(seed):
+    """(seed, failures, seconds until agreement, counts) of a run; an error is a failure like any other."""
+    try:
+        report = replay(seed)
+    except Exception:
+        return seed, [traceback.format_exc()], 0.0, Counter()
+    return seed, report.failures, report.took_s, report.counts

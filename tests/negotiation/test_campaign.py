@@ -1,0 +1,64 @@
+"""The first seeds of the campaign; `make campaign-auction` runs thousands."""
+
+from collections import Counter
+
+import pytest
+from tests.negotiation.campaign.trial import trial
+from tests.negotiation.networks import line_mission, settled_team
+
+from muster.negotiation.negotiator import Negotiator
+from muster.studies.negotiation import replay
+from muster.studies.negotiation.observer import Observer
+from muster.studies.negotiation.scene import scene
+
+RUNS, CHUNK = 1000, 50
+
+
+@pytest.mark.parametrize("first", range(0, RUNS, CHUNK))
+def test_nothing_fails(first):
+    failures = {seed: what for seed in range(first, first + CHUNK) if (what := trial(seed)[1])}
+    assert failures == {}
+
+
+def test_a_run_is_the_same_each_time():
+    assert list(replay(11).lines()) == list(replay(11).lines())
+
+
+def test_an_owner_too_many_is_seen(monkeypatch):
+    net = settled_team(line_mission())
+    claims = net.nodes["r_0"].route
+    monkeypatch.setattr(Negotiator, "route", claims)
+    watching = Observer(net.nodes, set())
+    watching.look("r_0")
+    watching.look("r_1")
+    assert watching.broken == [f"r_1 and r_0 both own {claim.task}" for claim in sorted(claims, key=lambda c: c.task)]
+
+
+def test_a_task_begun_twice_is_seen():
+    watching = Observer({}, {"0"})
+    watching.begins("a", "0", again=False)
+    watching.begins("a", "0", again=True)
+    assert watching.broken == []
+    watching.gone("a")
+    watching.begins("b", "0", again=False)
+    assert watching.broken == ["b begins 0, begun by a"]
+
+
+def test_an_error_is_a_failure(monkeypatch):
+    monkeypatch.setattr(Negotiator, "handle", lambda node, message, now: 1 / 0)
+    assert "ZeroDivisionError" in trial(0)[1][0]
+
+
+def test_scenes_have_everything():
+    scenes = [scene(seed) for seed in range(300)]
+    kinds = Counter(kind for one in scenes for kind in {incident.kind for incident in one.incidents})
+    for kind in ("crash", "restart", "forget", "cut", "heal", "announce", "cancel", "release", "withdraw"):
+        assert kinds[kind] > 15
+    assert 30 < sum(one.links is not None for one in scenes) < 150
+    assert 90 < sum(one.work_s is not None for one in scenes) < 210
+    assert max(one.weather.loss for one in scenes) > 0.45
+    assert max(one.weather.jitter_s for one in scenes) > 2 * min(one.weather.delay_s for one in scenes)
+    assert any(one.weather.duplication for one in scenes)
+    assert any(task.across_partition == "at-most-once" for one in scenes for task in one.mission.tasks)
+    dying = [{i.robot for i in one.incidents if i.kind == "crash"} for one in scenes]
+    assert any(len(dead) == len(one.mission.robots) - 1 for dead, one in zip(dying, scenes, strict=True))

@@ -1,0 +1,82 @@
+"""The failure detector, rule by rule."""
+
+import pytest
+
+from muster.negotiation.members import Members, Patience
+from muster.negotiation.messages import Pulse
+
+PATIENCE = Patience()
+
+
+@pytest.fixture
+def members():
+    members = Members("a", PATIENCE)
+    members.expect(["a", "b", "c"], 0.0)
+    return members
+
+
+def test_all_are_taken_for_alive_at_first(members):
+    assert set(members.present(PATIENCE.suspect_s - 0.1)) == {"a", "b", "c"}
+
+
+def test_silence_for_suspect_s_is_death_and_a_word_is_life(members):
+    members.hear(Pulse("b", 1, 1), 1.0)
+    assert set(members.present(PATIENCE.suspect_s)) == {"a", "b"}
+    assert set(members.present(1.0 + PATIENCE.suspect_s)) == {"a"}
+    members.hear(Pulse("b", 1, 2), 9.0)
+    assert set(members.present(9.0)) == {"a", "b"}
+
+
+@pytest.mark.parametrize("old", [Pulse("b", 2, 5), Pulse("b", 2, 4), Pulse("b", 1, 99)])
+def test_old_news_do_not_count(members, old):
+    members.hear(Pulse("b", 2, 5), 1.0)
+    members.hear(old, 4.9)
+    assert "b" not in members.present(5.0)
+
+
+def test_a_new_incarnation_is_noticed_once(members):
+    assert not members.hear(Pulse("b", 3, 1), 0.0)
+    assert members.hear(Pulse("b", 4, 1), 0.1)
+    assert not members.hear(Pulse("b", 4, 2), 0.2)
+    assert members.incarnation("b") == 4
+
+
+def test_strangers_and_itself_are_not_heard(members):
+    assert not members.hear(Pulse("x", 1, 1), 0.0)
+    assert not members.hear(Pulse("a", 9, 9), 0.0)
+    assert set(members.present(0.0)) == {"a", "b", "c"}
+    assert members.incarnation("x") == -1
+
+
+def test_who_keeps_others_waiting_is_out_for_longer_each_time_up_to_a_limit(members):
+    away, now = [], 0.0
+    for _ in range(6):
+        members.mute("b", now, bids=True)
+        begin = now
+        while "b" not in members.present(now):
+            now += 0.5
+            members.hear(Pulse("b", 1, int(2 * now)), now)
+        away.append(now - begin)
+    assert away == [5.0, 10.0, 20.0, 40.0, 40.0, 40.0]
+
+
+def test_agreement_forgives(members):
+    members.mute("b", 0.0, bids=True)
+    members.mute("b", 0.0, bids=True)
+    members.forgive(["b"])
+    members.mute("b", 0.0, bids=True)
+    members.hear(Pulse("b", 1, 1), 4.0)
+    assert "b" in members.present(5.0)
+
+
+def test_who_left_this_robot_out_is_back_when_it_declares_it_again(members):
+    members.mute("b", 0.0, bids=False)
+    members.mute("c", 0.0, bids=True)
+    members.welcome("b")
+    members.welcome("c")
+    assert set(members.present(0.1)) == {"a", "b"}
+
+
+def test_what_is_passed_on_is_what_was_heard(members):
+    members.hear(Pulse("b", 2, 7), 0.0)
+    assert members.pulses(Pulse("a", 1, 3), ["a", "b", "c"]) == (Pulse("a", 1, 3), Pulse("b", 2, 7))
