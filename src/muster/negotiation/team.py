@@ -167,6 +167,8 @@ class Team:
                     os.kill(self.pids[robot], signal.SIGKILL)
 
     def _lose(self, robot: str, why: str) -> None:
+        while robot in self._pipes and self._pipes[robot].poll():  # its last words may tell more than its end
+            self._hear_robot(robot)
         self.gone[robot] = why
         pipe = self._pipes.pop(robot, None)
         if pipe is not None:
