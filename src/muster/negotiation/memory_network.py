@@ -49,6 +49,8 @@ class MemoryNetwork:
         who hears whom directly; None: everybody everybody.
     watch
         is told of a robot after each moment in which it did something.
+    sent
+        is told of each message that is sent, to whomever.
     """
 
     make: Callable[[str, int], Negotiator]
@@ -57,6 +59,7 @@ class MemoryNetwork:
     weather: Weather = field(default_factory=Weather)
     links: Callable[[str, str], bool] | None = None
     watch: Callable[[str], None] = lambda robot: None
+    sent: Callable[[Message], None] = lambda message: None
 
     def __post_init__(self) -> None:
         self.now = 0.0
@@ -129,6 +132,7 @@ class MemoryNetwork:
     def _send(self, robot: str, out: list[Outgoing]) -> None:
         for outgoing in out:
             self.counts["sent"] += 1
+            self.sent(outgoing.message)
             for to in self.robots if outgoing.to is None else (outgoing.to,):
                 if to != robot and self._joined(robot, to):
                     self._post(to, outgoing.message)

@@ -13,6 +13,7 @@ from muster.studies.allocators import Allocators
 from muster.studies.auction_5 import AUCTION_5
 from muster.studies.effort import Effort
 from muster.studies.market_rescue import MARKET_RESCUE
+from muster.studies.negotiation.study import NEGOTIATION
 from muster.studies.peers import Peers
 from muster.studies.repetition import OnDone
 from muster.studies.rescue import RESCUE
@@ -53,6 +54,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     Peers(),
     RVO,
     RESCUE,
+    NEGOTIATION,
 )
 
 STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})
