@@ -1,9 +1,10 @@
 """Anti-entropy: what the sender of a message lacks, and whether it is this robot that sends it.
 
-A beat tells how far its sender is and what it lacks. The robot whose word is lacking answers always; of all others that
-could, about HELPERS do, as a number drawn from the beat says, so that nobody need know who else answers. Who asks for
-the same again and again may not hear the others at all: then all that hear it help, and pass on in their own beats what
-it lacks as soon as they know it. So words go on from neighbour to neighbour where not all hear each other.
+A beat tells how far its sender is and what it lacks. Of all that may have that, about HELPERS send it, all at once, as
+a number drawn from the beat says, so that nobody need know who else answers; where few words are lacking, those whose
+they are answer, too. Who asks for the same again and again may not hear the others at all: then all that hear it help,
+and pass on in their own beats what it lacks as soon as they know it. So words go on from neighbour to neighbour where
+not all hear each other.
 """
 
 from __future__ import annotations
@@ -101,8 +102,11 @@ class Repairs:
         return [robot for robot in message.lacks if self._helps(message, robot)]
 
     def _helps(self, message: Message, whose: str | None) -> bool:
-        """Whether it is this robot that sends what is lacking: its own, or to one in need; else about HELPERS do."""
-        if whose == self.me or self._asked.get(message.sender, (None, (), 0))[2] >= URGENT:
+        """Whether it is this robot that sends what is lacking: to one in need, or its own if little lacks, always."""
+        urgent = self._asked.get(message.sender, (None, (), 0))[2] >= URGENT
+        if urgent or (whose == self.me and len(message.lacks) <= HELPERS):
             return True
-        able = 1 + sum(stage != message.stage for robot, stage in self._stages.items() if robot != message.sender)
+        asked = (message.stage.epoch, message.stage.round)
+        others = (stage for robot, stage in self._stages.items() if robot != message.sender)
+        able = 1 + sum((stage.epoch, stage.round) >= asked for stage in others)
         return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS
