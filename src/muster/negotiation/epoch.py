@@ -135,8 +135,8 @@ class Epoch:
 
     @property
     def rounds(self) -> int:
-        """How many rounds were seen in all."""
-        return (self.own.rounds if self.base is None else self.base.rounds) + self.round
+        """How many rounds were seen in all, counted by what was sold: awards are numbered so."""
+        return (self.own.rounds if self.base is None else self.base.rounds) + len(self.sales)
 
     def route(self) -> tuple[Claim, ...]:
         """What this member owns now, in the order of its route."""

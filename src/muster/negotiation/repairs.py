@@ -21,7 +21,7 @@ URGENT = 3
 """Who asks so often for the same is in need."""
 
 HELPERS = 2
-"""Of those that could send what somebody lacks, about so many do, besides the one whose it is."""
+"""Of those that could send what somebody lacks, about so many do; so few words each author sends itself, too."""
 
 
 @dataclass
@@ -72,7 +72,7 @@ class Repairs:
                 (bid if stage.base else declared).update(lacks)
         at_base = epoch.base is not None
         declarations = [epoch.declaration_of(r) for r in sorted(declared if not at_base else declared - {self.me})]
-        bids = [epoch.bids_of(r, len(epoch.sales)) for r in sorted(bid)] if at_base and not epoch.ended else []
+        bids = [epoch.bids_of(r, epoch.round) for r in sorted(bid)] if at_base and not epoch.ended else []
         return {
             "declarations": tuple(d for d in declarations if d is not None),
             "bids": tuple(b for b in bids if b is not None),
