@@ -18,12 +18,12 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from types import FrameType
 from typing import Any
 
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Offer
 from muster.mission.errors import MissingExtraError, MusterError, ParameterError
+from muster.mission.interrupts import on_ctrl_c
 
 EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
 
@@ -231,11 +231,5 @@ def _done_by_worker(job: Job) -> Offer:
     """What a worker does: the job, until it is told to end."""
     whole = Stop()
 
-    def end(signum: int, frame: FrameType | None) -> None:
-        whole.interrupt()
-
-    before = signal.signal(signal.SIGINT, end)
-    try:
+    with on_ctrl_c(whole.interrupt):
         return job.done(whole)
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import FrameType
+
+from muster.mission.interrupts import on_ctrl_c
 
 
 @contextmanager
@@ -14,13 +14,10 @@ def ctrl_c_halts() -> Iterator[threading.Event]:
     """The event that the first Ctrl-C sets; the second ends everything."""
     halt = threading.Event()
 
-    def interrupt(signum: int, frame: FrameType | None) -> None:
+    def interrupt() -> None:
         if halt.is_set():
             raise KeyboardInterrupt
         halt.set()
 
-    before = signal.signal(signal.SIGINT, interrupt)
-    try:
+    with on_ctrl_c(interrupt):
         yield halt
-    finally:
-        signal.signal(signal.SIGINT, before)

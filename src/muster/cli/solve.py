@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import logging
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -29,6 +27,7 @@ from muster.cli.options import (
 from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
+from muster.mission.interrupts import on_ctrl_c
 from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
@@ -234,13 +233,10 @@ def _auctions() -> str:
 def _ctrl_c_interrupts(stop: Stop) -> Iterator[None]:
     """The first Ctrl-C ends the search and keeps its plan; the second leaves out reasons; the third ends everything."""
 
-    def interrupt(signum: int, frame: FrameType | None) -> None:
+    def interrupt() -> None:
         if stop.hurried:
             raise KeyboardInterrupt
         stop.interrupt()
 
-    before = signal.signal(signal.SIGINT, interrupt)
-    try:
+    with on_ctrl_c(interrupt):
         yield
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -7,14 +7,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
 from types import TracebackType
 
 from muster.mission.errors import MusterError
+from muster.mission.interrupts import ctrl_c_held_back
 from muster.negotiation.extra import require_net
 from muster.negotiation.members import Patience
 from muster.negotiation.view import View
@@ -60,7 +60,7 @@ class Team:
         pairs = [Pipe() for _ in self.robots]
         ends = [theirs, *(end for _, end in pairs)]
         descriptors = [end.fileno() for end in ends]
-        with _ctrl_c_held_back():
+        with ctrl_c_held_back():
             self._nursery = subprocess.Popen(
                 [sys.executable, "-m", "muster.negotiation.nursery", *map(str, descriptors)], pass_fds=descriptors
             )
@@ -199,13 +199,3 @@ def _light(order: Order) -> Order:
     if problem.mission.travel_rule != "map":
         return order
     return replace(order, problem=replace(problem, known=problem.measured))
-
-
-@contextmanager
-def _ctrl_c_held_back() -> Iterator[None]:
-    """Keep Ctrl-C for later. A process started here never sees it, nor do those that it starts."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -8,9 +8,9 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from multiprocessing.synchronize import Event
 
+from muster.mission.interrupts import ctrl_c_held_back
 from muster.studies.runs import Case, Outcome, Sample, perform
 
 Job = tuple[Case, int]
@@ -49,23 +49,13 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[Outcome]:
         min(workers, len(jobs)), mp_context=context, initializer=_begin_process, initargs=(leave,)
     )
     try:
-        with _ctrl_c_held_back():
+        with ctrl_c_held_back():
             futures = [pool.submit(_perform, case, seed) for case, seed in jobs]
         for future in as_completed(futures):
             yield future.result()
     finally:
         leave.set()
         pool.shutdown(cancel_futures=True)
-
-
-@contextmanager
-def _ctrl_c_held_back() -> Iterator[None]:
-    """Keep Ctrl-C for later. Processes started here never see it, not even before their first line of Python."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _leave: Event | None = None
