@@ -19,7 +19,7 @@ from muster.report.canvas import (
 from muster.report.floor import draw_map, map_corners
 from muster.report.fonts import Names
 from muster.report.record import Recording
-from muster.report.record.situation import DONE, OPEN, Situation
+from muster.report.record.situation import DONE, OPEN
 from muster.report.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 from muster.report.traces import Places, places
 
@@ -61,10 +61,7 @@ def plot_flown(recording: Recording) -> Axes:
 
 def outcome(recording: Recording) -> list[str]:
     """What came of a mission, in words."""
-    situation = Situation(recording.mission)
-    for event in recording.events:
-        situation.take(event.kind, event.data)
-    states = list(situation.states.values())
+    states = list(recording.outcome.states.values())
     facts = [f"tasks {states.count(DONE)}/{len(states)}"]
     report = recording.report or {}
     if report.get("min_distance_m") is not None:
@@ -97,9 +94,7 @@ def _draw_tracks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any,
 
 
 def _draw_tasks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any, str]]:
-    situation = Situation(recording.mission)
-    for event in recording.events:
-        situation.take(event.kind, event.data)
+    situation = recording.outcome
     colors = {DONE: TEXT, OPEN: LEFT_OUT}
     entries = {}
     for name, task in situation.tasks.items():

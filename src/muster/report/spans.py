@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from muster.report.record import Happening
+from muster.report.record.situation import OUT
 
 TRAVEL, WAITING, WORK = "travel", "waiting", "work"
 _BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK, "returns": TRAVEL}
 _ENDS = ("ends", "robot_at_end")
-_BREAKS_OFF = ("robot_fails", "robot_silent", "robot_stuck", "cancel_task", "lost")
+_BREAKS_OFF = (*OUT, "cancel_task", "lost")
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from muster.motion.grid import Grid
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
 from muster.report.record.messages import event_line
-from muster.report.record.situation import OPEN, Situation
+from muster.report.record.situation import ALARMING, OPEN, OUT, Situation
 from muster.report.spans import spans
 from muster.report.styles import PALETTE
 
@@ -26,8 +26,7 @@ Floats = npt.NDArray[np.float64]
 MOST_SAMPLES = 200_000
 """Moments times robots; where a record has more, moments are left out evenly."""
 
-_ALARMING = ("lost", "robot_fails", "robot_silent", "robot_stuck", "contact")
-_GONE, _BACK = ("robot_fails", "robot_silent", "robot_stuck"), ("robot_returns",)
+_BACK = "robot_returns"
 
 
 def page_data(recording: Recording) -> dict[str, Any]:
@@ -51,7 +50,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
             for bar in bars
             if bar.robot in order
         ],
-        "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in _ALARMING] for e in recording.events],
+        "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in ALARMING] for e in recording.events],
         "nearest": _nearest(recording, tracks),
         "map": _map(recording.mission.map, recording.image),
         "figures": _figures(recording),
@@ -112,8 +111,8 @@ def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
     """By robot when it goes out, and when it is back: [time, whether it is out from then on]."""
     found: dict[str, list[list[Any]]] = {}
     for event in recording.events:
-        if event.kind in (*_GONE, *_BACK):
-            found.setdefault(str(event.data.get("robot")), []).append([_thousandths(event.time_s), event.kind in _GONE])
+        if event.kind in (*OUT, _BACK):
+            found.setdefault(str(event.data.get("robot")), []).append([_thousandths(event.time_s), event.kind in OUT])
     return found
 
 

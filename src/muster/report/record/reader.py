@@ -98,9 +98,7 @@ def _whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Recording:
     mission = _mission(file, text)
     events = tuple(Happening(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
-    situation = Situation(mission)
-    for event in events:
-        situation.take(event.kind, event.data)
+    situation = Situation.after(mission, ((event.kind, event.data) for event in events))
     plans = messages.get("/muster/plan", [])
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])
     return Recording(

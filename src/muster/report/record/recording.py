@@ -102,10 +102,11 @@ class Recording:
         return float(max([0.0, reported, *told, *self.tracks.times_s[-1:].tolist()]))
 
     @cached_property
+    def outcome(self) -> Situation:
+        """The robots and tasks after the last event, and what became of these; not to be changed."""
+        return Situation.after(self.mission, ((event.kind, event.data) for event in self.events))
+
+    @cached_property
     def robots(self) -> tuple[Robot, ...]:
         """Those of the mission, then those that joined."""
-        situation = Situation(self.mission)
-        for event in self.events:
-            if event.kind == "robot_joins":
-                situation.take(event.kind, event.data)
-        return tuple(situation.robots.values())
+        return tuple(self.outcome.robots.values())

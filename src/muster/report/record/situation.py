@@ -18,15 +18,19 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Self
 
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.kinds import Fault, Record
 from muster.mission.model import Mission, Robot, Task
 
 OPEN, UNDER_WAY, DONE, LOST, CANCELLED = "open", "under way", "done", "lost", "cancelled"
+OUT = ("robot_fails", "robot_silent", "robot_stuck")
+"""Kinds of event after which a robot takes no part."""
+ALARMING = ("lost", *OUT, "contact")
+"""Kinds of event that somebody should look at."""
 _BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED}
 
 
@@ -38,6 +42,14 @@ class Situation:
         self.robots: dict[str, Robot] = {robot.id: robot for robot in mission.robots}
         self.tasks: dict[str, Task] = {task.id: task for task in mission.tasks}
         self.states: dict[str, str] = dict.fromkeys(self.tasks, OPEN)
+
+    @classmethod
+    def after(cls, mission: Mission, events: Iterable[tuple[str, Mapping[str, Any]]]) -> Self:
+        """The situation after events, each a kind and its data."""
+        situation = cls(mission)
+        for kind, data in events:
+            situation.take(kind, data)
+        return situation
 
     def take(self, kind: str, data: Mapping[str, Any]) -> str | None:
         """Let an event change the situation; returns the id of the task or robot that is new or has changed.

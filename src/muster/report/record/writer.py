@@ -25,11 +25,9 @@ from muster.mission.yaml_writer import yaml_text
 from muster.report.record import messages, scene
 from muster.report.record.routes import RouteLines
 from muster.report.record.schemas import MISSION_FILE, SCHEMAS, TOPICS
-from muster.report.record.situation import Situation
+from muster.report.record.situation import ALARMING, Situation
 
 Floats = npt.NDArray[np.float64]
-
-_ALARMING = ("lost", "robot_fails", "robot_silent", "robot_stuck", "contact")
 
 
 class RecordWriter:
@@ -129,7 +127,7 @@ class RecordWriter:
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """Write what has happened; what each kind means is told in `situation`."""
         self._add("/muster/event", now, messages.json_bytes({"time_s": now, "kind": kind, "data": data}))
-        level = messages.WARNING if kind in _ALARMING else messages.INFO
+        level = messages.WARNING if kind in ALARMING else messages.INFO
         self._write("/log", now, messages.log(now, level, messages.event_line(kind, data)))
         changed = self._situation.take(kind, data)
         if changed is not None:
