@@ -103,6 +103,15 @@ class Beliefs:
             if receivers:
                 self._read(sent, k, np.array(receivers, dtype=np.int64), now)
 
+    def lose(self, i: int, bundle: Sequence[int]) -> list[int]:
+        """The tasks of robot i's bundle from the first that it does not win any more; none is its own now."""
+        z, y = self.z[i], self.y[i]
+        lost = next((k for k, j in enumerate(bundle) if z[j] != i), len(bundle))
+        for j in bundle[lost:]:
+            if z[j] == i:
+                z[j], y[j] = NOBODY, NO_BID
+        return list(bundle[lost:])
+
     def agreed_winners(self) -> Indices:
         """(n,) the winner of each task; NOBODY too where the robots do not agree."""
         return np.where((self.z == self.z[0]).all(axis=0), self.z[0], NOBODY)

@@ -258,13 +258,10 @@ class Bidder:
 
     def release(self, beliefs: Beliefs) -> None:
         """Let go of the first task of the bundle that was lost, and of all that were added after it."""
-        z, y = beliefs.z[self._i], beliefs.y[self._i]
-        kept = next((k for k, j in enumerate(self._bundle) if z[j] != self._i), len(self._bundle))
-        for j in reversed(self._bundle[kept:]):  # so that every path on the way was one before
+        lost = beliefs.lose(self._i, self._bundle)
+        for j in reversed(lost):  # so that every path on the way was one before
             self._remove(j)
-            if z[j] == self._i:
-                z[j], y[j] = NOBODY, NO_BID
-        del self._bundle[kept:]
+        del self._bundle[len(self._bundle) - len(lost) :]
 
     def settle(self, winners: Indices) -> list[int]:
         """Make the path's tasks that all agree this robot wins part of its route for good, and return them.

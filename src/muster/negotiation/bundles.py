@@ -15,7 +15,7 @@ from enum import Enum
 import numpy as np
 
 from muster.allocation.allocator import Routes
-from muster.allocation.consensus import NO_BID, NOBODY, Beliefs, Ledger
+from muster.allocation.consensus import Beliefs, Ledger
 from muster.allocation.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
 from muster.allocation.problem import Problem
 from muster.negotiation.messages import Bid, RoundBids, Sold
@@ -92,7 +92,7 @@ class BundleValuer(TeamValuer):
         """Offer the tasks of the next layer of which all prerequisites are owned; whether there is one."""
         m, n = len(self._problem.robots), len(self._problem.tasks)
         self._beliefs, self._phase = Beliefs(m, n), _Phase.BUILDING
-        self._bundles: list[list[int]] = [[] for _ in range(m)]
+        self._bundles: list[list[int]] = [[] for _ in range(m)]  # of others: its own its bidder has
         layer = self._layers.pop(0) if self._layers else []
         offered = [j for j in layer if self._done.issuperset(self._problem.prerequisites[j])]
         self._offered = np.array(offered, dtype=np.int64)
@@ -104,29 +104,19 @@ class BundleValuer(TeamValuer):
         """Note what others have added; this robot's own is noted already."""
         for said in bids:
             i = self._robots[said.robot]
-            for task, bid in said.bids:
+            for task, bid in said.bids if i != self._me else ():
                 j = self._tasks[task]
                 self._bundles[i].append(j)
-                if i != self._me:
-                    self.ledger.note(j, i, bid)
+                self.ledger.note(j, i, bid)
                 self._beliefs.z[i, j], self._beliefs.y[i, j] = i, bid
 
     def _exchange(self, members: Sequence[int]) -> None:
         """Phase 2: all members read each other, and release what they lost."""
         network = [[k for k in members if k != i] if i in members else [] for i in range(len(self._robots))]
         self._beliefs.exchange(network, self.ledger.end_round())
-        for i in members:
-            self._release(i)
+        for bundle, lost in [(b, self._beliefs.lose(i, b)) for i, b in enumerate(self._bundles)]:
+            del bundle[len(bundle) - len(lost) :]
         self._bidder.release(self._beliefs)
-
-    def _release(self, i: int) -> None:
-        z, y, bundle = self._beliefs.z[i], self._beliefs.y[i], self._bundles[i]
-        kept = next((k for k, j in enumerate(bundle) if z[j] != i), len(bundle))
-        if i != self._me:  # its own bidder does this for the robot itself
-            for j in bundle[kept:]:
-                if z[j] == i:
-                    z[j], y[j] = NOBODY, NO_BID
-        del bundle[kept:]
 
     def _agree(self, members: Sequence[int]) -> bool:
         z, y = self._beliefs.z[members], self._beliefs.y[members]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 from muster.allocation.allocator import Outcome, finished_plan
 from muster.allocation.auction import AUCTION
@@ -38,50 +41,33 @@ def rules_of(problem: Problem) -> Rules:
 
 def negotiator_of(
     problem: Problem,
-    terms: Terms,
+    params: Any,
     robot: str,
     *,
     incarnation: int,
+    valuer: Callable[[Problem, Any, str], Valuer] = AuctionValuer,
     patience: Patience = Patience(),  # noqa: B008 - frozen
     remembered: Memory | None = None,
     forgot: bool = False,
 ) -> Negotiator:
-    """A robot that takes part; `incarnation` is above all that it had before, `remembered` and `forgot` as there."""
-    return _negotiator(problem, AuctionValuer(problem, terms, robot), robot, incarnation, patience, remembered, forgot)
+    """A robot that takes part, in the auction by default.
 
-
-def bundler_of(
-    problem: Problem,
-    params: BundleParameters,
-    robot: str,
-    *,
-    incarnation: int,
-    patience: Patience = Patience(),  # noqa: B008 - frozen
-    remembered: Memory | None = None,
-    forgot: bool = False,
-) -> Negotiator:
-    """The same for CBBA."""
-    return _negotiator(problem, BundleValuer(problem, params, robot), robot, incarnation, patience, remembered, forgot)
-
-
-def _negotiator(
-    problem: Problem,
-    valuer: Valuer,
-    robot: str,
-    incarnation: int,
-    patience: Patience,
-    remembered: Memory | None,
-    forgot: bool,
-) -> Negotiator:
+    `params` are those of the `valuer`; `incarnation` is above all that it had before; `remembered` and `forgot` are as
+    the negotiator has them.
+    """
     return Negotiator(
         robot=robot,
         rules=rules_of(problem),
-        valuer=valuer,
+        valuer=valuer(problem, params, robot),
         patience=patience,
         incarnation=incarnation,
         remembered=remembered,
         forgot=forgot,
     )
+
+
+bundler_of = partial(negotiator_of, valuer=BundleValuer)
+"""A robot that takes part in CBBA."""
 
 
 def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
