@@ -24,7 +24,7 @@ def line_mission(robots=3, tasks=6, once=(), **more):
     )
 
 
-def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, **weather):
+def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, absent=(), **weather):
     """The team of a mission or a problem, not started; what robots remember is in `memories`, by robot."""
     problem = mission if isinstance(mission, Problem) else Problem.compile(mission)
     rules, terms, memories = rules_of(problem.ready()), terms or Parameters(), {}
@@ -32,7 +32,7 @@ def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, **weath
     def negotiator(robot, incarnation):
         valuer, memory = AuctionValuer(problem, terms, robot), memories.pop(robot, None)
         forgot = memory is None and incarnation > 1
-        return make(robot, rules, valuer, incarnation=incarnation, remembered=memory, forgot=forgot)
+        return make(robot, rules, valuer, incarnation=incarnation, remembered=memory, forgot=forgot, absent=absent)
 
     net = MemoryNetwork(negotiator, [robot.id for robot in problem.robots], seed, Weather(**weather), links)
     net.memories = memories

@@ -149,3 +149,16 @@ def test_tasks_that_were_added_belong_to_the_base_of_two_of_one_name_the_first()
     base = agreed([Declaration("a", 1, 1, ("a",), (Claim("n", 1.0, 1),), facts)], RULES)
     assert [fact.content for fact in base.added] == [one]
     assert [claim.task for claim in base.routes["a"]] == ["n"]
+
+
+def test_who_claims_a_task_without_knowing_that_it_has_moved_loses_it_unless_it_has_begun():
+    there = Fact("0", "b", "moved", 1, content_of(Task(id="0", position=(9.0, 0.0))))
+    claim = Claim("0", 1.0, 1)
+
+    def owners(mine, *facts):
+        said = [Declaration("a", 1, 1, ("a", "b"), (mine,), facts), Declaration("b", 1, 1, ("a", "b"), (), (there,))]
+        return [robot for robot, route in agreed(said, RULES).routes.items() if route]
+
+    assert owners(claim) == []
+    assert owners(claim, there) == ["a"]
+    assert owners(replace(claim, begun=True)) == ["a"]

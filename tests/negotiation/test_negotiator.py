@@ -10,6 +10,8 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.negotiation.happenings import Happening
 from muster.negotiation.messages import Message, Stage
 from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.tasks import content_of
+from muster.negotiation.view import view_of
 
 ALL = {str(k) for k in range(6)}
 
@@ -247,6 +249,60 @@ def test_a_robot_that_is_out_owns_nothing_any_more():
     agree(net)
     assert net.nodes["r_0"].route == ()
     assert {task: len(names) for task, names in owners(net).items()} == dict.fromkeys(ALL, 1)
+
+
+def test_a_robot_that_was_out_comes_back():
+    net = settled_team(line_mission())
+    before = owners(net)
+    net.nodes["r_0"].withdraw()
+    agree(net)
+    net.nodes["r_0"].come_back()
+    agree(net)
+    net.nodes["r_1"].withdraw()
+    net.nodes["r_2"].withdraw()
+    agree(net)
+    assert {robot for names in before.values() for robot in names} >= {"r_0"}
+    assert "r_0" in {robot for names in owners(net).values() for robot in names}
+
+
+def test_a_task_that_moves_is_sold_again():
+    net = settled_team(line_mission())
+    task, (owner,) = "0", owners(net)["0"]
+    price = {claim.task: claim.price for claim in net.nodes[owner].route}[task]
+    net.nodes["r_2"].move(Task(id=task, position=(1000.0, 0.0)))
+    agree(net)
+    (new_owner,) = owners(net)[task]
+    assert {claim.task: claim.price for claim in net.nodes[new_owner].route}[task] != price
+    assert owners(net).keys() == ALL
+
+
+def test_work_that_was_begun_goes_on_wherever_the_task_is():
+    net = settled_team(line_mission())
+    task = first_task(net, "r_0")
+    assert net.nodes["r_0"].begin(task)
+    net.nodes["r_1"].move(Task(id=task, position=(1000.0, 0.0)))
+    agree(net)
+    assert owners(net)[task] == ["r_0"]
+
+
+def test_a_task_moves_again_and_again():
+    net = settled_team(line_mission())
+    for x in (400.0, 700.0):
+        net.nodes["r_1"].move(Task(id="0", position=(x, 0.0)))
+        agree(net)
+    contents = {view_of(node).added for node in net.nodes.values()}
+    assert contents == {(content_of(Task(id="0", position=(700.0, 0.0))),)}
+    with pytest.raises(ParameterError, match="expected the id of a task"):
+        net.nodes["r_0"].move(Task(id="nothing", position=(0.0, 0.0)))
+
+
+def test_robots_that_come_later_are_not_waited_for():
+    net = network(line_mission(robots=4), absent=frozenset({"r_3"}))
+    net.start(["r_0", "r_1", "r_2"])
+    agree(net, 2.0)
+    net.start(["r_3"])
+    agree(net)
+    assert set(net.nodes["r_0"].epoch.own.members) == {"r_0", "r_1", "r_2", "r_3"}
 
 
 def test_rounds_are_counted_over_epochs():

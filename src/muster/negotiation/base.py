@@ -45,10 +45,10 @@ class Rules:
         return len(self.robots) // 2 + 1
 
     def with_added(self, added: Sequence[Fact]) -> Rules:
-        """The rules when these tasks belong to the mission."""
-        if not added:
+        """The rules when these tasks belong to the mission; those that are elsewhere now do anyway."""
+        tasks = [task_of(fact.content) for fact in added if fact.task not in self.tasks]
+        if not tasks:
             return self
-        tasks = [task_of(fact.content) for fact in added]
         return replace(
             self,
             tasks={**self.tasks, **{task.id: k for k, task in enumerate(tasks, len(self.tasks))}},
@@ -68,7 +68,7 @@ class Base:
     facts
         all that any member knows for good.
     done, added
-        of them what was done, in order, and those by which there are more tasks, in tie order.
+        of them what was done, in order, and those by which there are more tasks, in tie order, or tasks are elsewhere.
     closed
         tasks that are not for sale, whoever owns them.
     dropped
@@ -109,8 +109,9 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     """The base that follows from the declarations of all members, in any order.
 
     A task that several claim stays with the one that has begun it; if nobody has, with the lowest price, then with the
-    first in tie order. What waits for a task that nobody owns or has done is dropped, and of routes that wait for each
-    other for ever the tasks that come last in tie order; work that was begun never.
+    first in tie order. Who claims one without knowing that it is elsewhere now loses it, unless it has begun it. What
+    waits for a task that nobody owns or has done is dropped, and of routes that wait for each other for ever the tasks
+    that come last in tie order; work that was begun never.
     """
     declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
@@ -124,7 +125,8 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     routes: Routes = {}
     for declaration in declarations:
         robot = declaration.robot
-        kept = [c for c in declaration.route if c.task not in gone and reserved.get(c.task, robot) == robot]
+        stale = {fact.task for fact in added if fact.kind == "moved" and fact not in declaration.facts}
+        kept = [c for c in declaration.route if c.task not in gone | stale and reserved.get(c.task, robot) == robot]
         routes[robot] = [*(c for c in declaration.route if c.begun), *(c for c in kept if not c.begun)]
     twice = _one_owner_each(routes, rules)
     _drop_orphans(routes, done, rules)
@@ -148,12 +150,15 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
 
 
 def _added(facts: frozenset[Fact], rules: Rules) -> tuple[Fact, ...]:
-    """The facts by which there are more tasks: of several of one name the first."""
+    """The facts by which there are more tasks, of several of one name the first, or they are elsewhere, the last."""
     first: dict[str, Fact] = {}
+    last: dict[str, Fact] = {}
     for fact in in_order(facts):
         if fact.kind == "added" and fact.task not in rules.tasks:
             first.setdefault(fact.task, fact)
-    return tuple(first.values())
+        elif fact.kind == "moved" and (fact.task in rules.tasks or fact.task in first):
+            last[fact.task] = fact
+    return (*first.values(), *last.values())
 
 
 def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:

@@ -33,7 +33,7 @@ from muster.negotiation.forms import (
 )
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
 
-PROTOCOL = 1
+PROTOCOL = 2
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -41,7 +41,7 @@ class OtherVersion(Garbled):
     """A message of another version of the protocol."""
 
 
-FACTS = ("done", "begun", "waived", "added", "cancelled")
+FACTS = ("done", "begun", "waived", "added", "moved", "cancelled")
 """Kinds of facts."""
 
 

@@ -35,6 +35,10 @@ class Knowledge:
         """Add a fact of the robot itself, unless it has said so before; returns it if it is new."""
         if any((f.task, f.robot, f.kind) == (task, robot, kind) for f in self.facts):
             return []
+        return self.add(task, robot, kind, content)
+
+    def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> list[Fact]:
+        """Add a fact of the robot itself, which follows from all that it knows."""
         order = 1 + max((fact.order for fact in self.facts), default=0)
         return self.learn([Fact(task, robot, kind, order, content)])
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from muster.negotiation.messages import Pulse
@@ -58,11 +59,11 @@ class Members:
     patience: Patience
     _peers: dict[str, _Peer] = field(default_factory=dict)
 
-    def expect(self, robots: Iterable[str], now: float) -> None:
-        """Take robots for alive that have not been heard of."""
+    def expect(self, robots: Iterable[str], now: float, absent: Collection[str] = ()) -> None:
+        """Take robots for alive that have not been heard of; not those of which it is known that they come later."""
         for robot in robots:
             if robot != self.me:
-                self._peers.setdefault(robot, _Peer(heard_s=now))
+                self._peers.setdefault(robot, _Peer(heard_s=-math.inf if robot in absent else now))
 
     def hear(self, pulse: Pulse, now: float) -> bool:
         """Take in that a robot lived; whether it has started anew since it was heard last."""

@@ -48,6 +48,8 @@ class Negotiator:
     forgot
         whether it may have taken part before and does not remember: its word does not count for tasks that nobody may
         begin twice until those that know have told it.
+    absent
+        robots that come later: nobody waits for them.
     """
 
     robot: str
@@ -57,6 +59,7 @@ class Negotiator:
     incarnation: int = 0
     remembered: Memory | None = None
     forgot: bool = False
+    absent: Collection[str] = ()
 
     def __post_init__(self) -> None:
         memory = self.remembered or Memory(knows=not self.forgot)
@@ -81,7 +84,7 @@ class Negotiator:
 
     def start(self, now: float) -> list[Outgoing]:
         """Begin, with the whole team for members."""
-        self.members.expect(self.rules.robots, now)
+        self.members.expect(self.rules.robots, now, self.absent)
         return self._enter(self._before.epoch + 1, now)
 
     @property
@@ -199,6 +202,24 @@ class Negotiator:
         self.valuer.check(task)
         self._work.say(task.id, "added", content_of(task))
 
+    def move(self, task: Task) -> None:
+        """Tell that a task is elsewhere: who has it and has not begun it gives it back, and it is auctioned again.
+
+        Parameters
+        ----------
+        task
+            the whole task, as it is now.
+
+        Raises
+        ------
+        MissionError, ParameterError
+            if it does not fit into the mission, or there is none of its name.
+        """
+        if task.id not in self._rules.tasks:
+            raise ParameterError(f"moved task: {shown(task.id)}; expected the id of a task")
+        self.valuer.check(task)
+        self._work.say_again(task.id, "moved", content_of(task))
+
     def cancel(self, task: str) -> None:
         """Take a task out of the mission; who has begun it goes on."""
         self._work.say(task, "cancelled")
@@ -215,10 +236,11 @@ class Negotiator:
 
     def withdraw(self) -> None:
         """The robot is out: it gives back all that it has not begun, and does not bid any more."""
-        for claim in self.route:
-            if not claim.begun:
-                self._work.give_up(claim.task)
-        self._work.out = self._work.restless = True
+        self._work.withdraw()
+
+    def come_back(self) -> None:
+        """The robot that was out takes part again."""
+        self._work.out, self._work.restless = False, True
 
     @property
     def _rules(self) -> Rules:
@@ -235,7 +257,7 @@ class Negotiator:
             incarnation=self.incarnation,
             epoch=number,
             members=members,
-            route=work.left_of(before.route() if before else self._before.claims),
+            route=work.up_to_date(before) if before else work.left_of(self._before.claims),
             facts=in_order(work.known.facts),
             rounds=before.rounds if before else 0,
             incarnations=tuple(self.incarnation if r == self.robot else self.members.incarnation(r) for r in members),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -49,11 +49,12 @@ def negotiator_of(
     patience: Patience = Patience(),  # noqa: B008 - frozen
     remembered: Memory | None = None,
     forgot: bool = False,
+    absent: Collection[str] = (),
 ) -> Negotiator:
     """A robot that takes part, in the auction by default.
 
-    `params` are those of the `valuer`; `incarnation` is above all that it had before; `remembered` and `forgot` are as
-    the negotiator has them.
+    `params` are those of the `valuer`; `incarnation` is above all that it had before; `remembered`, `forgot` and
+    `absent` are as the negotiator has them.
     """
     return Negotiator(
         robot=robot,
@@ -63,6 +64,7 @@ def negotiator_of(
         incarnation=incarnation,
         remembered=remembered,
         forgot=forgot,
+        absent=absent,
     )
 
 

@@ -1,4 +1,4 @@
-"""Tasks that appear while a mission goes on: as bytes that all robots keep, and as a part of their problem."""
+"""Tasks that appear or move while a mission goes on: as bytes that all robots keep, and as a part of their problem."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import cache
 
 from muster.allocation.problem import Problem
-from muster.mission.errors import MissionError, ParameterError
+from muster.mission.errors import MissionError
 from muster.mission.kinds import Fault, Record, shown
 from muster.mission.model import Task, findings
 from muster.mission.source import IN_PYTHON
@@ -44,19 +44,21 @@ def task_of(content: bytes) -> Task:
 def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:
     """The problem with more tasks, behind all that it has: ties go to those that were there before.
 
+    A task of a name that there is takes that one's place: it is elsewhere now.
+
     Raises
     ------
     MissionError
         if a task does not fit into the mission.
-    ParameterError
-        if there is a task of its name.
     """
     if not contents:
         return problem
-    new = tuple(task_of(content) for content in contents)
-    for task in new:
-        if task.id in problem.task_index:
-            raise ParameterError(f"new task: {shown(task.id)}; expected an id that no task has")
-    mission = replace(problem.mission, tasks=(*problem.mission.tasks, *new))
-    compiled = Problem.compile(mission, problem.objective, problem.ignored)
-    return replace(compiled, tasks=(*problem.tasks, *new))
+    new = {task.id: task for task in map(task_of, contents)}
+
+    def changed(tasks: Sequence[Task]) -> tuple[Task, ...]:
+        return tuple({**{task.id: task for task in tasks}, **new}.values())
+
+    compiled = Problem.compile(
+        replace(problem.mission, tasks=changed(problem.mission.tasks)), problem.objective, problem.ignored
+    )
+    return replace(compiled, tasks=changed(problem.tasks))

@@ -61,9 +61,19 @@ class Work:
         kept = [claim for claim in mine if claim.begun or not (self.out or claim.task in self.refused)]
         return (*(claim for claim in kept if claim.begun), *(claim for claim in kept if not claim.begun))
 
+    def up_to_date(self, epoch: Epoch) -> tuple[Claim, ...]:
+        """What is left of an epoch's route without tasks that were heard to be elsewhere since it began."""
+        knew = epoch.own.facts if epoch.base is None else epoch.base.facts
+        moved = {fact.task for fact in self.known.facts.difference(knew) if fact.kind == "moved"}
+        return tuple(claim for claim in self.left_of(epoch.route()) if claim.begun or claim.task not in moved)
+
     def say(self, task: str, kind: str, content: bytes = b"") -> None:
         """Say something that is true for good."""
         self.fresh += self.known.say(task, self.robot, kind, content)
+
+    def say_again(self, task: str, kind: str, content: bytes) -> None:
+        """The same of what may be said of a task more than once."""
+        self.fresh += self.known.add(task, self.robot, kind, content)
 
     def may_begin(self, task: str, epoch: Epoch, shown: Iterable[str], rules: Rules) -> bool:
         """Whether the robot may begin a task that it owns in this epoch; `shown` are members that have its base."""
@@ -103,6 +113,12 @@ class Work:
             self.say(task, "waived")
         self.refused.add(task)
         self.restless = True
+
+    def withdraw(self) -> None:
+        """Take no tasks any more, and give back all that has not been begun."""
+        for task in self.reserved - self.begun:
+            self.give_up(task)
+        self.out = self.restless = True
 
     def give_up_lost(self, kept: Sequence[Claim]) -> None:
         """Give up what was reserved and went to another before it was begun."""
