@@ -8,16 +8,17 @@ to be done, and the rest is planned again (`reallocation`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, new_hand
+from muster.execution.changes import OUT, SILENT, Change, Changes, new_hand
 from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
-from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
+from muster.execution.monitor import Limits
+from muster.execution.overseer import Overseer
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.rest import Rest
@@ -93,17 +94,18 @@ class Executor:
         self.planned = plan
         self._travel = travel_of(mission) if travel is None else travel
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
-        self._limits = Limits() if limits is None else limits
         self._observer = NoObserver() if observer is None else observer
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self._tell)
+        self._overseer = Overseer(
+            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self._tell, now
+        )
         self._script = sorted(mission.events, key=lambda event: event.at_s)
         self._asked: list[Change] = []
         self._left_out = {item.task: told(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
         self.begun_s = now
         self._stood_still_at = -1
-        self._look_s = now
         for robot, tasks in required_routes(mission, plan).items():
             self.crew[robot].route = list(tasks)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
@@ -155,7 +157,7 @@ class Executor:
         for hand in self._present:
             self._dispatch.advance(hand, now)
         self._follow_script()
-        self._notice()
+        self._ask(self._overseer.look(now))
         self._go_on()
         self._notice_standstill()
         self._end_if_over()
@@ -181,56 +183,6 @@ class Executor:
                 self.report(event)
             except ParameterError as error:
                 self._tell("event_refused", {"reason": str(error)})
-
-    def _notice(self) -> None:
-        """The monitor: missed telemetry, no progress, capacity."""
-        if self.now_s < self._look_s:
-            return
-        self._look_s = self.now_s + self._limits.look_every_s
-        if any(seems_late(hand, self.now_s, self._limits) for hand in self._present):
-            for hand in held_up(self._present):
-                hand.nearest_s = self.now_s
-        for hand in self._present:
-            if is_silent(hand, self.now_s, self._limits):
-                self._ask(self._changes.put_out(hand, SILENT, self.now_s))
-            elif is_stuck(hand, self.now_s, self._limits):
-                self._free_or_put_out(hand)
-            elif hand.activity is Activity.DRIVING and self._capacity(hand) is not None:
-                self._notice_capacity(hand)
-
-    def _free_or_put_out(self, hand: Hand) -> None:
-        """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
-        broken = [other for other in self.crew.values() if other.out]
-        blocking = next((one for one in broken if stands_in_the_way(one, hand.robot, hand.points_left)), None)
-        if blocking is not None and hand.activity is Activity.RETURNING:
-            self._dispatch.end_here(hand, self.now_s)
-        elif blocking is not None:
-            self._ask(self._give_up_blocked(hand, blocking))
-        elif hand.stuck_before:
-            self._ask(self._changes.put_out(hand, STUCK, self.now_s, "no progress"))
-        else:
-            self._tell("robot_sent_again", {"robot": hand.robot.id, "reason": "no progress"})
-            self._dispatch.again(hand, self.now_s)
-
-    def _give_up_blocked(self, hand: Hand, blocking: Hand) -> Iterator[Change]:
-        """No robot gets to a task at which a broken one stands, if it is as large as the one that tried."""
-        task, points, reason = hand.route[0], hand.points_left, f"unreachable: {blocking.robot.id} stands there, out"
-        for other in self._present:
-            able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
-            if other is not hand and able and stands_in_the_way(blocking, other.robot, points):
-                self.ledger.refuse(task, other.robot.id, reason)
-        self.ledger.blocked_by[task] = blocking.robot.id
-        return self._dispatch.refuse(hand, task, reason, self.now_s)
-
-    def _notice_capacity(self, hand: Hand) -> None:
-        """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
-        task, capacity, after = hand.route[0], self._capacity(hand), hand.used_after(self.now_s)
-        if exceeds(after + hand.home_usage, capacity):
-            reason = f"capacity: {after + hand.home_usage:.2f} used with it, of {capacity:.2f}"
-            self._ask(self._dispatch.refuse(hand, task, reason, self.now_s))
-        elif hand.warned_of != task and exceeds(after + self._dispatch.ahead[hand.robot.id].get(task, 0.0), capacity):
-            hand.warned_of = task
-            self._ask([Change("robot_runs_low", {"robot": hand.robot.id, "capacity": capacity})])
 
     def _capacity(self, hand: Hand) -> float | None:
         return None if "capacity" in self.planned.ignored else hand.robot.work_capacity
