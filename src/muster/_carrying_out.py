@@ -149,7 +149,7 @@ class Simulation:
     def result(self) -> Report:
         """What it took, so far or in all."""
         world = self._world
-        return report_of(self._executor, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        return report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
 
     def _befalls(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""

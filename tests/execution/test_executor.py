@@ -271,7 +271,7 @@ def test_a_robot_that_joins_takes_work():
     mission = line(40.0, 45.0, events=[Event(at_s=3, robot_joins=robot)])
     executor = carried_out(mission, plan_of(r_0=["0", "1"]))
     assert sorted(executor.crew["new"].done) == ["0", "1"]
-    assert report_of(executor, contacts=0, min_distance_m=1.0).robots[1].usage_planned == 0
+    assert report_of(executor.account, contacts=0, min_distance_m=1.0).robots[1].usage_planned == 0
 
 
 def test_what_a_robot_cannot_do_goes_to_another():

@@ -24,7 +24,7 @@ def reported(events=(), objective=None, **numbers):
     plan = Plan(objective=objective, routes=(Route("a", ("x",)), Route("b", ("y",))))
     world = World(mission)
     executor = carry_out(Executor(mission, plan, world.ports), world, step=0.01)
-    return report_of(executor, **({"contacts": 0, "min_distance_m": 3.2} | numbers))
+    return report_of(executor.account, **({"contacts": 0, "min_distance_m": 3.2} | numbers))
 
 
 def test_it_prints_what_the_command_promises():

@@ -30,16 +30,26 @@ class Dispatch:
         what a task makes a robot do, and how it gets there.
     tell
         is told what happens.
+    leave
+        whether a robot that is at a task may begin it, where others have a say: then it stops there and asks; None: the
+        ledger alone says so.
     """
 
     def __init__(
-        self, ledger: Ledger, capacity: Callable[[Hand], float | None], doing: Doer, way: Way, tell: Tell
+        self,
+        ledger: Ledger,
+        capacity: Callable[[Hand], float | None],
+        doing: Doer,
+        way: Way,
+        tell: Tell,
+        leave: Callable[[str], bool] | None = None,
     ) -> None:
         self._ledger = ledger
         self._capacity = capacity
         self._doing = doing
         self._way = way
         self._tell = tell
+        self._leave = leave
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, hand: Hand, now: float) -> None:
@@ -55,8 +65,9 @@ class Dispatch:
 
     def send_on(self, hand: Hand, now: float) -> Iterator[Change]:
         """Send a robot on that is available, or may begin; yields why it cannot, which asks for a new plan."""
-        if hand.activity is Activity.WAITING and self._ledger.may_begin(hand.route[0]):
-            self._work(hand, now)
+        if hand.activity is Activity.WAITING:
+            if self._ledger.may_begin(hand.route[0]) and (self._leave is None or self._leave(hand.route[0])):
+                self._work(hand, now)
         elif hand.available and hand.route and now >= hand.robot.available_from_s:
             yield from self._to_task(hand, hand.route[0], now)
         elif self.goes_home(hand) and hand.home is not None:
@@ -134,7 +145,7 @@ class Dispatch:
             )
             return
         hand.work, hand.work_s, hand.delay_s, hand.home_usage = work, lasts, delay, home
-        hand.to_task, hand.works = len(there), self._ledger.may_begin(task)
+        hand.to_task, hand.works = len(there), self._leave is None and self._ledger.may_begin(task)
         hand.at_home = False
         hand.usage_to_task = hand.used - hand.used_before + self._planned_usage(hand, task)
         hand.send(now, Activity.DRIVING, [*there, *(_delayed(work, delay) if hand.works else ())])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from muster.execution.changes import OUT, SILENT, Change, Changes, new_hand
 from muster.execution.dispatch import Dispatch
@@ -21,6 +21,7 @@ from muster.execution.monitor import Limits
 from muster.execution.overseer import Overseer
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
+from muster.execution.report import Account
 from muster.execution.rest import Rest
 from muster.execution.situation import required_routes, rest_of, whole_plan
 from muster.execution.travel import Travel, travel_of
@@ -39,6 +40,14 @@ class Happening:
     at_s: float
     kind: str
     data: Mapping[str, Any]
+
+
+class Peers(Protocol):
+    """The rest of the team, where each robot has an executor of its own."""
+
+    def may_begin(self, task: str) -> bool:
+        """Whether this executor's robot may begin a task at which it stands; asked until it may."""
+        ...
 
 
 class Executor:
@@ -64,6 +73,9 @@ class Executor:
         is told all that happens.
     now
         seconds of the mission's clock at which it begins.
+    peers
+        the other robots' say, where this is the executor of those alone that have a port: then the mission is not over
+        when they have nothing to do.
 
     Raises
     ------
@@ -84,10 +96,12 @@ class Executor:
         limits: Limits | None = None,
         observer: Observer | None = None,
         now: float = 0.0,
+        peers: Peers | None = None,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisites" not in plan.ignored)
-        self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in mission.robots}
+        own = [robot for robot in mission.robots if peers is None or robot.id in ports]
+        self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in own}
         self.ended_s: float | None = None
         self.happenings: list[Happening] = []
         self.revisions: list[Revision] = []
@@ -96,7 +110,9 @@ class Executor:
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
         self._observer = NoObserver() if observer is None else observer
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
-        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self._tell)
+        self._alone = peers is None
+        may_begin = None if peers is None else peers.may_begin
+        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self._tell, may_begin)
         self._overseer = Overseer(
             self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self._tell, now
         )
@@ -107,7 +123,8 @@ class Executor:
         self.begun_s = now
         self._stood_still_at = -1
         for robot, tasks in required_routes(mission, plan).items():
-            self.crew[robot].route = list(tasks)
+            if robot in self.crew:
+                self.crew[robot].route = list(tasks)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
         self._observer.on_plan(now, plan)
@@ -144,6 +161,16 @@ class Executor:
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
             self._tell("without_effect", plain(event))
+
+    def plan_again(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Have the rest planned again at the next tick, because of something that is known elsewhere."""
+        self._ask([Change(kind, data)])
+
+    def end_elsewhere(self, task: str, robot: str) -> None:
+        """A robot that is none of the crew has done a task; work of the crew on it that was begun goes on."""
+        at_work = any(hand.activity is Activity.WORKING and hand.route[0] == task for hand in self.crew.values())
+        if not at_work and task not in self.ledger.ends_s:
+            self.ledger.end(task, robot, self.now_s)
 
     def tick(self, now: float) -> Sequence[Happening]:
         """Go on to a time, not before the last, in seconds; returns what happened.
@@ -189,6 +216,8 @@ class Executor:
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
+        if not self._alone:
+            return
         waiting = [hand.route[0] for hand in self._present if hand.activity is Activity.WAITING]
         still = all(
             hand.activity is Activity.WAITING or (hand.activity is Activity.IDLE and not hand.route)
@@ -232,10 +261,14 @@ class Executor:
         self._tell("replanned", {"causes": causes, **revision.difference()})
         self._observer.on_plan(self.now_s, self.plan)
 
-    def _end_if_over(self) -> None:
+    @property
+    def idle(self) -> bool:
+        """Whether nobody of the crew has anything to do, or a way to go."""
         ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
-        busy = ways or any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
-        if not self.done and not busy and not any(map(self._matters, self._script)):
+        return not ways and not any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
+
+    def _end_if_over(self) -> None:
+        if self._alone and not self.done and self.idle and not any(map(self._matters, self._script)):
             last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
             self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
             for task, reason in self.lost().items():
@@ -243,9 +276,21 @@ class Executor:
             self._tell("mission_ended", {})
 
     def _matters(self, event: Event) -> bool:
-        """Whether an event to come can bring work, or a robot for what is open."""
-        helps = event.robot_joins or event.robot_returns or event.move_task
-        return event.new_task is not None or bool(helps and self.ledger.open)
+        return may_bring_work(event, open_tasks=bool(self.ledger.open))
+
+    @property
+    def account(self) -> Account:
+        """What it took, so far or in all."""
+        return Account(
+            objective=self.planned.objective or self.mission.rules.objective,
+            objective_planned=self.planned.objective_value,
+            ledger=self.ledger,
+            lost=self.lost(),
+            used={name: hand.used for name, hand in self.crew.items()},
+            usage_planned=self.usage_planned,
+            mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
+            reallocations=len(self.revisions),
+        )
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
@@ -261,3 +306,9 @@ class Executor:
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         self.happenings.append(Happening(self.now_s, kind, data))
         self._observer.on_event(self.now_s, kind, data)
+
+
+def may_bring_work(event: Event, *, open_tasks: bool) -> bool:
+    """Whether an event to come can bring work, or a robot for what is open."""
+    helps = event.robot_joins or event.robot_returns or event.move_task
+    return event.new_task is not None or bool(helps and open_tasks)

@@ -102,6 +102,10 @@ class Hand:
         """Whether it has carried out the last order."""
         return self.passed >= len(self._waypoints)
 
+    def recall(self, used: float) -> None:
+        """It has used so much before it was heard first, in the mission's unit, as a gauge has it."""
+        self.busy_s, self.charged = used, used - (self.told.odometry_m if self.told else 0.0)
+
     def hear(self, now: float) -> Telemetry | None:
         """What it says, if that is new."""
         if self.activity in MOVING and not self.out:

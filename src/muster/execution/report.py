@@ -2,10 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from muster.execution.executor import Executor
+from muster.execution.ledger import Ledger
+
+
+@dataclass(frozen=True, kw_only=True)
+class Account:
+    """What is known of a mission that was carried out by those who did it.
+
+    Parameters
+    ----------
+    objective, objective_planned
+        by name, and by the plan that the mission began with, None where that does not tell.
+    ledger, lost
+        of the tasks; why each task is lost that is.
+    used, usage_planned
+        by robot, in the mission's unit: measured; and by the plan that the mission began with, 0 of who joined.
+    mission_time_s, reallocations
+        as in `Report`.
+    """
+
+    objective: str
+    objective_planned: float | None
+    ledger: Ledger
+    lost: Mapping[str, str]
+    used: Mapping[str, float]
+    usage_planned: Mapping[str, float]
+    mission_time_s: float
+    reallocations: int
 
 
 @dataclass(frozen=True)
@@ -83,7 +110,7 @@ class Report:
         return asdict(self) | {"tasks_done": list(self.tasks_done), "tasks_lost": lost, **rows}
 
 
-def report_of(executor: Executor, *, contacts: int, min_distance_m: float | None) -> Report:
+def report_of(account: Account, *, contacts: int, min_distance_m: float | None) -> Report:
     """The report of a mission, over or not.
 
     Parameters
@@ -91,39 +118,36 @@ def report_of(executor: Executor, *, contacts: int, min_distance_m: float | None
     contacts, min_distance_m
         as the world has measured them: robots do not know how near they were.
     """
-    ledger = executor.ledger
+    ledger = account.ledger
     done = sorted(ledger.ends_s, key=lambda task: ledger.ends_s[task])
-    end = executor.now_s if executor.ended_s is None else executor.ended_s
     return Report(
-        mission_time_s=end - executor.begun_s,
+        mission_time_s=account.mission_time_s,
         tasks_done=tuple(done),
-        tasks_lost=tuple(executor.lost().items()),
+        tasks_lost=tuple(account.lost.items()),
         contacts=contacts,
         min_distance_m=min_distance_m,
         waiting_s=ledger.waiting_s,
-        reallocations=len(executor.revisions),
+        reallocations=account.reallocations,
         robots=tuple(
-            RobotReport(name, executor.usage_planned.get(name, 0.0), hand.used) for name, hand in executor.crew.items()
+            RobotReport(robot, account.usage_planned.get(robot, 0.0), used) for robot, used in account.used.items()
         ),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
-        objective=_objective(executor, end - executor.begun_s),
+        objective=_objective(account),
         tasks=tuple(
             TaskReport(task, ledger.done_by[task], *ledger.usage[task], ledger.waited_s(task)) for task in done
         ),
     )
 
 
-def _objective(executor: Executor, mission_time_s: float) -> ObjectiveReport:
-    plan, ledger = executor.planned, executor.ledger
-    name = plan.objective or executor.mission.rules.objective
-    usages = [hand.used for hand in executor.crew.values()]
-    arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
+def _objective(account: Account) -> ObjectiveReport:
+    usages = account.used.values()
+    arrivals = [account.ledger.arrival_usage[task] for task in account.ledger.ends_s]
     flown = {
         "total+max": sum(usages) + max(usages, default=0.0),
         "total": sum(usages),
         "max": max(usages, default=0.0),
         "average": sum(arrivals) / len(arrivals) if arrivals else 0.0,
-        "makespan": mission_time_s,
+        "makespan": account.mission_time_s,
     }
-    return ObjectiveReport(name, plan.objective_value, flown[name])
+    return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])
