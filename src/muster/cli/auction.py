@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.auction_options import result_options, robot_options, simulation_options, terms_options
+from muster.cli.auction_options import (
+    method_options,
+    result_options,
+    robot_options,
+    simulation_options,
+    terms_of,
+    terms_options,
+)
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
     format_option,
@@ -19,7 +26,6 @@ from muster.cli.options import (
     optional_mission_argument,
     quiet_option,
     require_complete_option,
-    settings_of,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_folder, require_writable
 from muster.cli.results import show_plan, write_book
@@ -46,10 +52,7 @@ class Agreement:
 
 @click.command()
 @optional_mission_argument
-@click.option("--method", default="auction", show_default=True, metavar="NAME", help="How robots agree.")
-@click.option(
-    "--transport", type=click.Choice(["udp", "zenoh"]), default="udp", show_default=True, help="What carries messages."
-)
+@method_options
 @objective_option
 @ignore_option
 @terms_options
@@ -113,7 +116,7 @@ def command(
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
     chosen = method_named(method)
-    terms = _terms(chosen, others, settings)
+    terms = terms_of(chosen, others, settings)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     problem = Problem.compile(loaded, objective, ignore).ready()
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
@@ -166,16 +169,6 @@ def _check_together(others: dict[str, Any]) -> None:
                 raise ParameterError(f"--{name.replace('_', '-')} given; expected it together with {word}")
     if {"robot", "network_seed"} <= given:
         raise ParameterError("--robot and --simulate-network given; expected one of them")
-
-
-def _terms(method: Method, others: dict[str, Any], settings: tuple[str, ...]) -> Any:
-    from muster.allocation.allocator import make_parameters
-
-    words = {name: others[name] for name in ("bid", "placement", "winner") if others[name] is not None}
-    weights = settings_of(settings)
-    for name in words.keys() & weights.keys():
-        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
-    return make_parameters(method.allocator, words | weights)
 
 
 def _write_views(folder: Path, plans: dict[str, Plan]) -> None:

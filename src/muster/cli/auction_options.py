@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.cli.options import settings_of
+from muster.mission.errors import ParameterError
+
+if TYPE_CHECKING:
+    from muster.negotiation.methods import Method
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
@@ -24,6 +29,17 @@ def _group(*options: Callable[[Any], Any]) -> Callable[[Verb], Verb]:
 
     return add
 
+
+method_options = _group(
+    click.option("--method", default="auction", show_default=True, metavar="NAME", help="How robots agree."),
+    click.option(
+        "--transport",
+        type=click.Choice(["udp", "zenoh"]),
+        default="udp",
+        show_default=True,
+        help="What carries messages.",
+    ),
+)
 
 terms_options = _group(
     click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]"),
@@ -79,3 +95,14 @@ simulation_options = _group(
     click.option("--crashes", type=click.IntRange(min=0), metavar="N", help="Robots that crash on the way, there."),
     click.option("--cut", type=_SECONDS, metavar="S", help="Cut the team in two for so long, there."),
 )
+
+
+def terms_of(method: Method, others: Mapping[str, Any], settings: tuple[str, ...]) -> Any:
+    """The parameters of a method from the options of `terms_options`."""
+    from muster.allocation.allocator import make_parameters
+
+    words = {name: others[name] for name in ("bid", "placement", "winner") if others[name] is not None}
+    weights = settings_of(settings)
+    for name in words.keys() & weights.keys():
+        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
+    return make_parameters(method.allocator, words | weights)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import click
@@ -16,7 +15,7 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.codec import Codec
 from muster.negotiation.keys import read_key
-from muster.negotiation.memory_file import Kept, Remembering, kept_in
+from muster.negotiation.memory_file import Kept, Remembering, keeper, kept_in
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
@@ -72,7 +71,7 @@ def agree_with_others(
     if forgot and negotiator.rules.once:
         say(f"{len(negotiator.rules.once)} tasks are for at most one robot: without --memory they may find none")
     transport_of = _transport(problem, transport, options)
-    carrier = transport_of if file is None else Remembering(transport_of, _keeper(file, kept, negotiator))
+    carrier = transport_of if file is None else Remembering(transport_of, keeper(file, kept, negotiator))
     codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
     seal = Seal(key, digest, robot, kept.incarnation)
     staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
@@ -81,19 +80,6 @@ def agree_with_others(
         view, took_s = take_part(node, negotiator, staying, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
-
-
-def _keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
-    """Keeps what the robot knows in a file, when that has changed."""
-
-    def keep() -> None:
-        nonlocal kept
-        now = replace(kept, memory=negotiator.memory)
-        if now != kept:
-            kept = now
-            kept.save(file)
-
-    return keep
 
 
 class _Watch:

@@ -104,7 +104,8 @@ class Hand:
 
     def recall(self, used: float) -> None:
         """It has used so much before it was heard first, in the mission's unit, as a gauge has it."""
-        self.busy_s, self.charged = used, used - (self.told.odometry_m if self.told else 0.0)
+        said = self.port.telemetry()
+        self.busy_s, self.charged = used, used - (said.odometry_m if said is not None else 0.0)
 
     def hear(self, now: float) -> Telemetry | None:
         """What it says, if that is new."""

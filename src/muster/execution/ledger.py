@@ -86,15 +86,8 @@ class Ledger:
             self.refusals.pop(task, None)
 
     def move(self, task: str, to: Point) -> None:
-        """A task is elsewhere from now on; its entry and exit move with it."""
-        old = self.tasks[task]
-
-        def shifted(point: Point | None) -> Point | None:
-            if point is None:
-                return None
-            return tuple(c + b - a for c, a, b in zip(point, old.position, to, strict=True))
-
-        self.tasks[task] = replace(old, position=to, entry=shifted(old.entry), exit=shifted(old.exit))
+        """A task is elsewhere from now on."""
+        self.tasks[task] = moved(self.tasks[task], to)
 
     def delay(self, task: str, by_s: float) -> None:
         self.delays_s[task] = self.delays_s.get(task, 0.0) + by_s
@@ -102,3 +95,14 @@ class Ledger:
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
+
+
+def moved(task: Task, to: Point) -> Task:
+    """The task elsewhere; its entry and exit move with it."""
+
+    def shifted(point: Point | None) -> Point | None:
+        if point is None:
+            return None
+        return tuple(c + b - a for c, a, b in zip(point, task.position, to, strict=True))
+
+    return replace(task, position=to, entry=shifted(task.entry), exit=shifted(task.exit))

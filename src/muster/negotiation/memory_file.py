@@ -15,7 +15,8 @@ from typing import Any
 from muster.mission.errors import Finding, InputError
 from muster.negotiation.happenings import Memory
 from muster.negotiation.messages import Claim, Fact
-from muster.negotiation.transport import Transport
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.transport import Around, Transport
 
 _SCHEMA = "muster-memory/1"
 
@@ -77,7 +78,20 @@ def kept_in(file: Path, auction: str, robot: str) -> Kept:
     return found
 
 
-class Remembering:
+def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
+    """Keeps what the robot knows in a file, when that has changed."""
+
+    def keep() -> None:
+        nonlocal kept
+        now = replace(kept, memory=negotiator.memory)
+        if now != kept:
+            kept = now
+            kept.save(file)
+
+    return keep
+
+
+class Remembering(Around):
     """A transport that sends nothing before what the robot knows has been kept.
 
     Parameters
@@ -89,33 +103,12 @@ class Remembering:
     """
 
     def __init__(self, transport: Transport, keep: Callable[[], None]) -> None:
-        self._transport, self._keep = transport, keep
-
-    @property
-    def room(self) -> int:
-        return self._transport.room
-
-    @property
-    def datagrams(self) -> int:
-        return self._transport.datagrams
-
-    @property
-    def bytes_sent(self) -> int:
-        return self._transport.bytes_sent
-
-    @property
-    def lost_here(self) -> int:
-        return self._transport.lost_here
+        super().__init__(transport)
+        self._keep = keep
 
     def send(self, data: bytes, to: str | None = None) -> None:
         self._keep()
-        self._transport.send(data, to)
-
-    def receive(self, wait_s: float) -> list[bytes]:
-        return self._transport.receive(wait_s)
-
-    def close(self) -> None:
-        self._transport.close()
+        super().send(data, to)
 
 
 def _plain(value: Any) -> Any:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import replace
 from multiprocessing import Pipe
@@ -26,14 +27,16 @@ _ENDING_S = 3.0
 class Team:
     """Processes of robots that hold an auction. A context manager: none of them outlives it.
 
+    `on_word` is told all that a robot says beside how far it is.
+
     Attributes
     ----------
     pids
-        by robot its process.
+        by robot its process; of one that has started again, the last.
     news
         by robot the last it has told.
     gone
-        by robot why its process has ended.
+        by robot why its process has ended, if it has not started again.
     began_s
         when all were ready and the auction began, by the monotonic clock; None before.
 
@@ -45,19 +48,23 @@ class Team:
         from `hear`, if a robot cannot take part at all.
     """
 
-    def __init__(self, order: Order) -> None:
+    def __init__(self, order: Order, on_word: Callable[[str, object], None] = lambda robot, word: None) -> None:
         require_net()
         self.robots = [robot.id for robot in order.problem.mission.robots]
-        self.pids: dict[str, int] = {}
         self.news: dict[str, News] = {}
         self.gone: dict[str, str] = {}
         self.began_s: float | None = None
         self._ready: set[str] = set()
-        self._order = order
+        self._order, self._on_word = order, on_word
+        self._life = {robot: 1 for robot in self.robots if robot not in order.late}  # of those that have started
+        self._born: dict[tuple[str, int], int] = {}
+        self._pipes: dict[str, Connection] = {}  # of those that live
+        self._unborn: dict[tuple[str, int], Connection] = {}  # seats that are not taken yet
 
     def __enter__(self) -> Team:
         self._nursery_pipe, theirs = Pipe()
-        pairs = [Pipe() for _ in self.robots]
+        seats = self._order.seats
+        pairs = [Pipe() for _ in seats]
         ends = [theirs, *(end for _, end in pairs)]
         descriptors = [end.fileno() for end in ends]
         with ctrl_c_held_back():
@@ -66,7 +73,8 @@ class Team:
             )
         for end in ends:
             end.close()
-        self._pipes: dict[str, Connection] = {r: pipe for r, (pipe, _) in zip(self.robots, pairs, strict=True)}
+        self._unborn = {seat: pipe for seat, (pipe, _) in zip(seats, pairs, strict=True)}
+        self._pipes = {robot: self._unborn.pop((robot, 1)) for robot in self._life}
         try:
             self._nursery_pipe.send(_light(self._order))
         except BaseException:
@@ -79,7 +87,7 @@ class Team:
     ) -> None:
         if kind is not None:
             self._kill_all()
-        for pipe in (*self._pipes.values(), self._nursery_pipe):
+        for pipe in (*self._pipes.values(), *self._unborn.values(), self._nursery_pipe):
             pipe.close()  # who has not ended yet hears that
         try:
             self._nursery.wait(_ENDING_S)
@@ -90,9 +98,38 @@ class Team:
             self._nursery.wait()
 
     @property
+    def pids(self) -> dict[str, int]:
+        return {robot: pid for (robot, life), pid in self._born.items() if life == self._life.get(robot)}
+
+    @property
     def living(self) -> list[str]:
-        """Robots whose processes have not ended."""
-        return [robot for robot in self.robots if robot not in self.gone]
+        """Robots that have started, and whose processes have not ended."""
+        return [robot for robot in self.robots if robot in self._life and robot not in self.gone]
+
+    def start(self, robot: str) -> None:
+        """Start a robot that comes late, or one more time.
+
+        Raises
+        ------
+        KeyError
+            if the order has no life for that.
+        """
+        self._life[robot] = life = self._life.get(robot, 0) + 1
+        self._pipes[robot] = self._unborn.pop((robot, life))
+        self.gone.pop(robot, None)
+        self.news.pop(robot, None)
+        self.tell(robot, GO)
+
+    def kill(self, robot: str) -> None:
+        """End a robot's process, in the middle of whatever it does."""
+        with suppress(ProcessLookupError):
+            os.kill(self.pids[robot], signal.SIGKILL)
+
+    def tell(self, robot: str, word: object) -> None:
+        """Say something to a robot; nothing if it has just ended."""
+        if robot in self._pipes:
+            with suppress(OSError):
+                self._pipes[robot].send(word)
 
     def hear(self, wait_s: float) -> None:
         """Take in what robots tell; waits for the first word for so long at most."""
@@ -103,38 +140,41 @@ class Team:
                 self._hear_nursery()
             elif robot in self._pipes:  # else the nursery has just told of its end
                 self._hear_robot(robot)
-        if self.began_s is None and self._ready == set(self.robots):
+        if self.began_s is None and self._ready.issuperset(self._life):
             self.began_s = time.monotonic()
-            self._tell(GO)
+            for robot in self._life:
+                self.tell(robot, GO)
 
     def agreement(self, wait_s: float = 5.0) -> dict[str, View] | None:
         """What each living robot knows, if all know the same and are alone with each other; else None."""
-        if not self._agree():
-            return None
-        self.news = {robot: replace(news, view=None) for robot, news in self.news.items()}
-        self._tell(SHOW)
-        until_s = time.monotonic() + wait_s
-        while any(self.news[robot].view is None for robot in self.living) and time.monotonic() < until_s:
-            self.hear(0.1)
-        views = {robot: view for robot in self.living if (view := self.news[robot].view) is not None}
-        stages = {view.stage for view in views.values()}
-        return views if len(views) == len(self.living) and len(stages) == 1 and self._agree() else None
-
-    def _agree(self) -> bool:
-        """Whether all that live take all that live, and nobody else, for members, and are at the same end."""
-        living = self.living
-        if not living:
+        if not self.living:
             raise MusterError(f"no robot is left: {self.robots[-1]} {self.gone[self.robots[-1]]}")
-        if any(robot not in self.news for robot in living):
-            return False
-        stages = {self.news[robot].stage for robot in living}
-        told = [self.news[robot].status for robot in living]
-        return len(stages) == 1 and all(status.settled and set(status.members) == set(living) for status in told)
+        if not self.agree(self.living):
+            return None
+        views = self.views(self.living, wait_s)
+        stages, living = {view.stage for view in views.values()}, self.living
+        return views if len(views) == len(living) and len(stages) == 1 and self.agree(living) else None
 
-    def _tell(self, command: str) -> None:
-        for pipe in self._pipes.values():
-            with suppress(OSError):  # if it has just ended; that is heard next
-                pipe.send(command)
+    def views(self, robots: Collection[str], wait_s: float = 5.0) -> dict[str, View]:
+        """What robots know, of those that live and say so in time; all of them have been heard."""
+        for robot in robots:
+            self.news[robot] = replace(self.news[robot], view=None)
+            self.tell(robot, SHOW)
+        until_s = time.monotonic() + wait_s
+        while any(self._owes_view(robot) for robot in robots) and time.monotonic() < until_s:
+            self.hear(0.1)
+        return {robot: view for robot in robots if robot in self.news and (view := self.news[robot].view) is not None}
+
+    def _owes_view(self, robot: str) -> bool:
+        return robot not in self.gone and robot in self.news and self.news[robot].view is None
+
+    def agree(self, robots: Collection[str]) -> bool:
+        """Whether these robots take each other, and nobody else, for members, and are at the same end."""
+        if any(robot not in self.news for robot in robots):
+            return False
+        stages = {self.news[robot].stage for robot in robots}
+        told = [self.news[robot].status for robot in robots]
+        return len(stages) == 1 and all(status.settled and set(status.members) == set(robots) for status in told)
 
     def _hear_nursery(self) -> None:
         try:
@@ -142,8 +182,8 @@ class Team:
         except (EOFError, OSError):
             raise MusterError("the process that starts the robots has ended; expected it to stay") from None
         if isinstance(word, Born):
-            self.pids[word.robot] = word.pid
-        elif isinstance(word, Gone):
+            self._born[word.robot, word.life] = word.pid
+        elif isinstance(word, Gone) and word.life == self._life.get(word.robot):
             self._lose(word.robot, word.why)
 
     def _hear_robot(self, robot: str) -> None:
@@ -159,12 +199,13 @@ class Team:
         elif isinstance(word, News):
             before = self.news.get(robot)
             self.news[robot] = replace(word, view=word.view if before is None else word.view or before.view)
+        else:
+            self._on_word(robot, word)
 
     def _kill_all(self) -> None:
         for robot in self.living:
             if robot in self.pids:
-                with suppress(ProcessLookupError):
-                    os.kill(self.pids[robot], signal.SIGKILL)
+                self.kill(robot)
 
     def _lose(self, robot: str, why: str) -> None:
         while robot in self._pipes and self._pipes[robot].poll():  # its last words may tell more than its end

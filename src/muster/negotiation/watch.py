@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.allocation.terms import Terms
@@ -31,6 +34,14 @@ class Order:
         that the team shares.
     patience
         how long robots wait for one another.
+    late
+        robots that are not started with the others, but when `Team.start` is called.
+    lives
+        how many processes those robots have, one after another, that have more than one.
+    memory
+        a folder in which robots keep what they know for their next life; needed where one has it.
+    part
+        what a robot's process does; None: it holds the auction, and no more.
     """
 
     problem: Problem
@@ -39,13 +50,24 @@ class Order:
     method: str = "auction"
     transport: str = "udp"
     patience: Patience = field(default_factory=Patience)
+    late: frozenset[str] = frozenset()
+    lives: Mapping[str, int] = field(default_factory=dict)
+    memory: Path | None = None
+    part: Callable[[Any], None] | None = None
+
+    @property
+    def seats(self) -> list[tuple[str, int]]:
+        """All processes: whose, and which of its lives, from 1."""
+        robots = [robot.id for robot in self.problem.mission.robots]
+        return [(robot, life + 1) for robot in robots for life in range(self.lives.get(robot, 1))]
 
 
 @dataclass(frozen=True)
 class Born:
-    """A robot has a process."""
+    """A robot has a process, for one of its lives."""
 
     robot: str
+    life: int
     pid: int
 
 
@@ -54,6 +76,7 @@ class Gone:
     """A robot's process has ended; why."""
 
     robot: str
+    life: int
     why: str
 
 
