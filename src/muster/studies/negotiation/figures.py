@@ -14,8 +14,7 @@ from muster.allocation.problem import Problem
 from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import TICK_S, MemoryNetwork, Weather
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import rules_of
-from muster.negotiation.valuation import AuctionValuer
+from muster.negotiation.taking_part import negotiator_of
 from muster.studies.uniform import uniform_mission
 
 DELAY_S = 0.05
@@ -25,10 +24,10 @@ END_S = 600.0
 def team(robots: int, tasks: int, seed: int, weather: Weather) -> tuple[Problem, MemoryNetwork]:
     """Robots and tasks without limits in a square, and a network of them."""
     problem = Problem.compile(uniform_mission(Random(seed), robots=robots, tasks=tasks)).ready()
-    rules, terms = rules_of(problem), Parameters()
+    terms = Parameters()
 
     def make(robot: str, incarnation: int) -> Negotiator:
-        return Negotiator(robot, rules, AuctionValuer(problem, terms, robot), incarnation=incarnation)
+        return negotiator_of(problem, terms, robot, incarnation=incarnation)
 
     return problem, MemoryNetwork(make, [robot.id for robot in problem.robots], seed, weather)
 
