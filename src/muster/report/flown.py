@@ -9,6 +9,7 @@ import numpy as np
 from muster.report.canvas import (
     add_legend,
     add_title,
+    limits,
     named_rows,
     new_axes,
     note_entries,
@@ -112,11 +113,7 @@ def _limits(recording: Recording) -> tuple[Places, Places]:
     mission, dimensions = recording.mission, recording.mission.dimensions
     flown = recording.tracks.positions[:, :, :dimensions].reshape(-1, dimensions)
     corners = [] if mission.map is None else map_corners(mission.map, recording.image)
-    still = places(
-        [*(task.position for task in mission.tasks), *(robot.position for robot in recording.robots)], dimensions
-    )
+    tasks = recording.outcome.tasks.values()
+    still = places([*(task.position for task in tasks), *(robot.position for robot in recording.robots)], dimensions)
     points = np.vstack([flown[np.isfinite(flown).all(axis=1)], still, places(corners, dimensions)])
-    low, high = points.min(axis=0), points.max(axis=0)
-    longest = float((high - low).max()) or 1.0
-    missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2 + 0.06 * longest
-    return low - missing, high + missing
+    return limits(points, 0.06, on_ground=mission.map is not None)
