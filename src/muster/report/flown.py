@@ -9,11 +9,11 @@ import numpy as np
 from muster.report.canvas import (
     add_legend,
     add_title,
+    frame_of_map,
     limits,
     named_rows,
     new_axes,
     note_entries,
-    quiet_frame,
     shortened,
     write,
 )
@@ -49,11 +49,7 @@ def plot_flown(recording: Recording) -> Axes:
     wide, tall = (_LONG_SIDE_IN, _LONG_SIDE_IN) if dimensions == 3 else _LONG_SIDE_IN * size / size.max()
     legend_height = 0.19 * (named_rows(len(recording.robots)) + 6) + 0.6
     ax: Any = new_axes(wide + 2.6, max(tall + 1.0, legend_height), spatial=dimensions == 3)
-    for axis, least, most in zip("xyz", low, high, strict=False):
-        getattr(ax, f"set_{axis}lim")(least, most)
-        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
-    ax.set_aspect("equal", adjustable="box")
-    quiet_frame(ax)
+    frame_of_map(ax, low, high)
     names = Names(recording.mission)
     with names.fonts():
         _draw(ax, recording, names)
