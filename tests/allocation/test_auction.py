@@ -3,6 +3,7 @@
 import itertools
 import math
 import pickle
+from dataclasses import replace
 from functools import cache
 from random import Random
 
@@ -19,6 +20,7 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS, Terms
 from muster.mission.clock import VirtualClock
+from muster.studies.uniform import uniform_mission
 
 both_auctions = pytest.mark.parametrize("allocator", ["auction", "market"])
 every_winner = pytest.mark.parametrize("winner", WINNERS)
@@ -155,16 +157,8 @@ def test_a_plan_with_a_book_can_be_pickled(allocator):
 
 
 def uniform(seed, tasks, robots):
-    random = Random(seed)
-
-    def place():
-        return random.uniform(0, 10), random.uniform(0, 10)
-
-    return muster.Mission(
-        rules=muster.Rules(objective="total"),
-        robots=tuple(muster.Robot(id=f"r_{k}", position=place()) for k in range(robots)),
-        tasks=tuple(muster.Task(id=str(k), position=place()) for k in range(tasks)),
-    )
+    mission = uniform_mission(Random(seed), robots=robots, tasks=tasks, side_m=10.0)
+    return replace(mission, rules=muster.Rules(objective="total"))
 
 
 def least_total(mission):

@@ -1,7 +1,6 @@
 """One seed of the campaign: all that must be true of a mission and of what Muster says of it."""
 
-from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import muster
 from muster.allocation.allocator import routes_of
@@ -12,6 +11,7 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.verification import verify
+from tests import trials
 from tests.all_plans import best_plan
 from tests.campaign.missions import case
 
@@ -25,33 +25,23 @@ OTHERS = tuple(name for name in ALLOCATORS if name != "search")
 
 
 @dataclass
-class Report:
-    """What was wrong, how often what was looked at, and how far the bound was below the best of all plans.
+class Report(trials.Report):
+    """The figures: how far the bound was below the best of all plans.
 
     `rounding` is how much judge and planner may differ, relative.
     """
 
-    seed: int
     rounding: float = 0.0
-    failures: list[str] = field(default_factory=list)
-    counts: Counter = field(default_factory=Counter)
-    gaps: list[float] = field(default_factory=list)
-
-    def check(self, holds, what):
-        self.counts["checks"] += 1
-        if not holds:
-            self.failures.append(what)
 
 
 def trial(seed):
-    """Plan the mission of a seed and check all that is claimed; an error is a failure like any other."""
+    """Plan the mission of a seed and check all that is claimed."""
     report = Report(seed)
-    try:
+    with report.trying():
         given = case(seed)
+        report.story.append(str(given.mission))
         report.rounding = given.rounding
         _run(report, given)
-    except Exception as error:
-        report.failures.append(f"{type(error).__name__}: {error}")
     return report
 
 
@@ -117,7 +107,7 @@ def _against_all_plans(report, problem, found, bound):
         report.check(
             bound <= value + report.rounding * (1 + value), f"the best of all plans, {value}, is below {bound}"
         )
-        report.gaps.append(1 - bound / value if value else 0.0)
+        report.figures.append(1 - bound / value if value else 0.0)
         report.counts["small: the best of all plans does all tasks"] += 1
     if report.seed % EXACT_EVERY == 0:
         _exactly(report, problem, (weight, value))

@@ -5,7 +5,7 @@ Even seeds have robots that are points (`tests.execution.world`), odd ones robot
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import muster
 from muster.execution.doing import place
@@ -14,6 +14,7 @@ from muster.execution.reallocation import Reallocation
 from muster.execution.travel import travel_of, way_of
 from muster.motion import actions
 from muster.motion.roads import Roads
+from tests import trials
 from tests.disturbances.bodies import Bodies, bodily_mission
 from tests.disturbances.missions import disturbed_mission
 from tests.execution.world import World, carry_out
@@ -25,19 +26,10 @@ ITERATIONS = 100
 
 
 @dataclass
-class Report:
-    """What was wrong, and how often what happened."""
+class Report(trials.Report):
+    """The story: all that happened."""
 
-    seed: int
     bodies: bool = False  # whether robots have bodies, so that they hold each other up
-    failures: list[str] = field(default_factory=list)
-    counts: Counter = field(default_factory=Counter)
-    happened: list[str] = field(default_factory=list)
-
-    def check(self, holds, what):
-        self.counts["checks"] += 1
-        if not holds:
-            self.failures.append(what)
 
 
 def _may_do(mission, task, robot):
@@ -63,7 +55,7 @@ class Watcher:
 
     def on_event(self, now, kind, data):
         self.report.counts[kind] += 1
-        self.report.happened.append(f"{now:8.2f}  {kind}  {data}")
+        self.report.story.append(f"{now:8.2f}  {kind}  {data}")
         if kind == "robot_stuck" and self.report.bodies:  # only by one that broke down after it had fallen silent
             self.report.check(self.world.beside_broken(data["robot"]), f"{data['robot']} is put out as stuck")
         if kind in ("robot_fails", "robot_silent", "robot_stuck"):
@@ -109,12 +101,11 @@ class Watcher:
 
 
 def trial(seed):
-    """Carry the mission of a seed out and check all that is claimed; an error is a failure like any other."""
+    """Carry the mission of a seed out and check all that is claimed."""
     report = Report(seed, bodies=seed % 2 == 1)
-    try:
+    report.counts.update(robot_sent_again=0, robot_stuck=0)  # told, also where it never happened
+    with report.trying():
         (_among_bodies if report.bodies else _among_points)(report)
-    except Exception as error:
-        report.failures.append(f"{type(error).__name__}: {error}")
     return report
 
 

@@ -329,16 +329,18 @@ def test_what_does_not_fit_is_refused():
         executor.tick(4.0)
 
 
+def with_a_breakdown_at_work(*events):
+    """r_0 breaks down on task 0."""
+    return Mission(
+        robots=(Robot(id="r_0", position=(0, 0), radius_m=0.5), Robot(id="r_1", position=(0, 5), radius_m=0.5)),
+        tasks=(Task(id="0", position=(10, 0), duration_s=20), Task(id="1", position=(30, 0))),
+        events=(Event(at_s=12, robot_fails="r_0"), *events),
+    )
+
+
 def test_a_task_at_which_a_broken_robot_stands_is_given_up_and_the_robot_goes_on():
     """r_0 breaks down on task 0; r_1 cannot get there, gives it up, and does task 1."""
-    mission = Mission(
-        robots=(
-            Robot(id="r_0", position=(0, 0), radius_m=0.5),
-            Robot(id="r_1", position=(0, 5), radius_m=0.5),
-        ),
-        tasks=(Task(id="0", position=(10, 0), duration_s=20), Task(id="1", position=(30, 0))),
-        events=(Event(at_s=12, robot_fails="r_0"),),
-    )
+    mission = with_a_breakdown_at_work()
     simulation = muster.Simulation(mission, plan_of(r_0=["0"], r_1=["1"]))
     while not simulation.done:
         simulation.advance(1000)
@@ -351,14 +353,7 @@ def test_a_task_at_which_a_broken_robot_stands_is_given_up_and_the_robot_goes_on
 
 
 def test_a_task_is_tried_again_when_the_broken_robot_returns():
-    mission = Mission(
-        robots=(
-            Robot(id="r_0", position=(0, 0), radius_m=0.5),
-            Robot(id="r_1", position=(0, 5), radius_m=0.5),
-        ),
-        tasks=(Task(id="0", position=(10, 0), duration_s=20), Task(id="1", position=(30, 0))),
-        events=(Event(at_s=12, robot_fails="r_0"), Event(at_s=200, robot_returns="r_0")),
-    )
+    mission = with_a_breakdown_at_work(Event(at_s=200, robot_returns="r_0"))
     report = muster.simulate(mission, plan_of(r_0=["0"], r_1=["1"]))
     assert sorted(report.tasks_done) == ["0", "1"]
     assert report.contacts == 0

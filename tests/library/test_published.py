@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from functools import cache
@@ -60,18 +61,11 @@ def table(number: str, side: Any = as_printed) -> dict[str, Any]:
     return found
 
 
-def plans() -> Iterator[tuple[str, dict[str, Any]]]:
-    for numbers in TABLES.values():
-        for number in numbers:
-            for plan in table(number, as_corrected).get("plans", []):
-                yield number, plan
-
-
-def rows() -> Iterator[tuple[str, dict[str, Any]]]:
-    for numbers in TABLES.values():
-        for number in numbers:
-            for row in table(number, as_corrected).get("rows", []):
-                yield number, row
+def every(what: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """All `plans` or `rows`, each with the number of its table."""
+    for number in itertools.chain(*TABLES.values()):
+        for record in table(number, as_corrected).get(what, []):
+            yield number, record
 
 
 @cache
@@ -136,13 +130,13 @@ def test_one_side_of_a_misprint():
     assert as_corrected({"a": [1, {"printed": 2, "corrected": 3, "erratum": "why"}]}) == {"a": [1, 3]}
 
 
-@pytest.mark.parametrize(("number", "plan"), [p for p in plans() if "allocator" in p[1]])
+@pytest.mark.parametrize(("number", "plan"), [p for p in every("plans") if "allocator" in p[1]])
 def test_corrected_usages_follow_from_the_missions(number, plan):
     printed = [route["usage"] for route in plan["routes"].values()]
     assert usages(shipped(plan["run_as"]), plan["routes"]) == pytest.approx(printed, abs=PRINTED_TO)
 
 
-@pytest.mark.parametrize(("number", "plan"), list(plans()))
+@pytest.mark.parametrize(("number", "plan"), list(every("plans")))
 def test_no_task_stands_twice(number, plan):
     done = [name for route in plan["routes"].values() for name in route["tasks"]]
     assert len(done) == len(set(done))
@@ -182,7 +176,7 @@ def test_corrected_totals_follow_from_the_routes(routes_in, totals_in):
         assert same[0].get("tasks_completed", completed) == completed
 
 
-@pytest.mark.parametrize(("number", "row"), [r for r in rows() if "max_usage" in r[1]])
+@pytest.mark.parametrize(("number", "row"), [r for r in every("rows") if "max_usage" in r[1]])
 def test_corrected_maxima_add_up(number, row):
     assert row["total+max"] == pytest.approx(row["total_cost"] + row["max_usage"], abs=PRINTED_TO)
 

@@ -7,13 +7,11 @@ import muster
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.negotiation.base import Rules
 from muster.negotiation.codec import Codec
 from muster.negotiation.members import Patience
-from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.node import Node
 from muster.negotiation.seal import Seal, mission_digest
-from muster.negotiation.valuation import AuctionValuer
+from muster.negotiation.taking_part import negotiator_of
 
 KEY = bytes(32)
 GUARD_S = 60.0
@@ -33,13 +31,7 @@ class Team:
         self._digest = mission_digest(self.problem, self.terms)
 
     def negotiator(self, robot):
-        problem = self.problem
-        rules = Rules(
-            {r.id: i for i, r in enumerate(problem.robots)},
-            {t.id: j for j, t in enumerate(problem.tasks)},
-            {t.id: t.prerequisites if problem.holds("prerequisites") else () for t in problem.tasks},
-        )
-        return Negotiator(robot, rules, AuctionValuer(problem, self.terms, robot), self._patience, incarnation=1)
+        return negotiator_of(self.problem, self.terms, robot, incarnation=1, patience=self._patience)
 
     def node(self, robot, transport, key=KEY):
         return Node(self.negotiator(robot), transport, self.codec, Seal(key, self._digest, robot, 1))

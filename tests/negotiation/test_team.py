@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from muster import Mission, Robot, Task, verify
+from muster import verify
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -18,21 +18,13 @@ from muster.negotiation.keys import new_key
 from muster.negotiation.taking_part import plan_of_view
 from muster.negotiation.team import Team, patience_here
 from muster.negotiation.watch import TRANSPORTS, Order
+from muster.studies.uniform import uniform_mission
 
 GUARD_S = 60.0
 
 
 def problem_of(robots, tasks, seed=1):
-    random = Random(seed)
-
-    def place():
-        return random.uniform(0, 100), random.uniform(0, 100)
-
-    mission = Mission(
-        robots=tuple(Robot(id=f"r_{k}", position=place()) for k in range(robots)),
-        tasks=tuple(Task(id=str(k), position=place()) for k in range(tasks)),
-    )
-    return Problem.compile(mission).ready()
+    return Problem.compile(uniform_mission(Random(seed), robots=robots, tasks=tasks)).ready()
 
 
 def team_of(problem, **others):

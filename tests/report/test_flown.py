@@ -30,3 +30,15 @@ def test_tracks_tasks_and_map(name, tmp_path, drawn):
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert labels[: len(mission.robots)] == [robot.id for robot in mission.robots]
     assert {"task done", "task open"} <= set(labels)
+
+
+def test_tasks_that_appeared_or_moved_are_in_the_picture(mission, plan, tmp_path, drawn):
+    appears = (1.0, "new_task", {"task": {"id": "late", "position": [-90, 3]}})
+    moves = (2.0, "move_task", {"task": "e", "position": [3, 120]})
+    with RecordWriter(tmp_path / "r.mcap", mission) as writer:
+        carry_out(mission, plan, writer, dt=0.5, until=10.0, more=[appears, moves])
+    ax = plot_flown(read_record(tmp_path / "r.mcap"))
+    for name, place in (("late", [-90, 3]), ("e", [3, 120])):
+        (mark,) = drawn(ax, f"task-{name}")
+        np.testing.assert_array_equal(mark.get_xydata(), [place])
+        assert ax.viewLim.contains(*place)

@@ -44,26 +44,23 @@ def test_an_end_position_is_marked(mission, plan, drawn):
     assert "way to end" in legend_of(ax)
 
 
-def test_lines_go_to_the_entry_and_from_the_exit(mission, plan, drawn):
-    tasks = (replace(mission.tasks[0], entry=(2, 4), exit=(4, 5)), *mission.tasks[1:])
-    mission = replace(mission, tasks=tasks)
+RASTER = Action(name="raster-search", side_m=2, height_m=1, spacing_m=2)
+
+
+@pytest.mark.parametrize(
+    ("change", "work"),
+    [
+        ({"entry": (2, 4), "exit": (4, 5)}, [(2, 4), (4, 5)]),
+        ({"action": RASTER, "actuation_cost": 0}, [(2, 3), (4, 3), (4, 5), (2, 5)]),
+    ],
+)
+def test_lines_go_to_where_the_work_on_a_task_begins_and_from_where_it_ends(mission, plan, drawn, change, work):
+    mission = replace(mission, tasks=(replace(mission.tasks[0], **change), *mission.tasks[1:]))
     ax = plot_routes(mission, plan, verify(mission, plan))
-    nan = (np.nan, np.nan)
-    travel = [(0, 0), (2, 4), nan, (4, 5), (3, 10), (11, 10)]
+    travel = [(0, 0), work[0], (np.nan, np.nan), work[-1], (3, 10), (11, 10)]
     np.testing.assert_array_equal(drawn(ax, "travel-ada")[0].get_xydata(), travel)
-    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 4), (4, 5)])
+    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), work)
     np.testing.assert_array_equal(drawn(ax, "tasks-ada")[0].get_xydata()[0], (3, 4))
-
-
-def test_work_goes_along_the_way_points_of_an_action(mission, plan, drawn):
-    action = Action(name="raster-search", side_m=2, height_m=1, spacing_m=2)
-    tasks = (replace(mission.tasks[0], action=action, actuation_cost=0), *mission.tasks[1:])
-    mission = replace(mission, tasks=tasks)
-    ax = plot_routes(mission, plan, verify(mission, plan))
-    nan = (np.nan, np.nan)
-    travel = [(0, 0), (2, 3), nan, (2, 5), (3, 10), (11, 10)]
-    np.testing.assert_array_equal(drawn(ax, "travel-ada")[0].get_xydata(), travel)
-    np.testing.assert_array_equal(drawn(ax, "work-ada")[0].get_xydata(), [(2, 3), (4, 3), (4, 5), (2, 5)])
     assert "work" in legend_of(ax)
 
 

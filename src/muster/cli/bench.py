@@ -14,13 +14,18 @@ from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 
 
+class _Only(click.Option):
+    """An option whose help names the benches; they are imported when it is asked for."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        from muster.studies.bench import BENCHES
+
+        self.help = f"Some of: {', '.join(BENCHES)}."
+        return super().get_help_record(ctx)
+
+
 @click.group(invoke_without_command=True)
-@click.option(
-    "--only",
-    metavar="NAMES",
-    help="Some of: greedy-small, genetic, greedy-large, auction-large, search, start-up, path, travel, avoidance, "
-    "simulation, reallocation, auction.",
-)
+@click.option("--only", cls=_Only, metavar="NAMES")
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
 @quiet_option

@@ -147,14 +147,9 @@ def _noise(noises: tuple[str, ...]) -> Noise:
 
 
 def _carried_out(mission: Mission, plan: Plan, file: Path | None, **how: Any) -> Report:
-    from muster._carrying_out import carry_out
-
-    if file is None:
-        return carry_out(mission, plan, **how)
-    from muster.report.record import RecordWriter
+    from muster import simulate
 
     try:
-        with RecordWriter(file, mission) as recorder:
-            return carry_out(mission, plan, recorder=recorder, **how)
+        return simulate(mission, plan, record=file, **how)
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(file)) from None
+        raise error if file is None else OSError(error.errno, error.strerror, str(file)) from None

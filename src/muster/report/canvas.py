@@ -80,6 +80,15 @@ def is_spatial(ax: Axes) -> bool:
     return hasattr(ax, "get_zlim")
 
 
+def frame_of_map(ax: Any, low: NDArray[np.float64], high: NDArray[np.float64]) -> None:
+    """Let axes show the map frame from a lower to an upper corner, metres, equal in scale."""
+    for axis, least, most in zip("xyz", low, high, strict=False):
+        getattr(ax, f"set_{axis}lim")(least, most)
+        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
+    ax.set_aspect("equal", adjustable="box")
+    quiet_frame(ax)
+
+
 def quiet_frame(ax: Any) -> None:
     """Draw frame and grid lightly, so that the data is what one sees."""
     ax.tick_params(labelsize=8, color=FRAME)

@@ -9,10 +9,11 @@ import numpy as np
 from muster.report.canvas import (
     add_legend,
     add_title,
+    frame_of_map,
+    limits,
     named_rows,
     new_axes,
     note_entries,
-    quiet_frame,
     shortened,
     write,
 )
@@ -48,11 +49,7 @@ def plot_flown(recording: Recording) -> Axes:
     wide, tall = (_LONG_SIDE_IN, _LONG_SIDE_IN) if dimensions == 3 else _LONG_SIDE_IN * size / size.max()
     legend_height = 0.19 * (named_rows(len(recording.robots)) + 6) + 0.6
     ax: Any = new_axes(wide + 2.6, max(tall + 1.0, legend_height), spatial=dimensions == 3)
-    for axis, least, most in zip("xyz", low, high, strict=False):
-        getattr(ax, f"set_{axis}lim")(least, most)
-        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
-    ax.set_aspect("equal", adjustable="box")
-    quiet_frame(ax)
+    frame_of_map(ax, low, high)
     names = Names(recording.mission)
     with names.fonts():
         _draw(ax, recording, names)
@@ -112,11 +109,7 @@ def _limits(recording: Recording) -> tuple[Places, Places]:
     mission, dimensions = recording.mission, recording.mission.dimensions
     flown = recording.tracks.positions[:, :, :dimensions].reshape(-1, dimensions)
     corners = [] if mission.map is None else map_corners(mission.map, recording.image)
-    still = places(
-        [*(task.position for task in mission.tasks), *(robot.position for robot in recording.robots)], dimensions
-    )
+    tasks = recording.outcome.tasks.values()
+    still = places([*(task.position for task in tasks), *(robot.position for robot in recording.robots)], dimensions)
     points = np.vstack([flown[np.isfinite(flown).all(axis=1)], still, places(corners, dimensions)])
-    low, high = points.min(axis=0), points.max(axis=0)
-    longest = float((high - low).max()) or 1.0
-    missing = np.maximum(0.3 * longest - (high - low), 0.0) / 2 + 0.06 * longest
-    return low - missing, high + missing
+    return limits(points, 0.06, on_ground=mission.map is not None)

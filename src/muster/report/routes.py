@@ -16,12 +16,12 @@ from muster.report.canvas import (
     add_title,
     alarm_of,
     facts_of,
+    frame_of_map,
     is_spatial,
     limits,
     named_rows,
     new_axes,
     note_entries,
-    quiet_frame,
     settle,
     shortened,
     to_points,
@@ -85,7 +85,7 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
 
 
 def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
-    _frame(ax, scene)
+    frame_of_map(ax, *_limits(scene, scene.dimensions))
     entries = _draw_ground(ax, scene)
     for trace in scene.traces:
         _draw_lines(ax, trace, scene.detail)
@@ -188,15 +188,6 @@ def _own_axes(scene: _Scene) -> Axes:
     low, high = _limits(scene, 2)
     width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
     return new_axes(width + 2.6, max(height + 1.0, legend_height))
-
-
-def _frame(ax: Any, scene: _Scene) -> None:
-    low, high = _limits(scene, scene.dimensions)
-    for axis, start, end in zip("xyz", low, high, strict=False):
-        getattr(ax, f"set_{axis}lim")(start, end)
-        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
-    ax.set_aspect("equal", adjustable="box")
-    quiet_frame(ax)
 
 
 def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:

@@ -9,7 +9,7 @@ import numpy as np
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
-from muster.report.canvas import add_legend, add_title, is_spatial, limits, new_axes, quiet_frame
+from muster.report.canvas import add_legend, add_title, frame_of_map, is_spatial, limits, new_axes
 from muster.report.floor import draw_map, map_corners
 from muster.report.ground import draw_stems
 from muster.report.styles import robot_style
@@ -47,11 +47,7 @@ def plot_way(
     low, high = _limits(mission, way, image)
     width, height = (_LONG_SIDE_IN, _LONG_SIDE_IN) if spatial else _LONG_SIDE_IN * (high - low) / (high - low).max()
     ax: Any = new_axes(width + 2.6, max(height + 1.0, 2.5), spatial=spatial)
-    for axis, least, most in zip("xyz", low, high, strict=False):
-        getattr(ax, f"set_{axis}lim")(least, most)
-        getattr(ax, f"set_{axis}label")(f"{axis} [m]")
-    ax.set_aspect("equal", adjustable="box")
-    quiet_frame(ax)
+    frame_of_map(ax, low, high)
     entries = draw_map(ax, mission.map, image, spatial=is_spatial(ax)) if mission.map is not None else []
     look = {"color": robot_style(0).color, "zorder": 3}
     if isinstance(found, Path):

@@ -16,7 +16,7 @@ from muster.allocation.genetic import Parameters, evolve, first_population
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Mission
 from muster.studies.bench_auction import AUCTION_BENCHES
 from muster.studies.bench_avoidance import compared
 from muster.studies.bench_execution import EXECUTION_BENCHES
@@ -24,6 +24,7 @@ from muster.studies.bench_motion import MOTION_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
+from muster.studies.uniform import uniform_mission
 
 
 def greedy_small(runs: int) -> list[Measurement]:
@@ -87,16 +88,7 @@ def _shares(problem: Problem, params: Parameters) -> str:
 
 def large_mission(tasks: int, robots: int, seed: int = 0) -> Mission:
     """Tasks and robots at random places of a square of 1000 m, without prerequisites."""
-    random = Random(seed)
-
-    def place() -> tuple[float, float]:
-        return random.uniform(0, 1000), random.uniform(0, 1000)
-
-    return Mission(
-        name=f"uniform-{tasks}-{robots}",
-        robots=tuple(Robot(id=f"r_{k}", position=place()) for k in range(robots)),
-        tasks=tuple(Task(id=str(k), position=place()) for k in range(tasks)),
-    )
+    return uniform_mission(Random(seed), robots=robots, tasks=tasks, side_m=1000.0)
 
 
 def greedy_large(runs: int) -> list[Measurement]:

@@ -14,27 +14,18 @@ from random import Random
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.mission.errors import MusterError
-from muster.mission.model import Mission, Robot, Task
 from muster.negotiation.keys import new_key
 from muster.negotiation.team import Team, patience_here
 from muster.negotiation.watch import TRANSPORTS, Order
 from muster.studies.measurement import Measurement
+from muster.studies.uniform import uniform_mission
 
-ROBOTS, TASKS, SIDE_M, GUARD_S = 20, 50, 100.0, 120.0
+ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
 
 
 def scene(seed: int) -> Problem:
     """Robots and tasks at random places of a square."""
-    random = Random(seed)
-
-    def place() -> tuple[float, float]:
-        return random.uniform(0, SIDE_M), random.uniform(0, SIDE_M)
-
-    mission = Mission(
-        robots=tuple(Robot(id=f"r_{k}", position=place()) for k in range(ROBOTS)),
-        tasks=tuple(Task(id=str(k), position=place()) for k in range(TASKS)),
-    )
-    return Problem.compile(mission).ready()
+    return Problem.compile(uniform_mission(Random(seed), robots=ROBOTS, tasks=TASKS)).ready()
 
 
 def held(problem: Problem, transport: str) -> tuple[float, Counter[str], int]:

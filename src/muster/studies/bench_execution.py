@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from random import Random
 
 from muster._api import solve, verify
@@ -15,25 +16,23 @@ from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
 from muster.execution.rest import Rest, posed
-from muster.mission.model import Event, Mission, Robot, Rules, Task
+from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
 from muster.simulation import KinematicWorld
 from muster.studies.measurement import Measurement
+from muster.studies.uniform import uniform_mission
 
 ROBOTS, TASKS, SIDE_M, FAILS_S = 20, 100, 200.0, 60.0
 
 
 def scene(seed: int, stability: int | None) -> Mission:
     """Robots and tasks at random places of a square."""
-    random = Random(seed)
-
-    def place() -> tuple[float, float]:
-        return random.uniform(0, SIDE_M), random.uniform(0, SIDE_M)
-
-    return Mission(
+    mission = uniform_mission(Random(seed), robots=ROBOTS, tasks=TASKS, side_m=SIDE_M)
+    return replace(
+        mission,
         rules=Rules(stability=stability),
-        robots=tuple(Robot(id=f"r_{k}", position=place(), radius_m=0.3) for k in range(ROBOTS)),
-        tasks=tuple(Task(id=str(k), position=place(), duration_s=5.0) for k in range(TASKS)),
+        robots=tuple(replace(robot, radius_m=0.3) for robot in mission.robots),
+        tasks=tuple(replace(task, duration_s=5.0) for task in mission.tasks),
     )
 
 

@@ -98,6 +98,27 @@ def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) ->
     return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
 
 
+def accepted(mission: Mission, plan: Plan, whose: str) -> Verdict:
+    """What the judge says of a plan that is right; `whose` it is, is told where it is not.
+
+    Raises
+    ------
+    MusterError
+        if the judge rejects the plan.
+    """
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        raise MusterError(f"{whose}: the judge rejects the plan: {rejection(verdict)}")
+    return verdict
+
+
+def rejection(verdict: Verdict) -> str:
+    """The first thing that is wrong with a plan."""
+    found = verdict.violations[0]
+    place = " ".join(part for part in (found.robot, found.task) if part)
+    return f"{found.kind}: {place + ', ' if place else ''}{found.detail}"
+
+
 def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -> Outcome:
     """Run a case; `unwanted` is asked now and then, and ends the run early.
 
@@ -117,11 +138,5 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
     begin = time.process_time()
     plan = allocator.solve(problem, stop, seed=seed)
     cpu_s = time.process_time() - begin
-    verdict = verify(mission, plan)
-    if not verdict.valid:
-        found = verdict.violations[0]
-        raise MusterError(
-            f"internal error: the judge rejects the plan of {case.allocator} for {case.mission} with seed {seed}: "
-            f"{found.kind} {found.detail}"
-        )
+    verdict = accepted(mission, plan, f"internal error: {case.allocator} for {case.mission} with seed {seed}")
     return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])

@@ -6,11 +6,12 @@ import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from muster._api import load, verify
+from muster._api import load
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
+from muster.studies.runs import accepted
 
 _FREE = ("prerequisites", "suitability")
 _WITHIN = 1e-4  # of the best known value: 0.01 %
@@ -96,7 +97,7 @@ def quality(case: Case, seeds: int, iterations: int | None = None) -> Quality:
 
     Raises
     ------
-    AssertionError
+    MusterError
         if the judge rejects a plan.
     """
     problem = Problem.compile(case.load(), case.objective, case.ignored).ready()
@@ -106,8 +107,6 @@ def quality(case: Case, seeds: int, iterations: int | None = None) -> Quality:
 def _value(problem: Problem, case: Case, seed: int, iterations: int | None) -> float:
     stop = Stop(time_limit=case.seconds) if iterations is None else Stop(iterations=iterations)
     plan = ALLOCATORS["search"].solve(problem, stop, seed=seed)
-    verdict = verify(problem.mission, plan)
-    if not verdict.valid:
-        raise AssertionError(f"{case.name}, seed {seed}: {verdict.violations}")
+    verdict = accepted(problem.mission, plan, f"{case.name}, seed {seed}")
     value = verdict.value(case.objective)
     return float("inf") if value is None or verdict.tasks_completed < verdict.tasks_total else value

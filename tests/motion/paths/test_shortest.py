@@ -20,26 +20,27 @@ def path_lengths(finder, places):
     return np.array([[a.length_m if isinstance(a, Path) else np.inf for a in row] for row in answers])
 
 
+def assert_lengths(space, places, wanted):
+    finder, wanted = WayFinder(space), pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert path_lengths(finder, places) == wanted  # looking where it comes by
+    assert finder.lengths(places) == wanted
+    assert path_lengths(finder, places) == wanted  # with the graph
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.data())
 def test_on_grids_nothing_is_shorter(data):
     space = data.draw(grids(5))
     places = data.draw(places_on(space, 3))
     wanted = grid_lengths(space.grid.blocked, places)
-    finder = WayFinder(space)
-    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)  # looking where it comes by
-    assert finder.lengths(places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
-    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)  # with the graph
+    assert_lengths(space, places, wanted)
 
 
 @settings(max_examples=40, deadline=None)
 @given(regions(), places_in(4))
 def test_in_regions_nothing_is_shorter(space, places):
     wanted = region_lengths(space.region, places)
-    finder = WayFinder(space)
-    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
-    assert finder.lengths(places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
-    assert path_lengths(finder, places) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert_lengths(space, places, wanted)
 
 
 @settings(max_examples=30, deadline=None)

@@ -1,63 +1,16 @@
-"""Run the campaign: `python -m tests.negotiation.campaign [RUNS] [--first SEED] [--processes N]`, or one seed."""
+"""Run the campaign: `python -m tests.negotiation.campaign [SEEDS] [--first SEED] [--processes N]`, or one seed."""
 
-import argparse
 import sys
-import time
-from collections import Counter
-from multiprocessing import get_context
 
 from tests.negotiation.campaign.trial import trial
-
-from muster.studies.negotiation import replay
-
-
-def main():
-    parser = argparse.ArgumentParser(prog="python -m tests.negotiation.campaign", description=__doc__)
-    parser.add_argument("runs", type=int, nargs="?", default=10_000, help="how many seeds")
-    parser.add_argument("--first", type=int, default=0, help="the first seed")
-    parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--seed", type=int, help="only this seed; what happens in it is printed")
-    asked = parser.parse_args()
-    return one(asked.seed) if asked.seed is not None else many(asked)
+from tests.trials import parser_of, run
 
 
-def one(seed):
-    report = replay(seed)
-    _print(*report.lines())
-    return 1 if report.failures else 0
-
-
-def many(asked):
-    begin, counts, failing, took = time.monotonic(), Counter(), [], []
-    seeds = range(asked.first, asked.first + asked.runs)
-    with get_context("spawn").Pool(asked.processes) as pool:
-        for done, (seed, failures, took_s, seen) in enumerate(pool.imap_unordered(trial, seeds, chunksize=10), 1):
-            counts += seen
-            took.append(took_s)
-            if failures:
-                failing.append(seed)
-                _say("\n".join(f"seed {seed}: {failure}" for failure in failures))
-            if done % 50 == 0 or done == asked.runs:
-                _say(f"{done} of {asked.runs} runs, {len(failing)} fail, {time.monotonic() - begin:.0f} s", end="\r")
-    sys.stderr.write("\n")
-    took.sort()
-    _print(f"{asked.runs} runs from seed {asked.first}: {len(failing)} fail")
-    _print(*(f"  {name}: {count}" for name, count in sorted(counts.items())))
-    middle, most = took[len(took) // 2], took[int(0.99 * (len(took) - 1))]
-    _print(f"  agreed after quiet: {middle:.2f} s (median), {most:.2f} s (99 %), {took[-1]:.2f} s (all), virtual time")
-    _print(*(f"  python -m tests.negotiation.campaign --seed {seed}" for seed in sorted(failing)))
-    return 1 if failing else 0
-
-
-def _print(*lines):
-    sys.stdout.writelines(f"{line}\n" for line in lines)
-
-
-def _say(text, end="\n"):
-    """On standard error: failures as they come, and a line of progress that is written over."""
-    sys.stderr.write(f"{text:<70}{end}")
-    sys.stderr.flush()
+def sum_up(took_s):
+    took_s = sorted(took_s)
+    middle, most = took_s[len(took_s) // 2], took_s[int(0.99 * (len(took_s) - 1))]
+    return f"agreed after quiet: {middle:.2f} s (median), {most:.2f} s (99 %), {took_s[-1]:.2f} s (all), virtual time"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(parser_of("tests.negotiation.campaign", __doc__), trial, sum_up))

@@ -1,15 +1,15 @@
 """One run of the campaign, in a process of its own."""
 
-import traceback
-from collections import Counter
+from tests.trials import Report
 
 from muster.studies.negotiation import replay
 
 
 def trial(seed):
-    """(seed, failures, seconds until agreement, counts) of a run; an error is a failure like any other."""
-    try:
-        report = replay(seed)
-    except Exception:
-        return seed, [traceback.format_exc()], 0.0, Counter()
-    return seed, report.failures, report.took_s, report.counts
+    """Play the scene of a seed and look whether all that is promised holds."""
+    report = Report(seed)
+    with report.trying():
+        played = replay(seed)
+        report.story += played.scene.described()
+        report.failures, report.counts, report.figures = played.failures, played.counts, [played.took_s]
+    return report

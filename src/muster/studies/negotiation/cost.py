@@ -10,15 +10,15 @@ from random import Random
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Mission
 from muster.negotiation.codec import Codec
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.methods import METHODS
 from muster.negotiation.seal import OVERHEAD
 from muster.negotiation.view import view_of
 from muster.studies.effort import Effort
-from muster.studies.negotiation.missions import place
 from muster.studies.tables import Cell, Table
+from muster.studies.uniform import uniform_mission
 from muster.verification import verify
 
 TASKS_A_ROBOT = 2.5
@@ -43,11 +43,8 @@ class Talk:
     @property
     def mission(self) -> Mission:
         """Robots and tasks without limits at random places of a square."""
-        random = Random(f"{self.robots} {self.seed}")
-        return Mission(
-            robots=tuple(Robot(id=f"r_{k}", position=place(random)) for k in range(self.robots)),
-            tasks=tuple(Task(id=str(k), position=place(random)) for k in range(round(TASKS_A_ROBOT * self.robots))),
-        )
+        random, tasks = Random(f"{self.robots} {self.seed}"), round(TASKS_A_ROBOT * self.robots)
+        return uniform_mission(random, robots=self.robots, tasks=tasks)
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,11 @@ import numpy as np
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster.mission.model import Mission, Robot, Task
 from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import TICK_S, MemoryNetwork, Weather
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import rules_of
-from muster.negotiation.valuation import AuctionValuer
-from muster.studies.negotiation.missions import place
+from muster.negotiation.taking_part import negotiator_of
+from muster.studies.uniform import uniform_mission
 
 DELAY_S = 0.05
 END_S = 600.0
@@ -25,16 +23,11 @@ END_S = 600.0
 
 def team(robots: int, tasks: int, seed: int, weather: Weather) -> tuple[Problem, MemoryNetwork]:
     """Robots and tasks without limits in a square, and a network of them."""
-    random = Random(seed)
-    mission = Mission(
-        robots=tuple(Robot(id=f"r_{k}", position=place(random)) for k in range(robots)),
-        tasks=tuple(Task(id=str(k), position=place(random)) for k in range(tasks)),
-    )
-    problem = Problem.compile(mission).ready()
-    rules, terms = rules_of(problem), Parameters()
+    problem = Problem.compile(uniform_mission(Random(seed), robots=robots, tasks=tasks)).ready()
+    terms = Parameters()
 
     def make(robot: str, incarnation: int) -> Negotiator:
-        return Negotiator(robot, rules, AuctionValuer(problem, terms, robot), incarnation=incarnation)
+        return negotiator_of(problem, terms, robot, incarnation=incarnation)
 
     return problem, MemoryNetwork(make, [robot.id for robot in problem.robots], seed, weather)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from random import Random
 
 from muster.mission.model import OBJECTIVES, Mission, Robot, Rules, Task
+from muster.studies.uniform import place
 
-SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
 
 
@@ -49,8 +49,3 @@ def random_task(random: Random, name: str, *, before: list[str], skilled: bool, 
         actuation_cost=random.choice((0.0, 5.0)),
         across_partition="at-most-once" if once else "at-least-once",
     )
-
-
-def place(random: Random) -> tuple[float, float]:
-    """A place in the square, metres."""
-    return random.uniform(0, SIDE_M), random.uniform(0, SIDE_M)

@@ -14,9 +14,8 @@ from muster.negotiation.happenings import Memory
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.memory_network import MemoryNetwork
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import rules_of
+from muster.negotiation.taking_part import negotiator_of, rules_of
 from muster.negotiation.tasks import task_of
-from muster.negotiation.valuation import AuctionValuer
 from muster.studies.negotiation.observer import Observer
 from muster.studies.negotiation.scene import Incident, Scene, scene
 from muster.verification import verify
@@ -96,10 +95,10 @@ class Play:
 
     def _negotiator(self, robot: str, incarnation: int) -> Negotiator:
         self.observer.started(robot)
-        return Negotiator(
+        return negotiator_of(
+            self.problem,
+            self.scene.terms,
             robot,
-            self.rules,
-            AuctionValuer(self.problem, self.scene.terms, robot),
             incarnation=incarnation,
             remembered=self._memory.pop(robot, None),
             forgot=robot in self._forgot,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import warnings
 from collections.abc import Hashable
 from typing import Any
@@ -12,7 +11,7 @@ import numpy as np
 from muster.studies.peers.costs import Integers
 from muster.studies.peers.instance import Instance
 from muster.studies.peers.peer import Answer, missing
-from muster.studies.peers.sweep import OBJECTIVES, Routed, swept
+from muster.studies.peers.sweep import OBJECTIVES, Routed, answered
 
 _FORBIDDEN = 10
 """A leg to a task that a robot may not do takes so many times a prize; profiles are how PyVRP restricts vehicles."""
@@ -32,13 +31,7 @@ class PyVRP:
         return None if instance.objective in OBJECTIVES else f"no {instance.objective}"
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
-        begin = time.perf_counter()
-        model = _Model(instance, seed)
-        build_s = time.perf_counter() - begin
-        routed = swept(instance, model.run, seconds)
-        if routed is None:
-            return Answer(None, build_s=build_s)
-        return Answer(routed.routes, routed.value(instance.objective) / instance.usage.scale, build_s)
+        return answered(instance, lambda: _Model(instance, seed).run, seconds)
 
 
 class _Model:

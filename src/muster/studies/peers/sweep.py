@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from muster.studies.peers.instance import Instance, Routes
+from muster.studies.peers.peer import Answer
 
 OBJECTIVES = ("total", "max", "total+max")
 """What a sweep can minimise."""
@@ -48,6 +49,17 @@ class _Found:
     @property
     def greatest(self) -> int:
         return max(self.routed.lengths)
+
+
+def answered(instance: Instance, make: Callable[[], Run], seconds: float) -> Answer:
+    """The answer of a solver: `make` hands it the model, and gives its runs."""
+    begin = time.perf_counter()
+    run = make()
+    build_s = time.perf_counter() - begin
+    routed = swept(instance, run, seconds)
+    if routed is None:
+        return Answer(None, build_s=build_s)
+    return Answer(routed.routes, routed.value(instance.objective) / instance.usage.scale, build_s)
 
 
 def swept(instance: Instance, run: Run, seconds: float) -> Routed | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from datetime import timedelta
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from muster.studies.peers.instance import Instance
 from muster.studies.peers.peer import Answer, missing
-from muster.studies.peers.sweep import OBJECTIVES, Routed, swept
+from muster.studies.peers.sweep import OBJECTIVES, Routed, answered
 
 _EXPLORATION, _FAST_EXPLORATION = 5, 0
 _LARGE = 200
@@ -37,13 +36,7 @@ class Vroom:
         return None if instance.objective in OBJECTIVES else f"no {instance.objective}"
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
-        begin = time.perf_counter()
-        model = _Model(instance)
-        build_s = time.perf_counter() - begin
-        routed = swept(instance, model.run, seconds)
-        if routed is None:
-            return Answer(None, build_s=build_s)
-        return Answer(routed.routes, routed.value(instance.objective) / instance.usage.scale, build_s)
+        return answered(instance, lambda: _Model(instance).run, seconds)
 
 
 class _Model:

@@ -49,10 +49,3 @@ def _judged(data: Mapping[str, Any], ignored: tuple[str, ...]) -> PublishedPlan:
         as_printed=judged(mission, ignored, {robot: printed(route)["tasks"] for robot, route in routes.items()}),
         as_corrected=judged(mission, ignored, {robot: corrected(route)["tasks"] for robot, route in routes.items()}),
     )
-
-
-def rejection(verdict: Verdict) -> str:
-    """The first thing that is wrong with a plan."""
-    found = verdict.violations[0]
-    place = " ".join(part for part in (found.robot, found.task) if part)
-    return f"{found.kind}: {place + ', ' if place else ''}{found.detail}"

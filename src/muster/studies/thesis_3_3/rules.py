@@ -9,9 +9,9 @@ from typing import Any
 from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL, ERRATUM, equal
 from muster.studies.misprints import corrected, errata, printed
-from muster.studies.runs import Case, Sample, judged, mission_named
+from muster.studies.runs import Case, Sample, judged, mission_named, rejection
 from muster.studies.tables import Cell, Notes, Table, row
-from muster.studies.thesis_3_3.plans import PublishedPlan, published_plans, rejection
+from muster.studies.thesis_3_3.plans import PublishedPlan, published_plans
 from muster.studies.thesis_3_3.published import as_run_notes, publication
 from muster.studies.thesis_3_3.routes import own_case
 from muster.verification import Verdict

@@ -9,10 +9,10 @@ from typing import Any
 from muster.studies.effort import Effort
 from muster.studies.marks import ERRATUM, INFORMATION, differences, reached
 from muster.studies.misprints import corrected, errata, printed
-from muster.studies.runs import Case, Sample
+from muster.studies.runs import Case, Sample, rejection
 from muster.studies.tables import Cell, Notes, Table, row
 from muster.studies.thesis_3_3.budgets import budgets
-from muster.studies.thesis_3_3.plans import published_plans, rejection
+from muster.studies.thesis_3_3.plans import published_plans
 from muster.studies.thesis_3_3.published import as_run_notes, is_random, publication
 
 _UNEVEN = "mean is over plans with different numbers of tasks completed, and worst that of the fewest tasks."
