@@ -25,6 +25,7 @@ from muster.mission.plan import Plan, Route, read_plan
 
 if TYPE_CHECKING:
     from muster._carrying_out import Simulation
+    from muster._negotiated.simulation import Negotiation
 
 __all__ = [
     "Event",
@@ -34,6 +35,7 @@ __all__ = [
     "Mission",
     "MissionError",
     "MusterError",
+    "Negotiation",
     "NotSupportedError",
     "ParameterError",
     "Plan",
@@ -57,6 +59,10 @@ def __getattr__(name: str) -> Any:
         from muster._carrying_out import Simulation
 
         return Simulation
+    if name == "Negotiation":
+        from muster._negotiated.simulation import Negotiation
+
+        return Negotiation
     if name == "__version__":
         from importlib.metadata import version
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
+    from muster._negotiated.simulation import Negotiation
     from muster.allocation.stop import Progress
     from muster.execution import Report
     from muster.verification import Verdict
@@ -166,11 +168,16 @@ def _require_mission(mission: object) -> None:
         )
 
 
-def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path | None = None, **how: Any) -> Report:
+def simulate(
+    mission: Mission, plan: Plan | Negotiation, *, seed: int = 0, record: str | Path | None = None, **how: Any
+) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
 
     Parameters
     ----------
+    plan
+        what is carried out; or how robots agree without a centre: then each robot is a process which decides for
+        itself, and time goes on at the pace of real time.
     seed
         of the world and of planning anew.
     record
@@ -182,16 +189,30 @@ def simulate(mission: Mission, plan: Plan, *, seed: int = 0, record: str | Path 
     ------
     ParameterError
         if the plan names robots or tasks that the mission does not have.
+    MissingExtraError
+        where an extra is not installed that is needed; a negotiation needs `net`.
     """
-    from muster._carrying_out import carry_out
-
     _require_mission(mission)
+    carry_out = _carrying_out(mission, plan)
     if record is None:
-        return carry_out(mission, plan, seed=seed, **how)
+        return carry_out(seed=seed, **how)
     from muster.report.record import RecordWriter
 
     with RecordWriter(record, mission) as recorder:
-        return carry_out(mission, plan, seed=seed, recorder=recorder, **how)
+        return carry_out(seed=seed, recorder=recorder, **how)
+
+
+def _carrying_out(mission: Mission, plan: Plan | Negotiation) -> Callable[..., Report]:
+    if isinstance(plan, Plan):
+        from muster._carrying_out import carry_out
+
+        return partial(carry_out, mission, plan)
+    from muster._negotiated.simulation import Negotiation, negotiate_and_carry_out
+    from muster.allocation.problem import Problem
+
+    if not isinstance(plan, Negotiation):
+        raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")
+    return partial(negotiate_and_carry_out, Problem.compile(mission).ready(), plan)
 
 
 def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:

@@ -16,7 +16,6 @@ from muster.mission.kinds import shown
 from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
-from muster.motion.roads import Roads
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
@@ -57,7 +56,7 @@ class Pilot:
 
     def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
         mission = replace(problem.mission, events=())
-        roads = Roads.of(mission) if mission.travel_rule == "map" else None
+        roads = problem.roads if mission.travel_rule == "map" else None
         self._travel = travel_of(mission, roads)
         self._negotiator = negotiator
         self._executor = Executor(

@@ -61,9 +61,9 @@ def negotiate_and_carry_out(
     dt_s: float = 0.1,
     avoidance: str = "orca",
     noise: Noise = NO_NOISE,
-    speed: float = 1.0,
+    speed: float | None = None,
     recorder: Recorder | None = None,
-    on_happening: Callable[[Happening], None] = lambda happening: None,
+    on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
     """Let robots agree, and carry out what they agree on, each for itself; the mission's events happen meanwhile.
@@ -75,8 +75,8 @@ def negotiate_and_carry_out(
     problem
         what about, without robots that join later.
     speed
-        how many times as fast as real time robots move. They talk in real time: the faster they move, the longer their
-        talk takes in the mission's time.
+        how many times as fast as real time robots move; None: once. They talk in real time: the faster they move, the
+        longer their talk takes in the mission's time.
     others
         as `_carrying_out.carry_out` takes them.
 
@@ -97,13 +97,13 @@ def negotiate_and_carry_out(
             observe_s=0.0 if recorder is None else 0.1,
         )
         order = order_of(problem, negotiation, memory)
-        log = Log(order.problem, recorder or NoObserver(), on_happening)
+        log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None))
         theatre = Theatre(problem.mission, world, order, log)
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
         theatre.agree_first(negotiation.limit_s, halt)
         while not halt.is_set() and not theatre.over:
-            theatre.go_on(speed)
+            theatre.go_on(1.0 if speed is None else speed)
         if theatre.over:
             log.end()
         report = report_of(log.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)

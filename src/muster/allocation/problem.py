@@ -65,6 +65,7 @@ class Problem:
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
+    mapped: Roads | None = None  # over the mission's map, as far as they are known already
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
@@ -292,11 +293,16 @@ class Problem:
         return Doings.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
-    def _over_map(self) -> MapTravel:
+    def roads(self) -> Roads:
+        """Over the mission's map."""
         from muster.motion.roads import Roads
 
+        return Roads.of(self.mission) if self.mapped is None else self.mapped
+
+    @cached_property
+    def _over_map(self) -> MapTravel:
         require_room(self.mission, self._exits.shape[1], "travel over a map")
-        return self.over(Roads.of(self.mission))
+        return self.over(self.roads)
 
     def over(self, roads: Roads) -> MapTravel:
         """Travel between the places by roads, whatever the mission's rule."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
+from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.halting import ctrl_c_halts
 from muster.cli.options import (
@@ -29,17 +32,21 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
+    from muster import Negotiation
     from muster.execution.executor import Happening
     from muster.execution.report import Report
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
+_OF_A_PLAN = ("plan", "time_limit", "iterations")
+_OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 
 
 @click.command()
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
+@click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
 @click.option("--world", type=click.Choice(["kinematic"]), default="kinematic", show_default=True, help="Where.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
@@ -51,7 +58,10 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 )
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
-    "--speed", type=Finite(0.001, 1e6), metavar="X", help="X times real time, telling events.  [default: at once]"
+    "--speed",
+    type=Finite(0.001, 1e6),
+    metavar="X",
+    help="X times real time, telling events.  [default: at once; 1 with --negotiate]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
@@ -60,6 +70,8 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@method_options
+@terms_options
 @require_complete_option
 @format_option
 @quiet_option
@@ -70,6 +82,7 @@ def command(
     salesmen: int | None,
     depot: str | None,
     plan: Path | None,
+    negotiate: bool,
     world: str,
     seed: int,
     time_limit: float,
@@ -82,22 +95,34 @@ def command(
     html: Path | None,
     plot: Path | None,
     gantt: Path | None,
+    method: str,
+    transport: str,
+    settings: tuple[str, ...],
     require_complete: bool,
     form: str,
     quiet: bool,
     verbose: bool,
+    **others: Any,
 ) -> int:
     """Carry out a plan of a MISSION with moving robots, in virtual time, and say what it took.
 
     Robots keep their speeds and go around each other; the mission's events happen, and what is left is planned again.
+
+    With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
+    each decides for itself what to do next. They talk in real time.
     """
+    _check_together(negotiate)
     require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
     require_drawable(plot, gantt)
     noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    planned = _plan(loaded, plan, seed, time_limit, iterations)
-    if plan is not None:
-        say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
+    planned: Plan | Negotiation
+    if negotiate:
+        planned, speed = _negotiation(method, transport, others, settings), speed or 1.0
+    else:
+        planned = _plan(loaded, plan, seed, time_limit, iterations)
+        if plan is not None:
+            say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
     with tempfile.TemporaryDirectory() if record is None and (html or plot or gantt) else nullcontext() as folder:
         file = record if folder is None else Path(folder) / "record.mcap"
         how: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance, "noise": noise, "speed": speed}
@@ -114,6 +139,24 @@ def command(
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission", err=True)
         return INTERRUPTED
     return INCOMPLETE if require_complete and report.tasks_lost else DONE
+
+
+def _check_together(negotiate: bool) -> None:
+    """Options that mean something with --negotiate, or without it, alone."""
+    context = click.get_current_context()
+    given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    wrong = given.intersection(_OF_A_PLAN if negotiate else _OF_A_NEGOTIATION)
+    for name in sorted(wrong):
+        option = "--set" if name == "settings" else f"--{name.replace('_', '-')}"
+        raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
+
+
+def _negotiation(method: str, transport: str, others: Mapping[str, Any], settings: tuple[str, ...]) -> Negotiation:
+    from muster import Negotiation
+    from muster.negotiation.methods import method_named
+
+    terms = terms_of(method_named(method), others, settings)
+    return Negotiation(method=method, transport=transport, params=terms)
 
 
 def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, iterations: int | None) -> Plan:
@@ -146,7 +189,7 @@ def _noise(noises: tuple[str, ...]) -> Noise:
     return Noise(**amounts)
 
 
-def _carried_out(mission: Mission, plan: Plan, file: Path | None, **how: Any) -> Report:
+def _carried_out(mission: Mission, plan: Plan | Negotiation, file: Path | None, **how: Any) -> Report:
     from muster import simulate
 
     try:

@@ -116,9 +116,9 @@ class Changes:
 
     def _require_fit(self, task: Task) -> None:
         """A mission with this task, and those that there are, must be one."""
-        robots = tuple(hand.robot for hand in self.crew.values())
+        robots = {robot.id: robot for robot in (*self.mission.robots, *(hand.robot for hand in self.crew.values()))}
         try:
-            replace(self.mission, robots=robots, tasks=(*self.ledger.tasks.values(), task), events=())
+            replace(self.mission, robots=tuple(robots.values()), tasks=(*self.ledger.tasks.values(), task), events=())
         except MissionError as error:
             found = error.findings[0]
             raise ParameterError(f"new_task: {task.id}: {found.value}; expected {found.expected}") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +35,10 @@ class Roads:
     world: World
     _finders: dict[Body, WayFinder] = field(default_factory=dict, init=False, repr=False)
     _legs: dict[tuple[Body, Point, Point], float] = field(default_factory=dict, init=False, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: the map and the legs that are known; where ways are looked for is made again."""
+        return {**self.__dict__, "_finders": {}}
 
     @classmethod
     def of(cls, mission: Mission) -> Roads:

@@ -61,4 +61,4 @@ def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:
     compiled = Problem.compile(
         replace(problem.mission, tasks=changed(problem.mission.tasks)), problem.objective, problem.ignored
     )
-    return replace(compiled, tasks=changed(problem.tasks))
+    return replace(compiled, tasks=changed(problem.tasks), mapped=problem.mapped)

@@ -239,4 +239,4 @@ def _light(order: Order) -> Order:
     problem = order.problem
     if problem.mission.travel_rule != "map":
         return order
-    return replace(order, problem=replace(problem, known=problem.measured))
+    return replace(order, problem=replace(problem, known=problem.measured, mapped=problem.roads))
