@@ -1,0 +1,114 @@
+"""Robots as real processes, over the real transport, in a simulated world that goes on at the pace of real time."""
+
+import pytest
+
+import muster
+from muster import Event, Mission, Negotiation, Robot, Task
+from muster.mission.errors import MusterError, ParameterError
+from muster.mission.model import DelayedTask, MovedTask
+
+pytest.importorskip("cryptography", reason="the extra `net` is not installed")
+
+
+def line(events=(), **of_tasks):
+    return Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(20.0 * k, 0.0), speed_mps=2.0, radius_m=0.3) for k in range(3)),
+        tasks=tuple(
+            Task(id=str(k), position=(7.0 * k, 10.0 + 3 * (k % 3)), duration_s=2.0, **of_tasks) for k in range(9)
+        ),
+        events=tuple(events),
+    )
+
+
+def carried_out(mission, **how):
+    """The report, and what happened by kind."""
+    told = {}
+    negotiation = how.pop("negotiation", Negotiation())
+    report = muster.simulate(
+        mission, negotiation, on_happening=lambda h: told.setdefault(h.kind, []).append(h), **{"speed": 10.0} | how
+    )
+    return report, told
+
+
+@pytest.mark.parametrize("transport", ["udp", "zenoh"])
+def test_without_faults_they_do_what_the_auction_in_one_process_says(transport):
+    mission = line()
+    report, told = carried_out(mission, negotiation=Negotiation(transport=transport))
+    plan = muster.solve(mission, allocator="auction")
+    assert not report.tasks_lost
+    assert {task.task: task.robot for task in report.tasks} == {t: r.robot for r in plan.routes for t in r.tasks}
+    assert report.objective.flown == pytest.approx(plan.objective_value, rel=1e-3)
+    assert report.objective.planned == pytest.approx(plan.objective_value)
+    assert report.reallocations == 0
+    assert [h.data for h in told["mission_ended"]] == [{}]
+
+
+def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and_go(tmp_path):
+    new, joining = Task(id="new", position=(5.0, 30.0)), Robot(id="j", position=(10.0, 30.0), radius_m=0.3)
+    mission = line(
+        [
+            Event(at_s=3, move_task=MovedTask(task="8", position=(10.0, 40.0))),
+            Event(at_s=3, delay_task=DelayedTask(task="0", by_s=5.0)),
+            Event(at_s=4, cancel_task="7"),
+            Event(at_s=6, robot_joins=joining),
+            Event(at_s=8, robot_fails="r_1"),
+            Event(at_s=8.5, robot_fails="r_1"),
+            Event(at_s=20, new_task=new),
+            Event(at_s=70, robot_returns="r_1"),
+            Event(at_s=71, new_task=Task(id="last", position=(20.0, 5.0))),
+        ]
+    )
+    file = tmp_path / "record.mcap"
+    report, told = carried_out(mission, record=file)
+    assert dict(report.tasks_lost) == {"7": "cancelled at 4 s"}
+    assert set(report.tasks_done) == {task.id for task in mission.tasks} - {"7"} | {"new", "last"}
+    assert {h.data["task"]: h.data["robot"] for h in told["ends"]}["last"] == "r_1"
+    assert "twice" not in told
+    assert [h.data["robot_fails"] for h in told["without_effect"]] == ["r_1"]
+    assert report.reallocations >= 1
+    assert report.ends_s["0"] - report.starts_s["0"] == pytest.approx(7.0, abs=1.1)
+
+    from muster.report.record import read_record
+
+    recording = read_record(file)
+    assert recording.complete
+    assert {task: recording.outcome.states[task] for task in ("8", "new", "last")} == dict.fromkeys(
+        ("8", "new", "last"), "done"
+    )
+    assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
+
+
+def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(30.0 * k, 0.0), radius_m=0.3) for k in range(2)),
+        tasks=tuple(Task(id=str(k), position=(30.0 * k, 8.0), duration_s=60.0) for k in range(2)),
+        events=(
+            Event(at_s=1, robot_silent="r_0"),
+            Event(at_s=160, robot_returns="r_0"),
+        ),
+    )
+    report, told = carried_out(mission)
+    assert set(report.tasks_done) == {"0", "1"}
+    assert {h.data["task"] for h in told["twice"]} <= {"0", "1"}
+    assert "twice" in told
+
+
+def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():
+    mission = line(
+        [Event(at_s=1, robot_silent="r_0"), Event(at_s=60, robot_returns="r_0")], across_partition="at-most-once"
+    )
+    report, told = carried_out(mission)
+    assert not report.tasks_lost
+    assert "twice" not in told
+
+
+def test_what_is_neither_a_plan_nor_a_negotiation_is_refused():
+    with pytest.raises(ParameterError, match="expected a Plan or a Negotiation"):
+        muster.simulate(line(), "auction")
+    with pytest.raises(ParameterError, match="expected auction"):
+        muster.simulate(line(), Negotiation(method="dance"))
+
+
+def test_who_does_not_agree_in_time_does_not_begin():
+    with pytest.raises(MusterError, match="no agreement within 0 s"):
+        muster.simulate(line(), Negotiation(limit_s=0.0))
