@@ -241,3 +241,36 @@ def test_a_full_disk(muster):
     code, out, err = muster("simulate", "6T-2R", "--iterations", "10", "--record", "/dev/full")
     assert (code, out) == (2, "")
     assert err.startswith("/dev/full: No space left on device")
+
+
+class TestNegotiate:
+    """`--negotiate`: no plan; robots are processes."""
+
+    @pytest.fixture(autouse=True)
+    def _with_net(self):
+        pytest.importorskip("cryptography", reason="the extra `net` is not installed")
+
+    def test_it_tells_what_happens_and_what_it_took(self, muster, eventful, tmp_path):
+        gantt = tmp_path / "gantt.png"
+        code, out, err = muster("simulate", eventful, "--negotiate", "--speed", "10", "--gantt", str(gantt))
+        assert code == 0
+        assert "tasks done        3 of 4" in out
+        assert "cancelled at 5 s" in out
+        assert "robot fails: robot a" in err
+        assert "ends: task late, robot b" in err
+        assert gantt.stat().st_size > 10_000
+
+    @pytest.mark.parametrize(
+        ("options", "said"),
+        [
+            (["--negotiate", "--plan", "plan.json"], "--plan given; expected it without --negotiate"),
+            (["--negotiate", "--iterations", "3"], "--iterations given; expected it without --negotiate"),
+            (["--bid", "total"], "--bid given; expected it together with --negotiate"),
+            (["--set", "battery_weight=1"], "--set given; expected it together with --negotiate"),
+            (["--negotiate", "--method", "danse"], "method: danse; expected auction or consensus-bundle"),
+        ],
+    )
+    def test_options_that_do_not_go_together_are_refused(self, muster, eventful, options, said):
+        code, out, err = muster("simulate", eventful, *options)
+        assert (code, out) == (2, "")
+        assert said in err

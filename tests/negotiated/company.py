@@ -19,8 +19,8 @@ class Company:
     ----------
     net, world, pilots
         of all robots; `pilots` by robot, of those that live.
-    told
-        (time, robot, kind, data) of what robots did.
+    told, last_words
+        (time, robot, kind, data) of what robots did; and of it what they did just before they crashed.
     """
 
     def __init__(self, mission, *, seed=0, links=None, later=(), **weather):
@@ -28,6 +28,7 @@ class Company:
         self.world = KinematicWorld(mission, seed=seed)
         self.robots = [robot.id for robot in self.problem.robots]
         self.net = MemoryNetwork(self._negotiator, self.robots, seed, Weather(**weather), links)
+        self.last_words = []
         self.pilots, self.told, self._memories, self._later = {}, [], {}, frozenset(later)
         self._used = dict.fromkeys(self.robots, 0.0)
         for robot in self.robots:
@@ -56,6 +57,7 @@ class Company:
     def crash(self, robot):
         """Its body stops, and its process is gone."""
         self.world.fail(robot)
+        self.last_words += [word for word in self.told if word[1] == robot and word[0] > self.world.time_s - 0.5]
         self._used[robot] = self.pilots.pop(robot).used
         self._memories[robot] = self.net.crash(robot).memory
 

@@ -60,7 +60,8 @@ def test_while_robots_hear_each_other_nothing_is_done_twice_whoever_crashes(seed
     company.run(company.world.time_s + random.uniform(0, 10))
     company.restart(victims[0])
     done = ends(company)
-    assert set(done.values()) <= {1}
+    lately = {data["task"] for _, _, kind, data in company.last_words if kind == "ends"}  # nobody else may know
+    assert {task for task, times in done.items() if times > 1} <= lately
     facts = next(iter(company.net.nodes.values())).facts
     held = {fact.task for fact in facts if fact.kind == "begun" and fact.robot == victims[1]} - set(done)
     waiting = held.copy()  # what the one that stays away said it begins, nobody may; nor what waits for it

@@ -95,8 +95,9 @@ class Log:
         self.tell(now_s, kind, data)
         return True
 
-    def see(self, robot: str, telemetry: Telemetry) -> None:
+    def see(self, robot: str, telemetry: Telemetry, now_s: float) -> None:
         """Take in where a robot says that it is."""
+        self._now_s = max(self._now_s, now_s)
         self._observer.on_telemetry(self._now_s, robot, telemetry)
 
     def agreed(self, plan: Plan, now_s: float) -> None:
@@ -116,7 +117,8 @@ class Log:
         self._on_happening(happening)
 
     def end(self) -> None:
-        """The mission is over."""
+        """The mission is over, since the last robot was done."""
+        self._now_s = self.happenings[-1].at_s if self.happenings else 0.0
         for task, reason in self.lost().items():
             self.tell(self._now_s, "lost", {"task": task, "reason": reason})
         self.tell(self._now_s, "mission_ended", {})
@@ -141,7 +143,6 @@ class Log:
         if self._plans:
             planned = self._plans[0].objective_value
             usages = {route.robot: route.usage for route in verify(self._problem.mission, self._plans[0]).routes}
-        moves = [h.at_s for h in self.happenings if h.kind != "mission_ended"]
         return Account(
             objective=self._problem.objective,
             objective_planned=planned,
@@ -149,7 +150,7 @@ class Log:
             lost=self.lost(),
             used=self.used,
             usage_planned=usages,
-            mission_time_s=max(moves, default=0.0),
+            mission_time_s=self._now_s,
             reallocations=len(self._plans) - 1,
         )
 

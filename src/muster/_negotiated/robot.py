@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from queue import Empty
 
 from muster._negotiated.pilot import Pilot
@@ -90,7 +91,7 @@ class _Robot:
         self._heard = 0
         self._befallen: list[Event] = []
         self._refused: list[str] = []
-        self._told: tuple[bool, bool, int] | None = None
+        self._told: Did | None = None
 
     def hear(self, words: Sequence[object]) -> None:
         for word in words:
@@ -114,21 +115,17 @@ class _Robot:
         happenings = [(h.at_s, h.kind, h.data) for h in pilot.tick(self._now_s)]
         happenings += [(self._now_s, "event_refused", {"reason": reason}) for reason in self._refused]
         self._refused.clear()
-        state = pilot.idle, self._negotiator.settled, self._heard
-        if happenings or state != self._told:
-            self._told = state
-            ended = [str(data["task"]) for _, kind, data in happenings if kind == "ends"]
-            idle, settled, heard = state
-            self._seat.pipe.send(
-                Did(
-                    happenings=happenings,
-                    used=pilot.used,
-                    usages={task: pilot.usage(task) for task in ended},
-                    idle=idle,
-                    settled=settled,
-                    heard=heard,
-                )
-            )
+        did = Did(
+            happenings=happenings,
+            used=pilot.used,
+            usages={str(data["task"]): pilot.usage(data["task"]) for _, kind, data in happenings if kind == "ends"},
+            idle=pilot.idle,
+            settled=self._negotiator.settled,
+            heard=self._heard,
+        )
+        if did != self._told:
+            self._told = replace(did, happenings=[], usages={})
+            self._seat.pipe.send(did)
 
     def _sense(self, sense: Sense) -> None:
         self._now_s = sense.now_s

@@ -211,7 +211,7 @@ class Theatre:
             said = self._world.ports[robot].telemetry()
             assert said is not None
             self.team.tell(robot, Sense(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
-            self._log.see(robot, said)
+            self._log.see(robot, said, self.time_s)
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.hear(left_s)
         self._notice_agreement()
