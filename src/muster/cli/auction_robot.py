@@ -107,7 +107,7 @@ class _Watch:
         self._settled = status.settled
 
     def say_how_it_ended(self, status: NodeStatus, took_s: float) -> None:
-        kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats"))
+        kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))
         volume = sum(status.sent_bytes.values()) / 1000
         refused = "".join(
             f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"

@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import Self
 
 from muster.mission.clock import Clock, SystemClock
+from muster.negotiation.acquaintance import Acquaintance
 from muster.negotiation.codec import Codec, OtherVersion
 from muster.negotiation.forms import Garbled
 from muster.negotiation.happenings import Outgoing
@@ -38,9 +39,9 @@ class NodeStatus:
     settled
         whether all members are known to agree, and nobody bids any more.
     sent, sent_bytes, received
-        messages sent by kind (`news`, `repairs`, `beats`), their bytes as they travel, messages taken in.
+        messages sent by kind (`news`, `repairs`, `beats`, `greetings`), their bytes as they travel, messages taken in.
     refused
-        what was not taken in, by why: as `Seal.counts`, and `garbled`.
+        what was not taken in, by why: as `Acquaintance.counts`, and `garbled`.
     lost_here
         as `Transport.lost_here`.
     rivals, superseded
@@ -84,10 +85,10 @@ class Node:
         self.sent: Counter[str] = Counter()
         self.sent_bytes: Counter[str] = Counter()
         self.received = 0
-        self._codec, self._seal = codec, seal
+        self._codec, self._met = codec, None if seal is None else Acquaintance(seal)
         self._clock = clock or SystemClock()
         self._garbled: Counter[str] = Counter()
-        self._room = transport.room - (0 if seal is None else OVERHEAD)
+        self._room = transport.room - (0 if seal is None else OVERHEAD + 1)
 
     def __enter__(self) -> Self:
         self.start()
@@ -109,7 +110,9 @@ class Node:
         if not self.negotiator.superseded:  # or it is never due again
             wait_s = max(0.0, min(wait_s, self.negotiator.due_s - self._clock.now()))
         for data in self.transport.receive(wait_s):
-            self._take_in(data)
+            for said in [data] if self._met is None else self._met.open(data):
+                self._take_in(said)
+        self._greet()
         self._send(self.negotiator.tick(self._clock.now()))
 
     def run(self, until: Callable[[Node], bool], at_most_s: float | None = None) -> bool:
@@ -139,18 +142,15 @@ class Node:
             sent=self.sent.copy(),
             sent_bytes=self.sent_bytes.copy(),
             received=self.received,
-            refused=self._garbled + (Counter() if self._seal is None else self._seal.counts),
+            refused=self._garbled + (Counter() if self._met is None else self._met.counts),
             lost_here=self.transport.lost_here,
             rivals=tuple(sorted(negotiator.rivals)),
             superseded=negotiator.superseded,
         )
 
     def _take_in(self, data: bytes) -> None:
-        opened = data if self._seal is None else self._seal.open(data)
-        if opened is None:
-            return
         try:
-            message = self._codec.decode(opened)
+            message = self._codec.decode(data)
         except OtherVersion:
             self._garbled["other_version"] += 1
         except Garbled:
@@ -159,11 +159,21 @@ class Node:
             self.received += 1
             self._send(self.negotiator.handle(message, self._clock.now()))
 
+    def _greet(self) -> None:
+        """Ask those for a proof that speak and are not known, and answer those that ask."""
+        for greeting in [] if self._met is None else self._met.greetings(self._clock.now(), self.transport.room):
+            self._transmit("greetings", [greeting], None)
+
     def _send(self, out: Iterable[Outgoing]) -> None:
         for outgoing in out:
             kind = "repairs" if outgoing.to is not None else "beats" if outgoing.message.is_idle else "news"
-            self.sent[kind] += 1
-            before = self.transport.bytes_sent
-            for piece in self._codec.parts(outgoing.message, self._room):
-                self.transport.send(piece if self._seal is None else self._seal.close(piece), outgoing.to)
-            self.sent_bytes[kind] += self.transport.bytes_sent - before
+            pieces = self._codec.parts(outgoing.message, self._room)
+            self._transmit(kind, pieces if self._met is None else map(self._met.close, pieces), outgoing.to)
+
+    def _transmit(self, kind: str, pieces: Iterable[bytes], to: str | None) -> None:
+        """Send a message, and count it."""
+        self.sent[kind] += 1
+        before = self.transport.bytes_sent
+        for piece in pieces:
+            self.transport.send(piece, to)
+        self.sent_bytes[kind] += self.transport.bytes_sent - before

@@ -19,8 +19,8 @@ for a million. It rests on the machine's random numbers alone; for a virtual mac
 does not hold.
 
 Replays. Of each session a window of counters is kept: a message is taken once, in whatever order, unless it comes later
-than WINDOW others of its sender. A receiver that has just started has no windows yet: somebody who recorded an earlier
-run under the same key can play it back to it. So a key is to serve for one run: make a new one for the next.
+than WINDOW others of its sender. A receiver that has just started has no windows yet: against what somebody recorded in
+an earlier run under the same key `acquaintance` helps.
 
 All who have the key trust each other: it does not prove which robot it was that sent something.
 """
@@ -42,13 +42,16 @@ from muster.negotiation.mission_digest import mission_digest
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
-__all__ = ["OVERHEAD", "WINDOW", "Seal", "mission_digest", "new_key", "read_key", "write_key"]
+__all__ = ["OVERHEAD", "SESSION", "WINDOW", "Seal", "mission_digest", "new_key", "read_key", "write_key"]
 
 WINDOW = 1024
 """How many messages of a sender may overtake one that is still taken."""
 
-_TAG, _SESSION, _COUNTER, _AUTHENTICATOR = 8, 12, 4, 16
-_HEADER = 1 + _TAG + _SESSION + _COUNTER
+SESSION = 12
+"""Bytes of the name of a session."""
+
+_TAG, _COUNTER, _AUTHENTICATOR = 8, 4, 16
+_HEADER = 1 + _TAG + SESSION + _COUNTER
 _LAST = 2 ** (8 * _COUNTER) - 1
 
 OVERHEAD = _HEADER + _AUTHENTICATOR
@@ -98,6 +101,8 @@ class Seal:
 
     Attributes
     ----------
+    session
+        of this process; a new one when it has been forked, or has said all that one may hold.
     counts
         of what was not opened, by why: `foreign` (made without the key, or changed on the way), `replayed` (or later
         than WINDOW others), `other_mission`, `other_version`; and `own`, which came back from a multicast group.
@@ -121,17 +126,22 @@ class Seal:
         """What is to be sent of this."""
         if self._counter > _LAST or os.getpid() != self._process:
             self._begin_session()
-        header = bytes((PROTOCOL,)) + self._tag + self._session + self._counter.to_bytes(_COUNTER, "big")
+        header = bytes((PROTOCOL,)) + self._tag + self.session + self._counter.to_bytes(_COUNTER, "big")
         self._counter += 1
         return header + self._cipher.encrypt(_nonce(header), data, header)
 
     def open(self, data: bytes) -> bytes | None:
         """What was sealed; None where it is not for this robot (see `counts`)."""
+        opened = self.open_from(data)
+        return None if opened is None else opened[1]
+
+    def open_from(self, data: bytes) -> tuple[bytes, bytes] | None:
+        """The session of the process that sealed it, and what that is; None where it is not for this robot."""
         from cryptography.exceptions import InvalidTag
 
         header = data[:_HEADER]
         session = header[1 + _TAG : -_COUNTER]
-        if session == self._session:
+        if session == self.session:
             return self._refused("own")
         peer = self._peers.get(session) or _Session(self._cipher_of(session))
         try:
@@ -143,17 +153,18 @@ class Seal:
         if header[1 : 1 + _TAG] != self._tag:
             return self._refused("other_mission")
         self._peers[session] = peer
-        return opened if peer.window.take(int.from_bytes(header[-_COUNTER:], "big")) else self._refused("replayed")
+        first = peer.window.take(int.from_bytes(header[-_COUNTER:], "big"))
+        return (session, opened) if first else self._refused("replayed")
 
-    def _refused(self, why: str) -> bytes | None:
+    def _refused(self, why: str) -> tuple[bytes, bytes] | None:
         self.counts[why] += 1
         return None
 
     def _begin_session(self) -> None:
         self._process, self._counter = os.getpid(), 0
         drawn = secrets.token_bytes(32) + f"{self._process} {self._whose}".encode()
-        self._session = blake2b(drawn, digest_size=_SESSION).digest()
-        self._cipher = self._cipher_of(self._session)
+        self.session = blake2b(drawn, digest_size=SESSION).digest()
+        self._cipher = self._cipher_of(self.session)
 
     def _cipher_of(self, session: bytes) -> ChaCha20Poly1305:
         from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
