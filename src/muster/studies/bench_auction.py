@@ -1,14 +1,14 @@
 """The auction without a centre: part of what `muster bench` measures.
 
 Twenty robots and fifty tasks at random places; each robot is a process of this machine. Measured from when all are
-ready until the last of them is known to agree.
+ready until the last of them is known to agree; and from when three are killed in the middle, until all others are.
 """
 
 from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from random import Random
 
 from muster.allocation.auction import Parameters
@@ -21,6 +21,7 @@ from muster.studies.measurement import Measurement
 from muster.studies.uniform import uniform_mission
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
+VICTIMS, KILLED_IN_ROUND = ("r_0", "r_7", "r_13"), 10
 
 
 def scene(seed: int) -> Problem:
@@ -28,8 +29,10 @@ def scene(seed: int) -> Problem:
     return Problem.compile(uniform_mission(Random(seed), robots=ROBOTS, tasks=TASKS)).ready()
 
 
-def held(problem: Problem, transport: str) -> tuple[float, Counter[str], int]:
+def held(problem: Problem, transport: str, victims: Sequence[str] = ()) -> tuple[float, Counter[str], int]:
     """Seconds to agreement, messages by kind, and bytes that were sent in all.
+
+    With `victims` the seconds are from when these are killed, in the middle of the auction.
 
     Raises
     ------
@@ -41,12 +44,18 @@ def held(problem: Problem, transport: str) -> tuple[float, Counter[str], int]:
     )
     until_s = time.monotonic() + GUARD_S
     with Team(order) as team:
+        killed_s = None
         while team.agreement() is None:
             team.hear(0.02)
+            if killed_s is None and any(news.status.round >= KILLED_IN_ROUND for news in team.news.values()):
+                killed_s = time.monotonic()
+                for robot in victims:
+                    team.kill(robot)
             if time.monotonic() > until_s:
                 raise MusterError(f"no agreement over {transport} within {GUARD_S:g} s")
-        assert team.began_s is not None
-        seconds = time.monotonic() - team.began_s
+        began_s = killed_s if victims else team.began_s
+        assert began_s is not None
+        seconds = time.monotonic() - began_s
         sent, volume = Counter[str](), 0
         for news in team.news.values():
             sent.update(news.status.sent)
@@ -68,6 +77,12 @@ def auction(runs: int) -> list[Measurement]:
         found.append(
             Measurement.over_runs(
                 name, "s", [seconds for seconds, *_ in outcomes], "< 10", f"per task and robot {cost}"
+            )
+        )
+        name = f"the same from when {len(VICTIMS)} were killed in round {KILLED_IN_ROUND}, over {transport}"
+        found.append(
+            Measurement.over_runs(
+                name, "s", [held(scene(seed), transport, VICTIMS)[0] for seed in range(runs)], "< 10", ""
             )
         )
     return found
