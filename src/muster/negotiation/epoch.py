@@ -27,6 +27,8 @@ class Epoch:
         of the mission.
     refused
         tasks for which this member does not bid.
+    stage
+        how far it is.
     """
 
     own: Declaration
@@ -34,21 +36,25 @@ class Epoch:
     valuer: Valuer
     refused: Collection[str] = ()
     base: Base | None = None
-    round: int = 0
-    ended: bool = False
     sales: list[Sold] = field(default_factory=list)
+    stage: Stage = field(init=False)
     _declared: dict[str, Declaration] = field(default_factory=dict)
+    _waits_for: set[str] = field(default_factory=set)  # members that have not declared the same members
     _bids: dict[int, dict[str, RoundBids]] = field(default_factory=dict)
     _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
 
     def __post_init__(self) -> None:
+        self.stage = Stage(self.own.epoch)
         self._declared[self.own.robot] = self.own
+        self._waits_for = set(self.own.members) - {self.own.robot}
 
     @property
-    def stage(self) -> Stage:
-        if self.base is None:
-            return Stage(self.own.epoch)
-        return Stage(self.own.epoch, self.base.digest, self.round, self.ended)
+    def round(self) -> int:
+        return self.stage.round
+
+    @property
+    def ended(self) -> bool:
+        return self.stage.ended
 
     def hear_declaration(self, declaration: Declaration) -> bool:
         """Take in what a member declared; whether that is new."""
@@ -58,6 +64,10 @@ class Epoch:
         if self._declared.get(robot) == declaration:
             return False
         self._declared[robot] = declaration
+        if declaration.members == self.own.members:
+            self._waits_for.discard(robot)
+        elif robot in self.own.members:
+            self._waits_for.add(robot)
         return True
 
     def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
@@ -65,7 +75,7 @@ class Epoch:
         if self.base is None:
             self._early.append((digest, bids))
             return False
-        if digest != self.base.digest or bids.robot not in self.own.members:
+        if digest != self.base.digest or bids.robot not in self.base.routes:
             return False
         heard = self._bids.setdefault(bids.round, {})
         if bids.robot in heard:
@@ -77,16 +87,16 @@ class Epoch:
         """Take in what another member has resolved on the same base; whether that is new."""
         if self.base is None or stage.base != self.base.digest:
             return False
-        if not (self.valuer.told_by_sales or (stage.ended and sales)):
+        if not (sales or stage.ended) or not (self.valuer.told_by_sales or (stage.ended and sales)):
             return False  # it has to go through the rounds itself, or take over all that came of them
         before, known = self.stage, len(self.sales)
         for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
             self._sell(sold)
-            self.round += self.valuer.told_by_sales
+            self._reach(self.round + self.valuer.told_by_sales)
         complete = self.round == stage.round if self.valuer.told_by_sales else sales_from <= known
         if stage.ended and complete and not self.ended:
-            self.round, self.ended = stage.round, True
-        return self.stage != before
+            self._reach(stage.round, ended=True)
+        return self.stage is not before
 
     def advance(self) -> list[RoundBids]:
         """Go on as far as what was heard allows; returns what this member bids for the first time."""
@@ -103,15 +113,14 @@ class Epoch:
             resolution = self.valuer.resolve([heard[robot] for robot in self.own.members])
             for sold in resolution.sales:
                 self._sell(sold)
-            self.ended = resolution.over
-            self.round += bool(resolution.sales) or not resolution.over
+            self._reach(self.round + (bool(resolution.sales) or not resolution.over), ended=resolution.over)
         return published
 
     @property
     def lacks(self) -> tuple[str, ...]:
         """Members for whose declaration, or bids in this round, this one waits."""
         if self.base is None:
-            return tuple(robot for robot in self.own.members if not self._fits(self._declared.get(robot)))
+            return tuple(robot for robot in self.own.members if robot in self._waits_for)
         if self.ended:
             return ()
         heard = self._bids.get(self.round, {})
@@ -152,17 +161,19 @@ class Epoch:
 
     def _begin(self) -> bool:
         """Find the base, if all members have declared the same members."""
-        if self.lacks:
+        if self._waits_for:
             return False
         base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
         self.base = base.keeping(self.valuer.begin(opening_of(base)))
+        self._reach(0)
         for digest, bids in self._early:
             self.hear_bids(digest, bids)
         self._early.clear()
         return True
 
-    def _fits(self, declaration: Declaration | None) -> bool:
-        return declaration is not None and declaration.members == self.own.members
+    def _reach(self, number: int, *, ended: bool = False) -> None:
+        assert self.base is not None
+        self.stage = Stage(self.own.epoch, self.base.digest, number, ended)
 
     def _sell(self, sold: Sold) -> None:
         self.valuer.award(sold)

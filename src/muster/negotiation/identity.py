@@ -33,7 +33,7 @@ class Identity:
     @property
     def superseded(self) -> bool:
         """Whether a later process has this robot's name."""
-        return any(rival > self.incarnation for rival in self.rivals)
+        return bool(self.rivals) and max(self.rivals) > self.incarnation
 
     def is_rival(self, pulse: Pulse) -> bool:
         """Whether what was heard of this name is of another life than this one, and not one long past."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from math import inf
 
 from muster.negotiation.messages import Pulse
 
@@ -61,13 +62,12 @@ class Members:
     def expect(self, robots: Iterable[str], now: float) -> None:
         """Take robots for alive that have not been heard of."""
         for robot in robots:
-            if robot != self.me:
-                self._peers.setdefault(robot, _Peer(heard_s=now))
+            self._peers.setdefault(robot, _Peer(heard_s=inf if robot == self.me else now))
 
     def hear(self, pulse: Pulse, now: float) -> bool:
         """Take in that a robot lived; whether it has started anew since it was heard last."""
         peer = self._peers.get(pulse.robot)
-        if peer is None:  # this robot itself, or a stranger
+        if peer is None or pulse.robot == self.me:
             return False
         if (pulse.incarnation, pulse.number) <= (peer.incarnation, peer.number):
             return False
@@ -99,10 +99,10 @@ class Members:
         if peer is not None and peer.may_return:
             peer.muted_until_s, peer.may_return = 0.0, False
 
-    def present(self, now: float) -> list[str]:
-        """Those that take part, this robot included, in no order."""
+    def present(self, now: float) -> tuple[str, ...]:
+        """Those that take part, this robot included, in the order in which they are expected."""
         since = now - self.patience.suspect_s
-        return [self.me, *(r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now)]
+        return tuple([r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now])
 
     def is_muted(self, robot: str, now: float) -> bool:
         return self._peers[robot].muted_until_s > now

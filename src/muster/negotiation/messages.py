@@ -160,6 +160,11 @@ class Message:
     known: int = 0
 
     @property
+    def pulse(self) -> Pulse:
+        """That its sender lived."""
+        return Pulse(self.sender, self.incarnation, self.number)
+
+    @property
     def is_idle(self) -> bool:
         """Whether it is a beat: it tells nothing new, but that the sender lives, and what it lacks."""
         return bool(self.pulses) and not self.facts

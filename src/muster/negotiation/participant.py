@@ -126,7 +126,7 @@ class Participant:
     def handle(self, message: Message, now: float) -> list[Outgoing]:
         """Take in a message; returns what is to be sent."""
         sender, out = message.sender, list[Outgoing]()
-        if self._is_mine(Pulse(sender, message.incarnation, message.number)) or self.superseded:
+        if self._is_mine(message.pulse) or self.superseded:
             return out
         if sender not in self.rules.robots or message.incarnation < self.members.incarnation(sender):
             return out
@@ -147,7 +147,7 @@ class Participant:
         if self.superseded:
             return out
         self._tell_each("mute", self._waiting.too_long(self.epoch, now))
-        if self._present(now) != self.epoch.own.members or self._is_outdated() or self._has_news():
+        if self.members.present(now) != self.epoch.own.members or self._is_outdated() or self._has_news():
             out += self._enter(self.stage.epoch + 1, now)
         if self._work.fresh or (now >= self._due_s and not out):
             out.append(Outgoing(self._beat(now)))
@@ -169,7 +169,7 @@ class Participant:
 
     def _declaration(self, number: int, claims: Sequence[Claim], rounds: int, now: float) -> Declaration:
         """What the robot says of itself in an epoch, after these claims and so many rounds."""
-        members = self._present(now)
+        members = self.members.present(now)
         return Declaration(
             robot=self.robot,
             incarnation=self.incarnation,
@@ -196,7 +196,7 @@ class Participant:
 
     def _hear(self, message: Message, now: float) -> None:
         """Take in who lives, and what is true for good."""
-        heard = [Pulse(message.sender, message.incarnation, message.number), *message.pulses]
+        heard = [message.pulse, *message.pulses]
         for said in message.declarations:
             heard += map(Pulse, said.members, said.incarnations, (-1,) * len(said.members))
             self._learn(said.facts)
@@ -312,9 +312,6 @@ class Participant:
         """What came of the last round, for those that have missed some of its bids."""
         sales = self.epoch.sales
         return {"sales": (sales[-1],), "sales_from": len(sales) - 1} if sales else {}
-
-    def _present(self, now: float) -> tuple[str, ...]:
-        return tuple(sorted(self.members.present(now), key=lambda robot: self.rules.robots[robot]))
 
     def _tell(self, kind: str, robots: Collection[str]) -> None:
         if robots:

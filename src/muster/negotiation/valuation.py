@@ -160,10 +160,9 @@ class AuctionValuer(TeamValuer):
         return tuple((self.problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
-        heard = _Heard(self._robots, self._tasks, bids)
         if not any(said.bids for said in bids):
             return Resolution(over=True)
-        rule = WINNER_RULES[self.terms.winner](heard)
+        rule = WINNER_RULES[self.terms.winner](_Heard(self._robots, self._tasks, bids))
         rule.note(range(len(self._robots)))
         sale = rule.winner()
         return Resolution(over=True) if sale is None else Resolution((self._sold(sale),))
@@ -187,15 +186,16 @@ class _Heard:
 
     def __init__(self, robots: Mapping[str, int], tasks: Mapping[str, int], bids: Sequence[RoundBids]) -> None:
         self.shape = (len(robots), len(tasks))
-        self._bids = np.full(self.shape, np.inf)
-        for said in bids:
-            for task, bid in said.bids:
-                self._bids[robots[said.robot], tasks[task]] = bid
+        self._bids = {robots[said.robot]: [(bid, tasks[task]) for task, bid in said.bids] for said in bids if said.bids}
 
     def bids(self, robot: int) -> Floats:
-        bids: Floats = self._bids[robot]
+        bids = np.full(self.shape[1], np.inf)
+        for bid, task in self._bids.get(robot, ()):
+            bids[task] = bid
         return bids
 
     def lowest_bids(self) -> tuple[Indices, Floats]:
-        tasks = np.argmin(self._bids, axis=1)
-        return tasks, self._bids[np.arange(len(tasks)), tasks]
+        tasks, lowest = np.zeros(self.shape[0], dtype=np.int64), np.full(self.shape[0], np.inf)
+        for robot, bids in self._bids.items():
+            lowest[robot], tasks[robot] = min(bids)
+        return tasks, lowest
