@@ -33,7 +33,7 @@ from muster.negotiation.forms import (
 )
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
 
-PROTOCOL = 1
+PROTOCOL = 2
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -76,6 +76,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "agreed": many(robot),
         "facts": rows(fact, 5),
         "known": COUNT,
+        "misses": many(robot),
     }
 
 

@@ -7,6 +7,7 @@ declarations and from bids that follow from these, so what one has resolved is w
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
@@ -40,7 +41,7 @@ class Epoch:
     stage: Stage = field(init=False)
     _declared: dict[str, Declaration] = field(default_factory=dict)
     _waits_for: set[str] = field(default_factory=set)  # members that have not declared the same members
-    _bids: dict[int, dict[str, RoundBids]] = field(default_factory=dict)
+    _bids: defaultdict[int, dict[str, RoundBids]] = field(default_factory=lambda: defaultdict(dict))
     _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
 
     def __post_init__(self) -> None:
@@ -57,7 +58,7 @@ class Epoch:
         return self.stage.ended
 
     def hear_declaration(self, declaration: Declaration) -> bool:
-        """Take in what a member declared; whether that is new."""
+        """Take in what a member declared; whether the robot can go on now."""
         robot = declaration.robot
         if self.base is not None or declaration.epoch != self.own.epoch or robot == self.own.robot:
             return False
@@ -68,26 +69,26 @@ class Epoch:
             self._waits_for.discard(robot)
         elif robot in self.own.members:
             self._waits_for.add(robot)
-        return True
+        return not self._waits_for
 
     def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
-        """Take in what a member bid on a base; whether that is new."""
+        """Take in what a member bid on a base; whether the robot can go on now."""
         if self.base is None:
             self._early.append((digest, bids))
             return False
         if digest != self.base.digest or bids.robot not in self.base.routes:
             return False
-        heard = self._bids.setdefault(bids.round, {})
+        heard = self._bids[bids.round]
         if bids.robot in heard:
             return False
         heard[bids.robot] = bids
-        return True
+        return bids.round == self.stage.round and len(heard) == len(self.own.members)
 
     def learn(self, stage: Stage, sales: Sequence[Sold], sales_from: int) -> bool:
-        """Take in what another member has resolved on the same base; whether that is new."""
+        """Take in what another member has resolved on the same base; whether the robot can go on now."""
         if self.base is None or stage.base != self.base.digest:
             return False
-        if not (sales or stage.ended) or not (self.valuer.told_by_sales or (stage.ended and sales)):
+        if not (self.valuer.told_by_sales or (stage.ended and sales)):
             return False  # it has to go through the rounds itself, or take over all that came of them
         before, known = self.stage, len(self.sales)
         for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
@@ -104,7 +105,7 @@ class Epoch:
         if self.base is None and not self._begin():
             return published
         while not self.ended:
-            heard = self._bids.setdefault(self.round, {})
+            heard = self._bids[self.round]
             if self.own.robot not in heard:
                 heard[self.own.robot] = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
                 published.append(heard[self.own.robot])

@@ -19,24 +19,25 @@ class Identity:
         of its last message.
     rivals
         incarnations of others under this robot's name.
+    superseded
+        whether one of them is later: this one is silent, and owns nothing.
     """
 
     robot: str
     incarnation: int
     number: int = 0
     rivals: set[int] = field(default_factory=set)
+    superseded: bool = False
 
     @property
     def pulse(self) -> Pulse:
         return Pulse(self.robot, self.incarnation, self.number)
 
-    @property
-    def superseded(self) -> bool:
-        """Whether a later process has this robot's name."""
-        return bool(self.rivals) and max(self.rivals) > self.incarnation
-
-    def is_rival(self, pulse: Pulse) -> bool:
-        """Whether what was heard of this name is of another life than this one, and not one long past."""
-        number = self.number if pulse.incarnation == self.incarnation else -1
-        later = pulse.incarnation > self.incarnation
-        return later or (pulse.incarnation == self.incarnation and pulse.number > number)
+    def hear(self, pulse: Pulse) -> bool:
+        """Take in what was heard of this name; whether it is new, and of another life that is not long past."""
+        mine = self.incarnation, self.number
+        if (pulse.incarnation, pulse.number) <= mine or pulse.incarnation in self.rivals:
+            return False
+        self.rivals.add(pulse.incarnation)
+        self.superseded |= pulse.incarnation > self.incarnation
+        return True

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import inf
 
-from muster.negotiation.messages import Pulse
+from muster.negotiation.messages import Message, Pulse
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +45,8 @@ class _Peer:
     muted_until_s: float = 0.0
     mutings: int = 0
     may_return: bool = False
+    spoke_s: float = -inf
+    misses: tuple[str, ...] = ()
 
 
 @dataclass
@@ -52,7 +54,9 @@ class Members:
     """The failure detector of one robot.
 
     Every robot of the team is taken for alive at first. Second-hand news count: a pulse with a number above the highest
-    known is proof that its robot was alive when it sent that.
+    known is proof that its robot was alive when it sent that. They are told to those that need them: each robot tells
+    whom it misses, those that it has not heard themselves for half of `suspect_s`, or never; and who hears it passes
+    on what it hears of these. Where all hear each other nobody misses anybody.
     """
 
     me: str
@@ -74,6 +78,16 @@ class Members:
         anew = -1 < peer.incarnation < pulse.incarnation
         peer.incarnation, peer.number, peer.heard_s = pulse.incarnation, pulse.number, now
         return anew
+
+    def hear_from(self, message: Message, now: float) -> bool:
+        """Take in that a robot was heard itself, and whom it misses; False: it is a stranger, or in a life past."""
+        peer = self._peers.get(message.sender)
+        if peer is None or message.incarnation != peer.incarnation:
+            return False
+        peer.spoke_s = now
+        if message.pulses:
+            peer.misses = message.misses
+        return True
 
     def incarnation(self, robot: str) -> int:
         """The last incarnation heard of; -1: none."""
@@ -111,7 +125,18 @@ class Members:
         """For how long nothing was heard of a robot."""
         return now - self._peers[robot].heard_s
 
-    def pulses(self, own: Pulse, of: Sequence[str]) -> tuple[Pulse, ...]:
-        """What this robot knows of others."""
-        known = ((robot, self._peers[robot]) for robot in of if robot in self._peers)
-        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in known if p.number >= 0))
+    def misses(self, now: float) -> tuple[str, ...]:
+        """Others that were not heard themselves for a while, or never."""
+        since = now - self.patience.suspect_s / 2
+        return tuple([r for r, p in self._peers.items() if p.spoke_s <= since and r != self.me])
+
+    def pulses(self, own: Pulse, now: float) -> tuple[Pulse, ...]:
+        """What this robot tells of others: those that it hears of and others miss, and one in turn.
+
+        That one may be told of another process with its name, which it need not hear.
+        """
+        since, robots = now - self.patience.suspect_s, list(self._peers)
+        told = {robots[own.number % len(robots)]}
+        told.update(*(peer.misses for peer in self._peers.values() if peer.misses and peer.spoke_s > since))
+        known = ((robot, self._peers[robot]) for robot in robots if robot in told)
+        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in known if p.number >= 0 and p.heard_s > since))

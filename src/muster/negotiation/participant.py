@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import repeat
 from typing import Any
 
 from muster.negotiation.agreement import Agreement
@@ -125,21 +126,22 @@ class Participant:
 
     def handle(self, message: Message, now: float) -> list[Outgoing]:
         """Take in a message; returns what is to be sent."""
-        sender, out = message.sender, list[Outgoing]()
-        if self._is_mine(message.pulse) or self.superseded:
+        out: list[Outgoing] = []
+        if self._identity.superseded or not self._hear(message, now):
             return out
-        if sender not in self.rules.robots or message.incarnation < self.members.incarnation(sender):
-            return out
-        self._hear(message, now)
-        if message.stage.epoch > self.stage.epoch:
+        number = message.stage.epoch
+        if number > self.epoch.own.epoch:
             self._tell_each("mute", self._waiting.too_long_for(message, self.epoch, now))
-            out += self._enter(message.stage.epoch, now)
-        if message.stage.epoch == self.stage.epoch and self._absorb(message):
+            out += self._enter(number, now)
+        if number == self.epoch.own.epoch and self._absorb(message):
             out += self._go_on(now)
-        if self._is_outdated():
-            out += self._enter(self.stage.epoch + 1, now)
-        self._agreement.hear(message, self.stage)
-        return out + self._answer(message, now)
+        if self._anew and self._is_outdated():
+            out += self._enter(self.epoch.own.epoch + 1, now)
+        self._agreement.hear(message, self.epoch.stage)
+        if (what := self._repairs.answer(message, self.epoch, self._work.known, now)) is not None:
+            self.counts.repairs += 1
+            out.append(Outgoing(self._message(None, **what), message.sender))
+        return out
 
     def tick(self, now: float) -> list[Outgoing]:
         """Let time go by; returns what is to be sent."""
@@ -147,8 +149,9 @@ class Participant:
         if self.superseded:
             return out
         self._tell_each("mute", self._waiting.too_long(self.epoch, now))
-        if self.members.present(now) != self.epoch.own.members or self._is_outdated() or self._has_news():
-            out += self._enter(self.stage.epoch + 1, now)
+        outdated = self._anew and self._is_outdated()
+        if outdated or self.members.present(now) != self.epoch.own.members or self._has_news():
+            out += self._enter(self.epoch.own.epoch + 1, now)
         if self._work.fresh or (now >= self._due_s and not out):
             out.append(Outgoing(self._beat(now)))
         return out
@@ -194,28 +197,31 @@ class Participant:
         self.counts.news += 1
         return [Outgoing(self._message(now, declarations=(own,))), *self._go_on(now)]
 
-    def _hear(self, message: Message, now: float) -> None:
-        """Take in who lives, and what is true for good."""
-        heard = [message.pulse, *message.pulses]
-        for said in message.declarations:
-            heard += map(Pulse, said.members, said.incarnations, (-1,) * len(said.members))
-            self._learn(said.facts)
-        self._learn(message.facts)
-        for pulse in heard:
-            if not self._is_mine(pulse) and self.members.hear(pulse, now):
-                self._anew = True
-                self._tell("anew", [pulse.robot])
-        self._repairs.hear(message)
-
-    def _is_mine(self, pulse: Pulse) -> bool:
-        """Whether this is said of this robot itself; of another life than this one, it is of a rival or long past."""
-        if pulse.robot != self.robot:
+    def _hear(self, message: Message, now: float) -> bool:
+        """Take in who lives, and what is true for good; False: it is said by a stranger, a rival, or in a life past."""
+        self._hear_of(message.pulse, now)
+        if not self.members.hear_from(message, now):
             return False
-        if self._identity.is_rival(pulse):
-            if pulse.incarnation not in self.rivals:
-                self._tell("rival", [self.robot])
-            self.rivals.add(pulse.incarnation)
+        for pulse in message.pulses:
+            self._hear_of(pulse, now)
+        for said in message.declarations:
+            if said != self.epoch.declaration_of(said.robot):
+                for pulse in map(Pulse, said.members, said.incarnations, repeat(-1)):
+                    self._hear_of(pulse, now)
+                self._learn(said.facts)
+        if message.facts:
+            self._learn(message.facts)
+        self._repairs.hear(message)
         return True
+
+    def _hear_of(self, pulse: Pulse, now: float) -> None:
+        """Take in that a robot lived; one of this name may be another."""
+        if pulse.robot == self.robot:
+            if self._identity.hear(pulse):
+                self._tell("rival", [self.robot])
+        elif self.members.hear(pulse, now):
+            self._anew = True
+            self._tell("anew", [pulse.robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
         if any(fact.done for fact in self._work.known.learn(facts)):
@@ -231,7 +237,9 @@ class Participant:
                     self.members.welcome(declaration.robot)
         for bids in message.bids:
             new |= epoch.hear_bids(message.stage.base, bids)
-        return epoch.learn(message.stage, message.sales, message.sales_from) or new
+        if message.sales or message.stage.ended:
+            new |= epoch.learn(message.stage, message.sales, message.sales_from)
+        return new
 
     def _go_on(self, now: float) -> list[Outgoing]:
         """Go on with the auction as far as it goes; returns the bids to be published."""
@@ -259,18 +267,8 @@ class Participant:
         self.happenings += [Happening("dropped", (robot,), task) for robot, task in base.dropped]
         self._tell_twice(base.twice)
 
-    def _answer(self, message: Message, now: float) -> list[Outgoing]:
-        """Send the sender of a message what it lacks, if that is here; not again at once."""
-        what = self._repairs.answer(message, self.epoch, self._work.known, now)
-        if what is None:
-            return []
-        self.counts.repairs += 1
-        return [Outgoing(self._message(None, **what), message.sender)]
-
     def _is_outdated(self) -> bool:
         """Whether a member has started anew since it declared."""
-        if not self._anew:
-            return False
         said = map(self.epoch.declaration_of, self.epoch.own.members)
         return any(d is not None and self.members.incarnation(d.robot) > d.incarnation for d in said)
 
@@ -295,9 +293,15 @@ class Participant:
         self._work.fresh.clear()
         self.counts.news += bool(fresh)
         self.counts.beats += not fresh
-        pulses = self.members.pulses(self._identity.pulse, list(self.rules.robots))
-        known, said = self._work.known.digest, self._repairs.passed_on(self.epoch)
-        return self._message(now, lacks=self.epoch.lacks, pulses=pulses, facts=fresh, known=known, **said)
+        return self._message(
+            now,
+            lacks=self.epoch.lacks,
+            pulses=self.members.pulses(self._identity.pulse, now),
+            misses=self.members.misses(now),
+            facts=fresh,
+            known=self._work.known.digest,
+            **self._repairs.passed_on(self.epoch),
+        )
 
     def _message(self, sent_s: float | None, **said: Any) -> Message:
         """The next message; one that goes to all, at `sent_s`, puts off the next beat."""
