@@ -48,6 +48,14 @@ class _Peer:
     spoke_s: float = -inf
     misses: tuple[str, ...] = ()
 
+    def hear(self, incarnation: int, number: int, now: float) -> bool:
+        """Whether the robot has started anew."""
+        if incarnation < self.incarnation or (incarnation == self.incarnation and number <= self.number):
+            return False
+        anew = -1 < self.incarnation < incarnation
+        self.incarnation, self.number, self.heard_s = incarnation, number, now
+        return anew
+
 
 @dataclass
 class Members:
@@ -71,23 +79,20 @@ class Members:
     def hear(self, pulse: Pulse, now: float) -> bool:
         """Take in that a robot lived; whether it has started anew since it was heard last."""
         peer = self._peers.get(pulse.robot)
-        if peer is None or pulse.robot == self.me:
-            return False
-        if (pulse.incarnation, pulse.number) <= (peer.incarnation, peer.number):
-            return False
-        anew = -1 < peer.incarnation < pulse.incarnation
-        peer.incarnation, peer.number, peer.heard_s = pulse.incarnation, pulse.number, now
-        return anew
+        return peer is not None and pulse.robot != self.me and peer.hear(pulse.incarnation, pulse.number, now)
+
+    def heeds(self, message: Message) -> bool:
+        """Whether a message is to be heard: not a stranger's, and not of a life past."""
+        peer = self._peers.get(message.sender)
+        return peer is not None and peer.incarnation <= message.incarnation
 
     def hear_from(self, message: Message, now: float) -> bool:
-        """Take in that a robot was heard itself, and whom it misses; False: it is a stranger, or in a life past."""
-        peer = self._peers.get(message.sender)
-        if peer is None or message.incarnation != peer.incarnation:
-            return False
+        """Take in that a robot was heard itself, and whom it misses; whether it has started anew."""
+        peer = self._peers[message.sender]
         peer.spoke_s = now
         if message.pulses:
             peer.misses = message.misses
-        return True
+        return peer.hear(message.incarnation, message.number, now)
 
     def incarnation(self, robot: str) -> int:
         """The last incarnation heard of; -1: none."""

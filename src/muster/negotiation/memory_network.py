@@ -147,22 +147,17 @@ class MemoryNetwork:
 
     def _post(self, to: Sequence[str], message: Message) -> None:
         """Send copies; those that arrive at the same time arrive as one."""
-        self.counts["copies"] += len(to)
+        weather, draw = self.weather, self._random.random
         arriving: dict[float, list[str]] = {}
+        lost = 0
         for robot in to:
-            for late_s in self._delays():
-                arriving.setdefault(self.now + late_s, []).append(robot)
-        for when_s, robots in arriving.items():
-            heapq.heappush(self._queue, (when_s, next(self._order), robots, message))
-
-    def _delays(self) -> list[float]:
-        """After how long a copy arrives, and the same copy again; those that are lost are counted."""
-        weather, random = self.weather, self._random
-        copies = 1 + (weather.duplication > 0 and random.random() < weather.duplication)
-        delays = []
-        for _ in range(copies):
-            if weather.loss > 0 and random.random() < weather.loss:
-                self.counts["lost"] += 1
-            else:
-                delays.append(weather.delay_s + (random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0))
-        return delays
+            for _ in range(1 + (weather.duplication > 0 and draw() < weather.duplication)):
+                if weather.loss > 0 and draw() < weather.loss:
+                    lost += 1
+                    continue
+                late_s = weather.delay_s + (self._random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0)
+                arriving.setdefault(late_s, []).append(robot)
+        for late_s, robots in arriving.items():
+            heapq.heappush(self._queue, (self.now + late_s, next(self._order), robots, message))
+        self.counts["copies"] += len(to)
+        self.counts["lost"] += lost

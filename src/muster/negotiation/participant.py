@@ -70,7 +70,7 @@ class Participant:
         self._work = Work.remembered(self.robot, memory)
         self._agreement = Agreement(self.robot)
         self._waiting = Waiting(self.members)
-        self._repairs = Repairs(self.robot, self.patience.retry_s / 2)
+        self._repairs = Repairs(self.robot, self.patience.retry_s)
         self._told: set[tuple[str, tuple[str, ...]]] = set()  # what was done twice, by whom
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
         self._anew = False  # whether a robot has started anew since this epoch was entered
@@ -199,9 +199,11 @@ class Participant:
 
     def _hear(self, message: Message, now: float) -> bool:
         """Take in who lives, and what is true for good; False: it is said by a stranger, a rival, or in a life past."""
-        self._hear_of(message.pulse, now)
-        if not self.members.hear_from(message, now):
+        if message.sender == self.robot or not self.members.heeds(message):
+            self._hear_of(message.pulse, now)
             return False
+        if self.members.hear_from(message, now):
+            self._note_anew(message.sender)
         for pulse in message.pulses:
             self._hear_of(pulse, now)
         for said in message.declarations:
@@ -220,8 +222,11 @@ class Participant:
             if self._identity.hear(pulse):
                 self._tell("rival", [self.robot])
         elif self.members.hear(pulse, now):
-            self._anew = True
-            self._tell("anew", [pulse.robot])
+            self._note_anew(pulse.robot)
+
+    def _note_anew(self, robot: str) -> None:
+        self._anew = True
+        self._tell("anew", [robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
         if any(fact.done for fact in self._work.known.learn(facts)):
@@ -307,8 +312,8 @@ class Participant:
         """The next message; one that goes to all, at `sent_s`, puts off the next beat."""
         self._identity.number += 1
         if sent_s is not None:
-            wait = self.patience.beat_s if self.stage.ended else self.patience.retry_s
-            self._due_s = sent_s + wait
+            asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
+            self._due_s = sent_s + (self.patience.beat_s if self.stage.ended else asks_s)
         agreed = tuple(self._agreement.agreed) if self.stage.ended else ()
         return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
 

@@ -25,6 +25,10 @@ URGENT = 3
 HELPERS = 2
 """Of those that could send what somebody lacks, about so many do; so few words each author sends itself, too."""
 
+CROWD = 20
+"""In a larger team not all that lack something ask at once, so that about so many do in `retry_s`, and for each time
+that it is larger so many more help. Who is helped first goes on, and its next word helps the others."""
+
 Round = tuple[int, int]
 """A round of an epoch; later ones are greater."""
 
@@ -37,12 +41,13 @@ class Repairs:
     ----------
     me
         its id.
-    rest_s
-        nobody is answered twice within so long, seconds, unless it has got on.
+    retry_s
+        who lacks something asks after so long, seconds, in a large team some later; nobody is answered twice within
+        half of it, unless it has got on.
     """
 
     me: str
-    rest_s: float
+    retry_s: float
     _rounds: dict[str, Round] = field(default_factory=dict)  # of those that are heard directly
     _in_round: Counter[Round] = field(default_factory=Counter)  # how many of them are there
     _asked: dict[str, tuple[Stage, tuple[str, ...], int]] = field(default_factory=dict)  # what, and how often
@@ -64,6 +69,11 @@ class Repairs:
         if message.known != known.digest and known.facts and self._helps(message):
             what = {**(what or {}), "facts": known.some(message.number)}
         return what if what is not None and self._may_answer(message, now) else None
+
+    def asks_s(self, number: int, members: int) -> float:
+        """How long after its message of this number the robot asks for what it lacks, in a team of so many."""
+        later = crc32(f"{self.me} {number}".encode()) / 2**32 * max(0.0, members / CROWD - 1)
+        return self.retry_s * (1 + later)
 
     def passed_on(self, epoch: Epoch) -> dict[str, Any]:
         """What robots in need lack and this one knows, with its own last words, as fields of a message."""
@@ -95,7 +105,7 @@ class Repairs:
         """Whether the sender has got on since it was answered last, or that is long ago; if so, it is answered now."""
         to, state = message.sender, (message.stage, message.known)
         last_s, *last = self._answered.get(to, (-1.0, None, 0))
-        if tuple(last) == state and now < last_s + self.rest_s:
+        if tuple(last) == state and now < last_s + self.retry_s / 2:
             return False
         self._answered[to] = now, *state
         return True
@@ -132,4 +142,4 @@ class Repairs:
             return True
         asked = (message.stage.epoch, message.stage.round)
         able = sum(robots for at, robots in self._in_round.items() if at >= asked)  # this one in place of the sender
-        return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS
+        return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS * max(1.0, able / CROWD)
