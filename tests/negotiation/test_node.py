@@ -9,6 +9,7 @@ pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 from tests.negotiation.teams import Team
 
 from muster.mission.clock import VirtualClock
+from muster.negotiation.codec import PROTOCOL
 from muster.negotiation.node import Node
 
 TEAM = Team("auction-2", bid="total")
@@ -100,7 +101,12 @@ def test_messages_are_counted_by_kind_as_they_travel(alone):
 def test_what_is_no_message_is_counted_and_dropped(alone):
     _, transport, node = alone
     node.start()
-    transport.coming = [(0.0, b""), (0.0, b"\x01garbled"), (0.0, b"\x09"), *((0.0, data) for data in said())]
+    transport.coming = [
+        (0.0, b""),
+        (0.0, bytes((PROTOCOL,)) + b"garbled"),
+        (0.0, b"\x09"),
+        *((0.0, data) for data in said()),
+    ]
     node.step(0.1)
     assert node.status().refused == {"garbled": 2, "other_version": 1}
     assert node.status().received == len(said())
