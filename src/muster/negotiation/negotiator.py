@@ -11,13 +11,33 @@ from muster.mission.kinds import shown
 from muster.mission.model import Task
 from muster.negotiation.base import Rules
 from muster.negotiation.happenings import Memory
-from muster.negotiation.messages import Claim
+from muster.negotiation.messages import Claim, Fact
 from muster.negotiation.participant import Participant
 from muster.negotiation.tasks import content_of
 
 
 class Negotiator(Participant):
     """One robot: it takes part, and carries out what it owns. Parameters are those of `Participant`."""
+
+    @property
+    def rivals(self) -> set[int]:
+        """Incarnations of other processes under this robot's name."""
+        return self._identity.rivals
+
+    @property
+    def superseded(self) -> bool:
+        """Whether a later process has this robot's name: this one is silent, and owns nothing."""
+        return self._identity.superseded
+
+    @property
+    def facts(self) -> frozenset[Fact]:
+        """What it knows for good."""
+        return frozenset(self._work.known.facts)
+
+    @property
+    def known(self) -> int:
+        """A digest of `facts`."""
+        return self._work.known.digest
 
     @property
     def route(self) -> tuple[Claim, ...]:

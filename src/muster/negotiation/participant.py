@@ -20,7 +20,7 @@ from typing import Any
 from muster.negotiation.agreement import Agreement
 from muster.negotiation.base import Base, Rules
 from muster.negotiation.epoch import Epoch
-from muster.negotiation.happenings import Counts, Happening, Memory, Outgoing
+from muster.negotiation.happenings import Counts, Diary, Happening, Memory, Outgoing
 from muster.negotiation.identity import Identity
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.members import Members, Patience
@@ -62,7 +62,7 @@ class Participant:
         memory = self.remembered or Memory(knows=not self.forgot)
         self.members = Members(self.robot, self.patience)
         self.counts = Counts()
-        self.happenings: list[Happening] = []
+        self.happenings = Diary()
         self.epochs: list[Epoch] = []  # those of which the base was found
         self.knows = memory.knows
         self._before = memory
@@ -71,7 +71,6 @@ class Participant:
         self._agreement = Agreement(self.robot)
         self._waiting = Waiting(self.members)
         self._repairs = Repairs(self.robot, self.patience.retry_s)
-        self._told: set[tuple[str, tuple[str, ...]]] = set()  # what was done twice, by whom
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
         self._anew = False  # whether a robot has started anew since this epoch was entered
         self._due_s = 0.0
@@ -93,26 +92,6 @@ class Participant:
         return quiet and self._agreement.holds(self.stage, self.epoch.own.members)
 
     @property
-    def rivals(self) -> set[int]:
-        """Incarnations of other processes under this robot's name."""
-        return self._identity.rivals
-
-    @property
-    def superseded(self) -> bool:
-        """Whether a later process has this robot's name: this one is silent, and owns nothing."""
-        return self._identity.superseded
-
-    @property
-    def facts(self) -> frozenset[Fact]:
-        """What it knows for good."""
-        return frozenset(self._work.known.facts)
-
-    @property
-    def known(self) -> int:
-        """A digest of `facts`."""
-        return self._work.known.digest
-
-    @property
     def twice(self) -> Mapping[str, tuple[str, ...]]:
         """Tasks that several have done or begun, with these, as far as this robot knows."""
         base = self.epochs[-1].base if self.epochs else None
@@ -131,7 +110,7 @@ class Participant:
             return out
         number = message.stage.epoch
         if number > self.epoch.own.epoch:
-            self._tell_each("mute", self._waiting.too_long_for(message, self.epoch, now))
+            self.happenings.tell_each("mute", self._waiting.too_long_for(message, self.epoch, now))
             out += self._enter(number, now)
         if number == self.epoch.own.epoch and self._absorb(message):
             out += self._go_on(now)
@@ -146,9 +125,9 @@ class Participant:
     def tick(self, now: float) -> list[Outgoing]:
         """Let time go by; returns what is to be sent."""
         out: list[Outgoing] = []
-        if self.superseded:
+        if self._identity.superseded:
             return out
-        self._tell_each("mute", self._waiting.too_long(self.epoch, now))
+        self.happenings.tell_each("mute", self._waiting.too_long(self.epoch, now))
         outdated = self._anew and self._is_outdated()
         if outdated or self.members.present(now) != self.epoch.own.members or self._has_news():
             out += self._enter(self.epoch.own.epoch + 1, now)
@@ -166,8 +145,8 @@ class Participant:
         """Leave the epoch for another one."""
         before, left = self.epoch.own.members, self.epoch
         own = self._declaration(number, left.route(), left.rounds, now)
-        self._tell("silent", [robot for robot in before if robot not in own.members])
-        self._tell("back", [robot for robot in own.members if robot not in before])
+        self.happenings.tell("silent", [robot for robot in before if robot not in own.members])
+        self.happenings.tell("back", [robot for robot in own.members if robot not in before])
         return self._open(own, now)
 
     def _declaration(self, number: int, claims: Sequence[Claim], rounds: int, now: float) -> Declaration:
@@ -220,17 +199,17 @@ class Participant:
         """Take in that a robot lived; one of this name may be another."""
         if pulse.robot == self.robot:
             if self._identity.hear(pulse):
-                self._tell("rival", [self.robot])
+                self.happenings.tell("rival", [self.robot])
         elif self.members.hear(pulse, now):
             self._note_anew(pulse.robot)
 
     def _note_anew(self, robot: str) -> None:
         self._anew = True
-        self._tell("anew", [robot])
+        self.happenings.tell("anew", [robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
         if any(fact.done for fact in self._work.known.learn(facts)):
-            self._tell_twice(self.twice)
+            self.happenings.tell_twice(self.twice)
 
     def _absorb(self, message: Message) -> bool:
         """Take in what a message of this epoch says; whether anything is new."""
@@ -270,7 +249,7 @@ class Participant:
         self.knows = self.knows or told >= self.rules.majority
         self._work.give_up_lost(base.routes[self.robot])
         self.happenings += [Happening("dropped", (robot,), task) for robot, task in base.dropped]
-        self._tell_twice(base.twice)
+        self.happenings.tell_twice(base.twice)
 
     def _is_outdated(self) -> bool:
         """Whether a member has started anew since it declared."""
@@ -321,16 +300,3 @@ class Participant:
         """What came of the last round, for those that have missed some of its bids."""
         sales = self.epoch.sales
         return {"sales": (sales[-1],), "sales_from": len(sales) - 1} if sales else {}
-
-    def _tell(self, kind: str, robots: Collection[str]) -> None:
-        if robots:
-            self.happenings.append(Happening(kind, tuple(robots)))
-
-    def _tell_each(self, kind: str, robots: Collection[str]) -> None:
-        self.happenings += [Happening(kind, (robot,)) for robot in robots]
-
-    def _tell_twice(self, twice: Mapping[str, tuple[str, ...]]) -> None:
-        for task, robots in twice.items():
-            if (task, robots) not in self._told:
-                self._told.add((task, robots))
-                self.happenings.append(Happening("twice", robots, task))
