@@ -91,20 +91,27 @@ def test_who_is_not_heard_itself_is_missed(members):
 
 def test_what_was_heard_is_passed_on_to_those_that_miss_it(members):
     members.hear_from(beat("b", 7), 0.0)
+    members.hear_from(beat("c", 5), 0.0)
     own = Pulse("a", 1, 3)  # that of robot 3 modulo 3, itself, is the one in turn
     assert members.pulses(own, 0.1) == (own,)
-    members.hear_from(beat("c", 5, "b"), 0.1)
+    members.hear_from(beat("c", 6, "b"), 0.1)
     assert members.pulses(own, 0.2) == (own, Pulse("b", 1, 7))
-    members.hear_from(beat("c", 6), 0.3)
+    members.hear_from(beat("c", 7), 0.3)
     assert members.pulses(own, 0.4) == (own,)
 
 
-def test_what_is_long_past_is_not_passed_on(members):
+def test_who_misses_somebody_tells_all(members):
     members.hear_from(beat("b", 7), 0.0)
-    members.hear_from(beat("c", 5, "b"), 3.9)
+    assert members.misses(0.1) == ("c",)
+    assert members.pulses(Pulse("a", 1, 3), 0.1) == (Pulse("a", 1, 3), Pulse("b", 1, 7))
+
+
+def test_old_news_are_not_passed_on(members):
+    members.hear_from(beat("b", 7), 0.0)
+    members.hear_from(beat("c", 5, "b"), 0.4)
     own = Pulse("a", 1, 3)
-    assert members.pulses(own, 3.9) == (own, Pulse("b", 1, 7))
-    assert members.pulses(own, PATIENCE.suspect_s) == (own,)
+    assert members.pulses(own, 0.4) == (own, Pulse("b", 1, 7))
+    assert members.pulses(own, 0.6) == (own,)
 
 
 def test_every_robot_is_told_of_in_turn(members):

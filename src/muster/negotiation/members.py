@@ -62,9 +62,10 @@ class Members:
     """The failure detector of one robot.
 
     Every robot of the team is taken for alive at first. Second-hand news count: a pulse with a number above the highest
-    known is proof that its robot was alive when it sent that. They are told to those that need them: each robot tells
+    known is proof that its robot was alive when it sent that. They are told where they are needed: each robot tells
     whom it misses, those that it has not heard themselves for half of `suspect_s`, or never; and who hears it passes
-    on what it hears of these. Where all hear each other nobody misses anybody.
+    on what it hears of these. Who misses somebody tells all, as that one may miss those that this one hears. Where all
+    hear each other nobody misses anybody. Only what is new is passed on, else the dead would live on in rumours.
     """
 
     me: str
@@ -136,12 +137,12 @@ class Members:
         return tuple([r for r, p in self._peers.items() if p.spoke_s <= since and r != self.me])
 
     def pulses(self, own: Pulse, now: float) -> tuple[Pulse, ...]:
-        """What this robot tells of others: those that it hears of and others miss, and one in turn.
+        """What this robot tells of others: of all if it misses any, else of those that others miss, and one in turn.
 
         That one may be told of another process with its name, which it need not hear.
         """
-        since, robots = now - self.patience.suspect_s, list(self._peers)
-        told = {robots[own.number % len(robots)]}
+        robots, since = list(self._peers), now - self.patience.suspect_s
+        told = set(robots) if self.misses(now) else {robots[own.number % len(robots)]}
         told.update(*(peer.misses for peer in self._peers.values() if peer.misses and peer.spoke_s > since))
-        known = ((robot, self._peers[robot]) for robot in robots if robot in told)
-        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in known if p.number >= 0 and p.heard_s > since))
+        news = ((r, p) for r, p in self._peers.items() if r in told and now - p.heard_s < self.patience.suspect_s / 8)
+        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in news if p.number >= 0))

@@ -165,7 +165,7 @@ def suspicions(
     """False suspicions in so long of idle beats with second-hand news, and pair-hours; beats come at random times.
 
     The failure detector alone, in arrays: what a robot knows of another is the newest beat that reached it in any way,
-    itself, or told by others to those that miss it.
+    itself, or told by others: by those that miss somebody all, else to those that miss it.
     """
     patience = patience or Patience()
     generator = np.random.default_rng(seed)
@@ -183,11 +183,14 @@ def suspicions(
             now = beat * gap_s + phase[sender]
             heard[sender, sender] = now
             listeners = np.flatnonzero(reached[sender])
-            told = np.flatnonzero(missed[sender].any(axis=0) & (heard[sender] > now - patience.suspect_s))
+            spoke[sender, sender] = now
+            misses = now - spoke[sender] >= patience.suspect_s / 2
+            asked = misses.any() | missed[sender].any(axis=0)
+            told = np.flatnonzero(asked & (now - heard[sender] < patience.suspect_s / 8))
             news = np.ix_(listeners, told)
             heard[news] = np.maximum(heard[news], heard[sender, told])
-            heard[listeners, sender] = spoke[listeners, sender] = spoke[sender, sender] = now
-            missed[listeners, sender] = now - spoke[sender] >= patience.suspect_s / 2
+            heard[listeners, sender] = spoke[listeners, sender] = now
+            missed[listeners, sender] = misses
         silent = (beat + 1) * gap_s - heard > patience.suspect_s
         count += int((silent & ~suspected).sum())
         suspected = silent
