@@ -18,7 +18,7 @@ class Patience:
     beat_s
         at most so long from one message of a robot to its next.
     retry_s
-        the same while it lacks something.
+        the same while it lacks something; in large teams for some longer, see `repairs.CROWD`.
     suspect_s
         a robot of which nothing was heard for so long is taken for lost. This is the lease on what it owns, too: others
         honour that for so long, and every beat renews it.

@@ -293,7 +293,7 @@ class Participant:
         if sent_s is not None:
             asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
             self._due_s = sent_s + (self.patience.beat_s if self.stage.ended else asks_s)
-        agreed = tuple(self._agreement.agreed) if self.stage.ended else ()
+        agreed = tuple(sorted(self._agreement.agreed)) if self.stage.ended else ()
         return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
 
     def _last_sale(self) -> dict[str, Any]:

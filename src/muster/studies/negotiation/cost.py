@@ -57,7 +57,7 @@ class Said:
     Parameters
     ----------
     rounds
-        of the auction.
+        in which all said something: of the auction one a sale.
     news, repairs, beats
         messages of the whole team; one to all counts once.
     bytes
@@ -106,7 +106,7 @@ def hold(talk: Talk) -> Said:
     value = verify(mission, method.plan(problem, params, view_of(node), None)).value()
     assert value is not None
     return Said(
-        rounds=node.epoch.rounds,
+        rounds=node.stage.round,
         news=sum(count.news for count in counts),
         repairs=sum(count.repairs for count in counts),
         beats=sum(count.beats for count in counts),
