@@ -49,4 +49,5 @@ messages = st.builds(
     agreed=several(robots),
     facts=several(facts),
     known=counts,
+    misses=several(robots),
 )

@@ -3,7 +3,7 @@
 import pytest
 
 from muster.negotiation.members import Members, Patience
-from muster.negotiation.messages import Pulse
+from muster.negotiation.messages import Message, Pulse, Stage
 
 PATIENCE = Patience()
 
@@ -77,6 +77,52 @@ def test_who_left_this_robot_out_is_back_when_it_declares_it_again(members):
     assert set(members.present(0.1)) == {"a", "b"}
 
 
-def test_what_is_passed_on_is_what_was_heard(members):
-    members.hear(Pulse("b", 2, 7), 0.0)
-    assert members.pulses(Pulse("a", 1, 3), ["a", "b", "c"]) == (Pulse("a", 1, 3), Pulse("b", 2, 7))
+def beat(sender, number, *misses):
+    return Message(sender, 1, number, Stage(1), pulses=(Pulse(sender, 1, number - 1),), misses=misses)
+
+
+def test_who_is_not_heard_itself_is_missed(members):
+    assert members.misses(0.0) == ("b", "c")
+    members.hear_from(beat("b", 1), 0.0)
+    members.hear(Pulse("c", 1, 1), 0.0)  # second hand
+    assert members.misses(0.1) == ("c",)
+    assert members.misses(PATIENCE.suspect_s / 2) == ("b", "c")
+
+
+def test_what_was_heard_is_passed_on_to_those_that_miss_it(members):
+    members.hear_from(beat("b", 7), 0.0)
+    members.hear_from(beat("c", 5), 0.0)
+    own = Pulse("a", 1, 3)  # that of robot 3 modulo 3, itself, is the one in turn
+    assert members.pulses(own, 0.1) == (own,)
+    members.hear_from(beat("c", 6, "b"), 0.1)
+    assert members.pulses(own, 0.2) == (own, Pulse("b", 1, 7))
+    members.hear_from(beat("c", 7), 0.3)
+    assert members.pulses(own, 0.4) == (own,)
+
+
+def test_who_misses_somebody_tells_all(members):
+    members.hear_from(beat("b", 7), 0.0)
+    assert members.misses(0.1) == ("c",)
+    assert members.pulses(Pulse("a", 1, 3), 0.1) == (Pulse("a", 1, 3), Pulse("b", 1, 7))
+
+
+def test_old_news_are_not_passed_on(members):
+    members.hear_from(beat("b", 7), 0.0)
+    members.hear_from(beat("c", 5, "b"), 0.4)
+    own = Pulse("a", 1, 3)
+    assert members.pulses(own, 0.4) == (own, Pulse("b", 1, 7))
+    assert members.pulses(own, 0.6) == (own,)
+
+
+def test_every_robot_is_told_of_in_turn(members):
+    members.hear_from(beat("b", 7), 0.0)
+    members.hear_from(beat("c", 9), 0.0)
+    told = [members.pulses(Pulse("a", 1, number), 0.1)[1:] for number in range(3)]
+    assert told == [(), (Pulse("b", 1, 7),), (Pulse("c", 1, 9),)]
+
+
+def test_strangers_and_past_lives_are_not_heeded(members):
+    members.hear(Pulse("b", 2, 1), 0.0)
+    assert not members.heeds(beat("x", 1))
+    assert not members.heeds(beat("b", 99))
+    assert members.heeds(beat("c", 1))

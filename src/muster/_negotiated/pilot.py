@@ -149,7 +149,7 @@ class Pilot:
         """The plan of the rest is what the robot owns, but for what it cannot do: that it gives back."""
         robot = self._negotiator.robot
         begun = {claim.task for claim in self._negotiator.route if claim.begun}
-        once = self._negotiator.rules.once
+        once = self._negotiator.once
         for task, robots in rest.refusals.items():
             if robot in robots and task in self._wanted and not (task in begun and task in once):
                 self._negotiator.release(task)

@@ -49,23 +49,16 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     return Book(rounds=view.rounds, messages=None if whole else view.sent, awards=awards, recite=recite)
 
 
-class _Asker(AuctionValuer):
-    """A valuer that asks all robots for their bids, and tells them round by round."""
-
-    def hold_again(self, held: Held, on_sale: OnSale) -> None:
-        self.begin(held.opening)
-        members = [self._robots[robot] for robot in held.members]
-        for number, sold in enumerate(held.sales, held.rounds + 1):
-            self._auctioneer.round = number
-            sale = Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price)
-            on_sale(self._problem, self._auctioneer, sale, members)
-            self.award(sold)
-
-
 def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
-    asker = _Asker(problem, terms, problem.robots[0].id)
+    """Ask all robots for their bids, and tell of them round by round."""
+    valuer = AuctionValuer(problem, terms, problem.robots[0].id)
     for held in auctions:
-        asker.hold_again(held, on_sale)
+        valuer.begin(held.opening)
+        members = [problem.robot_index[robot] for robot in held.members]
+        for number, sold in enumerate(held.sales, held.rounds + 1):
+            valuer.auctioneer.round = number
+            on_sale(valuer.problem, valuer.auctioneer, valuer.sale_of(sold), members)
+            valuer.award(sold)
 
 
 def _awards(

@@ -45,11 +45,11 @@ class BundleValuer(TeamValuer):
 
     def _open(self, routes: Routes, closed: Collection[int]) -> None:
         self._routes = [list(route) for route in routes]
-        clock = ScoreClock(self._problem, self.params.discount)
-        self._bidder = Bidder(self._problem, clock, self._me, self._routes[self._me])
+        clock = ScoreClock(self.problem, self.params.discount)
+        self._bidder = Bidder(self.problem, clock, self._me, self._routes[self._me])
         self.ledger = Ledger()
         self._done = {j for route in self._routes for j in route}.union(closed)
-        self._layers = layers(self._problem, self._done)
+        self._layers = layers(self.problem, self._done)
         self._next_layer()
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
@@ -60,7 +60,7 @@ class BundleValuer(TeamValuer):
             return tuple(self._bid(j) for j in self._bidder.route if mine[j] and j not in self._done)
         if self._phase is _Phase.ASKING:
             more = len(self._offered) and self._bidder.could_take_more(self._beliefs)
-            return ((self._problem.tasks[int(self._offered[0])].id, 0.0),) if more else ()
+            return ((self.problem.tasks[int(self._offered[0])].id, 0.0),) if more else ()
         before = len(self._bidder.bundle)
         self._bidder.build_bundle(self._beliefs, self._limit, self.ledger)
         return tuple(self._bid(j) for j in self._bidder.bundle[before:])
@@ -86,15 +86,15 @@ class BundleValuer(TeamValuer):
         self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])
 
     def route(self, robot: str) -> list[str]:
-        return [self._problem.tasks[j].id for j in self._routes[self._robots[robot]]]
+        return [self.problem.tasks[j].id for j in self._routes[self._robots[robot]]]
 
     def _next_layer(self) -> bool:
         """Offer the tasks of the next layer of which all prerequisites are owned; whether there is one."""
-        m, n = len(self._problem.robots), len(self._problem.tasks)
+        m, n = len(self.problem.robots), len(self.problem.tasks)
         self._beliefs, self._phase = Beliefs(m, n), _Phase.BUILDING
         self._bundles: list[list[int]] = [[] for _ in range(m)]  # of others: its own its bidder has
         layer = self._layers.pop(0) if self._layers else []
-        offered = [j for j in layer if self._done.issuperset(self._problem.prerequisites[j])]
+        offered = [j for j in layer if self._done.issuperset(self.problem.prerequisites[j])]
         self._offered = np.array(offered, dtype=np.int64)
         self._limit = self.params.bundle_size or first_limit(len(offered), m)
         self._bidder.offer(self._offered)
@@ -131,4 +131,4 @@ class BundleValuer(TeamValuer):
         return Resolution(tuple(sold), over=not self._next_layer())
 
     def _bid(self, j: int) -> Bid:
-        return self._problem.tasks[j].id, float(self._beliefs.y[self._me, j])
+        return self.problem.tasks[j].id, float(self._beliefs.y[self._me, j])

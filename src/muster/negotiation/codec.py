@@ -76,6 +76,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "agreed": many(robot),
         "facts": rows(fact, 5),
         "known": COUNT,
+        "misses": many(robot),
     }
 
 

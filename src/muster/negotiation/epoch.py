@@ -7,6 +7,7 @@ declarations and from bids that follow from these, so what one has resolved is w
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
@@ -27,6 +28,8 @@ class Epoch:
         of the mission.
     refused
         tasks for which this member does not bid.
+    stage
+        how far it is.
     """
 
     own: Declaration
@@ -34,47 +37,55 @@ class Epoch:
     valuer: Valuer
     refused: Collection[str] = ()
     base: Base | None = None
-    round: int = 0
-    ended: bool = False
     sales: list[Sold] = field(default_factory=list)
+    stage: Stage = field(init=False)
     _declared: dict[str, Declaration] = field(default_factory=dict)
-    _bids: dict[int, dict[str, RoundBids]] = field(default_factory=dict)
+    _waits_for: set[str] = field(default_factory=set)  # members that have not declared the same members
+    _bids: defaultdict[int, dict[str, RoundBids]] = field(default_factory=lambda: defaultdict(dict))
     _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
 
     def __post_init__(self) -> None:
+        self.stage = Stage(self.own.epoch)
         self._declared[self.own.robot] = self.own
+        self._waits_for = set(self.own.members) - {self.own.robot}
 
     @property
-    def stage(self) -> Stage:
-        if self.base is None:
-            return Stage(self.own.epoch)
-        return Stage(self.own.epoch, self.base.digest, self.round, self.ended)
+    def round(self) -> int:
+        return self.stage.round
+
+    @property
+    def ended(self) -> bool:
+        return self.stage.ended
 
     def hear_declaration(self, declaration: Declaration) -> bool:
-        """Take in what a member declared; whether that is new."""
+        """Take in what a member declared; whether the robot can go on now."""
         robot = declaration.robot
         if self.base is not None or declaration.epoch != self.own.epoch or robot == self.own.robot:
             return False
         if self._declared.get(robot) == declaration:
             return False
         self._declared[robot] = declaration
-        return True
+        if declaration.members == self.own.members:
+            self._waits_for.discard(robot)
+        elif robot in self.own.members:
+            self._waits_for.add(robot)
+        return not self._waits_for
 
     def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
-        """Take in what a member bid on a base; whether that is new."""
+        """Take in what a member bid on a base; whether the robot can go on now."""
         if self.base is None:
             self._early.append((digest, bids))
             return False
-        if digest != self.base.digest or bids.robot not in self.own.members:
+        if digest != self.base.digest or bids.robot not in self.base.routes:
             return False
-        heard = self._bids.setdefault(bids.round, {})
+        heard = self._bids[bids.round]
         if bids.robot in heard:
             return False
         heard[bids.robot] = bids
-        return True
+        return bids.round == self.stage.round and len(heard) == len(self.own.members)
 
     def learn(self, stage: Stage, sales: Sequence[Sold], sales_from: int) -> bool:
-        """Take in what another member has resolved on the same base; whether that is new."""
+        """Take in what another member has resolved on the same base; whether the robot can go on now."""
         if self.base is None or stage.base != self.base.digest:
             return False
         if not (self.valuer.told_by_sales or (stage.ended and sales)):
@@ -82,11 +93,11 @@ class Epoch:
         before, known = self.stage, len(self.sales)
         for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
             self._sell(sold)
-            self.round += self.valuer.told_by_sales
+            self._reach(self.round + self.valuer.told_by_sales)
         complete = self.round == stage.round if self.valuer.told_by_sales else sales_from <= known
         if stage.ended and complete and not self.ended:
-            self.round, self.ended = stage.round, True
-        return self.stage != before
+            self._reach(stage.round, ended=True)
+        return self.stage is not before
 
     def advance(self) -> list[RoundBids]:
         """Go on as far as what was heard allows; returns what this member bids for the first time."""
@@ -94,7 +105,7 @@ class Epoch:
         if self.base is None and not self._begin():
             return published
         while not self.ended:
-            heard = self._bids.setdefault(self.round, {})
+            heard = self._bids[self.round]
             if self.own.robot not in heard:
                 heard[self.own.robot] = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
                 published.append(heard[self.own.robot])
@@ -103,15 +114,14 @@ class Epoch:
             resolution = self.valuer.resolve([heard[robot] for robot in self.own.members])
             for sold in resolution.sales:
                 self._sell(sold)
-            self.ended = resolution.over
-            self.round += bool(resolution.sales) or not resolution.over
+            self._reach(self.round + (bool(resolution.sales) or not resolution.over), ended=resolution.over)
         return published
 
     @property
     def lacks(self) -> tuple[str, ...]:
         """Members for whose declaration, or bids in this round, this one waits."""
         if self.base is None:
-            return tuple(robot for robot in self.own.members if not self._fits(self._declared.get(robot)))
+            return tuple(robot for robot in self.own.members if robot in self._waits_for)
         if self.ended:
             return ()
         heard = self._bids.get(self.round, {})
@@ -152,17 +162,19 @@ class Epoch:
 
     def _begin(self) -> bool:
         """Find the base, if all members have declared the same members."""
-        if self.lacks:
+        if self._waits_for:
             return False
         base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
         self.base = base.keeping(self.valuer.begin(opening_of(base)))
+        self._reach(0)
         for digest, bids in self._early:
             self.hear_bids(digest, bids)
         self._early.clear()
         return True
 
-    def _fits(self, declaration: Declaration | None) -> bool:
-        return declaration is not None and declaration.members == self.own.members
+    def _reach(self, number: int, *, ended: bool = False) -> None:
+        assert self.base is not None
+        self.stage = Stage(self.own.epoch, self.base.digest, number, ended)
 
     def _sell(self, sold: Sold) -> None:
         self.valuer.award(sold)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from muster.negotiation.messages import Claim, Fact, Message
@@ -33,6 +34,24 @@ class Happening:
     kind: str
     robots: tuple[str, ...]
     task: str = ""
+
+
+class Diary(list[Happening]):
+    """What a robot noticed, in order."""
+
+    def tell(self, kind: str, robots: Collection[str]) -> None:
+        """Of these robots, if there are any."""
+        if robots:
+            self.append(Happening(kind, tuple(robots)))
+
+    def tell_each(self, kind: str, robots: Collection[str]) -> None:
+        self.extend(Happening(kind, (robot,)) for robot in robots)
+
+    def tell_twice(self, twice: Mapping[str, tuple[str, ...]]) -> None:
+        """Tasks that several have begun or done, with these; each is told once."""
+        for happening in (Happening("twice", robots, task) for task, robots in twice.items()):
+            if happening not in self:
+                self.append(happening)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
+from math import inf
 
-from muster.negotiation.messages import Pulse
+from muster.negotiation.messages import Message, Pulse
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,7 @@ class Patience:
     beat_s
         at most so long from one message of a robot to its next.
     retry_s
-        the same while it lacks something.
+        the same while it lacks something; in large teams for some longer, see `repairs.CROWD`.
     suspect_s
         a robot of which nothing was heard for so long is taken for lost. This is the lease on what it owns, too: others
         honour that for so long, and every beat renews it.
@@ -45,6 +45,16 @@ class _Peer:
     muted_until_s: float = 0.0
     mutings: int = 0
     may_return: bool = False
+    spoke_s: float = -inf
+    misses: tuple[str, ...] = ()
+
+    def hear(self, incarnation: int, number: int, now: float) -> bool:
+        """Whether the robot has started anew."""
+        if incarnation < self.incarnation or (incarnation == self.incarnation and number <= self.number):
+            return False
+        anew = -1 < self.incarnation < incarnation
+        self.incarnation, self.number, self.heard_s = incarnation, number, now
+        return anew
 
 
 @dataclass
@@ -52,7 +62,10 @@ class Members:
     """The failure detector of one robot.
 
     Every robot of the team is taken for alive at first. Second-hand news count: a pulse with a number above the highest
-    known is proof that its robot was alive when it sent that.
+    known is proof that its robot was alive when it sent that. They are told where they are needed: each robot tells
+    whom it misses, those that it has not heard themselves for half of `suspect_s`, or never; and who hears it passes
+    on what it hears of these. Who misses somebody tells all, as that one may miss those that this one hears. Where all
+    hear each other nobody misses anybody. Only what is new is passed on, else the dead would live on in rumours.
     """
 
     me: str
@@ -62,19 +75,25 @@ class Members:
     def expect(self, robots: Iterable[str], now: float, absent: Collection[str] = ()) -> None:
         """Take robots for alive that have not been heard of; not those of which it is known that they come later."""
         for robot in robots:
-            if robot != self.me:
-                self._peers.setdefault(robot, _Peer(heard_s=-math.inf if robot in absent else now))
+            self._peers.setdefault(robot, _Peer(heard_s=inf if robot == self.me else -inf if robot in absent else now))
 
     def hear(self, pulse: Pulse, now: float) -> bool:
         """Take in that a robot lived; whether it has started anew since it was heard last."""
         peer = self._peers.get(pulse.robot)
-        if peer is None:  # this robot itself, or a stranger
-            return False
-        if (pulse.incarnation, pulse.number) <= (peer.incarnation, peer.number):
-            return False
-        anew = -1 < peer.incarnation < pulse.incarnation
-        peer.incarnation, peer.number, peer.heard_s = pulse.incarnation, pulse.number, now
-        return anew
+        return peer is not None and pulse.robot != self.me and peer.hear(pulse.incarnation, pulse.number, now)
+
+    def heeds(self, message: Message) -> bool:
+        """Whether a message is to be heard: not a stranger's, and not of a life past."""
+        peer = self._peers.get(message.sender)
+        return peer is not None and peer.incarnation <= message.incarnation
+
+    def hear_from(self, message: Message, now: float) -> bool:
+        """Take in that a robot was heard itself, and whom it misses; whether it has started anew."""
+        peer = self._peers[message.sender]
+        peer.spoke_s = now
+        if message.pulses:
+            peer.misses = message.misses
+        return peer.hear(message.incarnation, message.number, now)
 
     def incarnation(self, robot: str) -> int:
         """The last incarnation heard of; -1: none."""
@@ -100,10 +119,10 @@ class Members:
         if peer is not None and peer.may_return:
             peer.muted_until_s, peer.may_return = 0.0, False
 
-    def present(self, now: float) -> list[str]:
-        """Those that take part, this robot included, in no order."""
+    def present(self, now: float) -> tuple[str, ...]:
+        """Those that take part, this robot included, in the order in which they are expected."""
         since = now - self.patience.suspect_s
-        return [self.me, *(r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now)]
+        return tuple([r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now])
 
     def is_muted(self, robot: str, now: float) -> bool:
         return self._peers[robot].muted_until_s > now
@@ -112,7 +131,18 @@ class Members:
         """For how long nothing was heard of a robot."""
         return now - self._peers[robot].heard_s
 
-    def pulses(self, own: Pulse, of: Sequence[str]) -> tuple[Pulse, ...]:
-        """What this robot knows of others."""
-        known = ((robot, self._peers[robot]) for robot in of if robot in self._peers)
-        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in known if p.number >= 0))
+    def misses(self, now: float) -> tuple[str, ...]:
+        """Others that were not heard themselves for a while, or never."""
+        since = now - self.patience.suspect_s / 2
+        return tuple([r for r, p in self._peers.items() if p.spoke_s <= since and r != self.me])
+
+    def pulses(self, own: Pulse, now: float) -> tuple[Pulse, ...]:
+        """What this robot tells of others: of all if it misses any, else of those that others miss, and one in turn.
+
+        That one may be told of another process with its name, which it need not hear.
+        """
+        robots, since = list(self._peers), now - self.patience.suspect_s
+        told = set(robots) if self.misses(now) else {robots[own.number % len(robots)]}
+        told.update(*(peer.misses for peer in self._peers.values() if peer.misses and peer.spoke_s > since))
+        news = ((r, p) for r, p in self._peers.items() if r in told and now - p.heard_s < self.patience.suspect_s / 8)
+        return (own, *(Pulse(r, p.incarnation, p.number) for r, p in news if p.number >= 0))

@@ -69,7 +69,7 @@ class MemoryNetwork:
         self._side: dict[str, int] = {}
         self._order = itertools.count()
         self._next_wake: dict[str, float] = {}
-        self._queue: list[tuple[float, int, str, Message | None]] = []
+        self._queue: list[tuple[float, int, list[str], Message | None]] = []  # what comes, to whom; None: time to tick
         self._born: Counter[str] = Counter()
         self._later: list[tuple[float, int, Callable[[], None]]] = []
 
@@ -108,7 +108,9 @@ class MemoryNetwork:
             if self._later and self._later[0][0] <= upcoming:
                 heapq.heappop(self._later)[2]()
             else:
-                self._deliver(*heapq.heappop(self._queue)[2:])
+                _, _, robots, message = heapq.heappop(self._queue)
+                for robot in robots:
+                    self._deliver(robot, message)
         return True
 
     def _deliver(self, robot: str, message: Message | None) -> None:
@@ -117,37 +119,45 @@ class MemoryNetwork:
             return
         if message is not None:
             self.counts["delivered"] += 1
-            self._send(robot, node.handle(message, self.now))
+            out = node.handle(message, self.now)
         elif self._next_wake.get(robot) == self.now:
-            self._send(robot, node.tick(self.now))
+            out = node.tick(self.now)
             self._wake(robot)
         else:
             return
+        if out:
+            self._send(robot, out)
         self.watch(robot)
 
     def _wake(self, robot: str) -> None:
         self._next_wake[robot] = self.now + TICK_S
-        heapq.heappush(self._queue, (self.now + TICK_S, next(self._order), robot, None))
+        heapq.heappush(self._queue, (self.now + TICK_S, next(self._order), [robot], None))
 
     def _send(self, robot: str, out: list[Outgoing]) -> None:
         for outgoing in out:
             self.counts["sent"] += 1
             self.sent(outgoing.message)
-            for to in self.robots if outgoing.to is None else (outgoing.to,):
-                if to != robot and self._joined(robot, to):
-                    self._post(to, outgoing.message)
+            to = self.robots if outgoing.to is None else (outgoing.to,)
+            self._post([other for other in to if other != robot and self._joined(robot, other)], outgoing.message)
 
     def _joined(self, one: str, other: str) -> bool:
         if self._side and self._side.get(one, -1) != self._side.get(other, -2):
             return False
         return self.links is None or self.links(one, other)
 
-    def _post(self, to: str, message: Message) -> None:
-        weather = self.weather
-        self.counts["copies"] += 1
-        for _ in range(1 + (weather.duplication > 0 and self._random.random() < weather.duplication)):
-            if weather.loss > 0 and self._random.random() < weather.loss:
-                self.counts["lost"] += 1
-                continue
-            late = weather.delay_s + (self._random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0)
-            heapq.heappush(self._queue, (self.now + late, next(self._order), to, message))
+    def _post(self, to: Sequence[str], message: Message) -> None:
+        """Send copies; those that arrive at the same time arrive as one."""
+        weather, draw = self.weather, self._random.random
+        arriving: dict[float, list[str]] = {}
+        lost = 0
+        for robot in to:
+            for _ in range(1 + (weather.duplication > 0 and draw() < weather.duplication)):
+                if weather.loss > 0 and draw() < weather.loss:
+                    lost += 1
+                    continue
+                late_s = weather.delay_s + (self._random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0)
+                arriving.setdefault(late_s, []).append(robot)
+        for late_s, robots in arriving.items():
+            heapq.heappush(self._queue, (self.now + late_s, next(self._order), robots, message))
+        self.counts["copies"] += len(to)
+        self.counts["lost"] += lost

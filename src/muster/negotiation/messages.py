@@ -138,7 +138,9 @@ class Message:
     lacks
         robots whose declaration, or bids in this round, the sender waits for.
     pulses
-        of whom it has heard.
+        of a beat: its own, those of robots that others miss, and that of another one, in turn.
+    misses
+        robots that the sender has not heard for a while, or never, but from others.
     agreed
         members of which it knows that they are at the same stage, which has ended.
     facts, known
@@ -158,6 +160,12 @@ class Message:
     agreed: tuple[str, ...] = ()
     facts: tuple[Fact, ...] = ()
     known: int = 0
+    misses: tuple[str, ...] = ()
+
+    @property
+    def pulse(self) -> Pulse:
+        """That its sender lived."""
+        return Pulse(self.sender, self.incarnation, self.number)
 
     @property
     def is_idle(self) -> bool:

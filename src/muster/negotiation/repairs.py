@@ -9,6 +9,8 @@ not all hear each other.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 from zlib import crc32
@@ -23,6 +25,13 @@ URGENT = 3
 HELPERS = 2
 """Of those that could send what somebody lacks, about so many do; so few words each author sends itself, too."""
 
+CROWD = 20
+"""In a larger team not all that lack something ask at once, so that about so many do in `retry_s`, and for each time
+that it is larger so many more help. Who is helped first goes on, and its next word helps the others."""
+
+Round = tuple[int, int]
+"""A round of an epoch; later ones are greater."""
+
 
 @dataclass
 class Repairs:
@@ -32,37 +41,39 @@ class Repairs:
     ----------
     me
         its id.
-    rest_s
-        nobody is answered twice within so long, seconds, unless it has got on.
+    retry_s
+        who lacks something asks after so long, seconds, in a large team some later; nobody is answered twice within
+        half of it, unless it has got on.
     """
 
     me: str
-    rest_s: float
-    _stages: dict[str, Stage] = field(default_factory=dict)  # of those that are heard directly
+    retry_s: float
+    _rounds: dict[str, Round] = field(default_factory=dict)  # of those that are heard directly
+    _in_round: Counter[Round] = field(default_factory=Counter)  # how many of them are there
     _asked: dict[str, tuple[Stage, tuple[str, ...], int]] = field(default_factory=dict)  # what, and how often
     _answered: dict[str, tuple[float, Stage, int]] = field(default_factory=dict)
 
     def hear(self, message: Message) -> None:
         """Take in how far a robot is, and what it lacks."""
-        self._stages[message.sender] = message.stage
+        stage = message.stage
+        self._note(message.sender, (stage.epoch, stage.round))
         if message.pulses:
-            stage, _, times = self._asked.get(message.sender, (None, (), 0))
-            self._asked[message.sender] = message.stage, message.lacks, times + 1 if stage == message.stage else 1
+            asked, _, times = self._asked.get(message.sender, (None, (), 0))
+            self._asked[message.sender] = stage, message.lacks, times + 1 if asked == stage else 1
 
     def answer(self, message: Message, epoch: Epoch, known: Knowledge, now: float) -> dict[str, Any] | None:
         """What to tell the sender of a message, as fields of one to it; None: nothing."""
         if not message.pulses:  # who has news is not waiting; if it is, its next beat tells so
             return None
-        to, state = message.sender, (message.stage, message.known)
-        last_s, *last = self._answered.get(to, (-1.0, None, 0))
-        if tuple(last) == state and now < last_s + self.rest_s:
-            return None
         what = self._lacking(message, epoch)
-        if message.known != known.digest and known.facts and self._helps(message, None):
+        if message.known != known.digest and known.facts and self._helps(message):
             what = {**(what or {}), "facts": known.some(message.number)}
-        if what is not None:
-            self._answered[to] = now, *state
-        return what
+        return what if what is not None and self._may_answer(message, now) else None
+
+    def asks_s(self, number: int, members: int) -> float:
+        """How long after its message of this number the robot asks for what it lacks, in a team of so many."""
+        later = crc32(f"{self.me} {number}".encode()) / 2**32 * max(0.0, members / CROWD - 1)
+        return self.retry_s * (1 + later)
 
     def passed_on(self, epoch: Epoch) -> dict[str, Any]:
         """What robots in need lack and this one knows, with its own last words, as fields of a message."""
@@ -78,6 +89,27 @@ class Repairs:
             "bids": tuple(b for b in bids if b is not None),
         }
 
+    def _note(self, robot: str, at: Round) -> None:
+        """A robot is in a round."""
+        before = self._rounds.get(robot)
+        if before == at:
+            return
+        self._rounds[robot] = at
+        self._in_round[at] += 1
+        if before is not None:
+            self._in_round[before] -= 1
+            if not self._in_round[before]:
+                del self._in_round[before]
+
+    def _may_answer(self, message: Message, now: float) -> bool:
+        """Whether the sender has got on since it was answered last, or that is long ago; if so, it is answered now."""
+        to, state = message.sender, (message.stage, message.known)
+        last_s, *last = self._answered.get(to, (-1.0, None, 0))
+        if tuple(last) == state and now < last_s + self.retry_s / 2:
+            return False
+        self._answered[to] = now, *state
+        return True
+
     def _lacking(self, message: Message, epoch: Epoch) -> dict[str, Any] | None:
         stage, own = message.stage, epoch.stage
         if stage.epoch < own.epoch:
@@ -92,21 +124,22 @@ class Repairs:
         behind = stage.round < own.round or (own.ended and not stage.ended)
         if behind and (epoch.valuer.told_by_sales or (own.ended and epoch.sales)):
             known = stage.round if epoch.valuer.told_by_sales else 0
-            return {"sales": tuple(epoch.sales[known:]), "sales_from": known} if self._helps(message, None) else None
+            return {"sales": tuple(epoch.sales[known:]), "sales_from": known} if self._helps(message) else None
         if stage.round <= own.round:
             bids = tuple(b for robot in self._lacked(message) if (b := epoch.bids_of(robot, stage.round)) is not None)
             return {"bids": bids} if bids else None
         return None
 
-    def _lacked(self, message: Message) -> list[str]:
-        return [robot for robot in message.lacks if self._helps(message, robot)]
+    def _lacked(self, message: Message) -> Sequence[str]:
+        """Whose words this robot sends, of those that are lacking: its own if there are few, or all."""
+        if message.lacks and self._helps(message):
+            return message.lacks
+        return (self.me,) if len(message.lacks) <= HELPERS and self.me in message.lacks else ()
 
-    def _helps(self, message: Message, whose: str | None) -> bool:
-        """Whether it is this robot that sends what is lacking: to one in need, or its own if little lacks, always."""
-        urgent = self._asked.get(message.sender, (None, (), 0))[2] >= URGENT
-        if urgent or (whose == self.me and len(message.lacks) <= HELPERS):
+    def _helps(self, message: Message) -> bool:
+        """Whether it is this robot that sends what is lacking; to one in need always."""
+        if self._asked.get(message.sender, (None, (), 0))[2] >= URGENT:
             return True
         asked = (message.stage.epoch, message.stage.round)
-        others = (stage for robot, stage in self._stages.items() if robot != message.sender)
-        able = 1 + sum((stage.epoch, stage.round) >= asked for stage in others)
-        return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS
+        able = sum(robots for at, robots in self._in_round.items() if at >= asked)  # this one in place of the sender
+        return crc32(f"{message.sender} {message.number} {self.me}".encode()) % able < HELPERS * max(1.0, able / CROWD)

@@ -94,13 +94,13 @@ class TeamValuer(ABC):
     Parameters
     ----------
     problem
-        the same for all robots.
+        the same for all robots; from `begin` on with the tasks that were added, and what was done.
     robot
         which one this is.
     """
 
     def __init__(self, problem: Problem, robot: str) -> None:
-        self._given = self._whole = self._problem = problem
+        self._given = self._whole = self.problem = problem
         self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
@@ -113,13 +113,13 @@ class TeamValuer(ABC):
             self._added, self._whole = opening.added, with_tasks(self._given, opening.added)
         number = self._whole.task_index
         past, ahead = self._by_index(opening.past, number), self._by_index(opening.ahead, number)
-        self._problem = with_past(self._whole, past) if any(past) else self._whole
-        self._tasks = self._problem.task_index
-        begun = [self._problem.beginning(i) for i in range(len(past))]
-        routes = admissible_part(self._problem, [[*before, *after] for before, after in zip(begun, ahead, strict=True)])
+        self.problem = with_past(self._whole, past) if any(past) else self._whole
+        self._tasks = self.problem.task_index
+        begun = [self.problem.beginning(i) for i in range(len(past))]
+        routes = admissible_part(self.problem, [[*before, *after] for before, after in zip(begun, ahead, strict=True)])
         closed = {number[task] for task in opening.closed}.union(*past)
         self._open(routes, closed)
-        return {robot.id: self.route(robot.id)[len(begun[i]) :] for i, robot in enumerate(self._problem.robots)}
+        return {robot.id: self.route(robot.id)[len(begun[i]) :] for i, robot in enumerate(self.problem.robots)}
 
     @abstractmethod
     def _open(self, routes: Routes, closed: Collection[int]) -> None:
@@ -145,37 +145,40 @@ class AuctionValuer(TeamValuer):
         self.terms = terms
 
     def _open(self, routes: Routes, closed: Collection[int]) -> None:
-        self._auctioneer = Auctioneer(self._problem, self.terms)
-        self._auctioneer.restore(routes, {}, closed)
+        self.auctioneer = Auctioneer(self.problem, self.terms)
+        self.auctioneer.restore(routes, {}, closed)
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
         if not self._tasks:
             return ()
-        bids = self._auctioneer.bids(self._me)
+        bids = self.auctioneer.bids(self._me)
         if refused:
             bids[[j for task, j in self._tasks.items() if task in refused]] = np.inf
         if self.terms.winner == "lowest":
             j = int(np.argmin(bids))
-            return ((self._problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
-        return tuple((self._problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
+            return ((self.problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
+        return tuple((self.problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
-        heard = _Heard(self._robots, self._tasks, bids)
         if not any(said.bids for said in bids):
             return Resolution(over=True)
-        rule = WINNER_RULES[self.terms.winner](heard)
+        rule = WINNER_RULES[self.terms.winner](_Heard(self._robots, self._tasks, bids))
         rule.note(range(len(self._robots)))
         sale = rule.winner()
         return Resolution(over=True) if sale is None else Resolution((self._sold(sale),))
 
     def award(self, sold: Sold) -> None:
-        self._auctioneer.assign(Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price))
+        self.auctioneer.assign(self.sale_of(sold))
 
     def route(self, robot: str) -> list[str]:
-        return [self._problem.tasks[j].id for j in self._auctioneer.routes[self._robots[robot]]]
+        return [self.problem.tasks[j].id for j in self.auctioneer.routes[self._robots[robot]]]
+
+    def sale_of(self, sold: Sold) -> Sale:
+        """The same by index."""
+        return Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price)
 
     def _sold(self, sale: Sale) -> Sold:
-        return Sold(self._problem.robots[sale.robot].id, self._problem.tasks[sale.task].id, sale.price)
+        return Sold(self.problem.robots[sale.robot].id, self.problem.tasks[sale.task].id, sale.price)
 
 
 class _Heard:
@@ -183,15 +186,16 @@ class _Heard:
 
     def __init__(self, robots: Mapping[str, int], tasks: Mapping[str, int], bids: Sequence[RoundBids]) -> None:
         self.shape = (len(robots), len(tasks))
-        self._bids = np.full(self.shape, np.inf)
-        for said in bids:
-            for task, bid in said.bids:
-                self._bids[robots[said.robot], tasks[task]] = bid
+        self._bids = {robots[said.robot]: [(bid, tasks[task]) for task, bid in said.bids] for said in bids if said.bids}
 
     def bids(self, robot: int) -> Floats:
-        bids: Floats = self._bids[robot]
+        bids = np.full(self.shape[1], np.inf)
+        for bid, task in self._bids.get(robot, ()):
+            bids[task] = bid
         return bids
 
     def lowest_bids(self) -> tuple[Indices, Floats]:
-        tasks = np.argmin(self._bids, axis=1)
-        return tasks, self._bids[np.arange(len(tasks)), tasks]
+        tasks, lowest = np.zeros(self.shape[0], dtype=np.int64), np.full(self.shape[0], np.inf)
+        for robot, bids in self._bids.items():
+            lowest[robot], tasks[robot] = min(bids)
+        return tasks, lowest

@@ -157,7 +157,8 @@ def suspicions(
 ) -> tuple[int, float]:
     """False suspicions in so long of idle beats with second-hand news, and pair-hours; beats come at random times.
 
-    The failure detector alone, in arrays: what a robot knows of another is the newest beat that reached it in any way.
+    The failure detector alone, in arrays: what a robot knows of another is the newest beat that reached it in any way,
+    itself, or told by others: by those that miss somebody all, else to those that miss it.
     """
     patience = patience or Patience()
     generator = np.random.default_rng(seed)
@@ -165,6 +166,8 @@ def suspicions(
     phase = generator.uniform(0, gap_s, robots)
     order = np.argsort(phase)
     heard = np.zeros((robots, robots))  # [who, of whom]: when what is known of it was sent
+    spoke = np.zeros((robots, robots))  # when it was heard itself
+    missed = np.zeros((robots, robots, robots), dtype=bool)  # [who, by whom, which], as was told
     suspected = np.zeros((robots, robots), dtype=bool)
     count = 0
     for beat in range(int(hours * 3600 / gap_s)):
@@ -173,7 +176,14 @@ def suspicions(
             now = beat * gap_s + phase[sender]
             heard[sender, sender] = now
             listeners = np.flatnonzero(reached[sender])
-            heard[listeners] = np.maximum(heard[listeners], heard[sender])
+            spoke[sender, sender] = now
+            misses = now - spoke[sender] >= patience.suspect_s / 2
+            asked = misses.any() | missed[sender].any(axis=0)
+            told = np.flatnonzero(asked & (now - heard[sender] < patience.suspect_s / 8))
+            news = np.ix_(listeners, told)
+            heard[news] = np.maximum(heard[news], heard[sender, told])
+            heard[listeners, sender] = spoke[listeners, sender] = now
+            missed[listeners, sender] = misses
         silent = (beat + 1) * gap_s - heard > patience.suspect_s
         count += int((silent & ~suspected).sum())
         suspected = silent

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,15 @@ from muster.studies.negotiation.cost import LOSSES, Cost, Said, Talk, hold
 from muster.studies.repetition import IllustratedRepetition, one_by_one
 from muster.studies.tables import Table
 
-_DO = one_by_one(hold)
+_held = cache(hold)
+
+
+def _hold(talk: Talk) -> Said:
+    """Hold an auction, once for the table and the picture."""
+    return _held(talk)
+
+
+_DO = one_by_one(_hold)
 
 
 def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:

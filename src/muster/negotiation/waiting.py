@@ -1,0 +1,54 @@
+"""Whom a robot leaves out, since it is heard, but keeps the others waiting for too long."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from muster.negotiation.epoch import Epoch
+from muster.negotiation.members import Members
+from muster.negotiation.messages import Message, Stage
+
+
+@dataclass
+class Waiting:
+    """The patience of one robot, which has these members."""
+
+    members: Members
+    _stage: Stage = field(default_factory=lambda: Stage(0))
+    _since_s: float = 0.0
+
+    def enter(self, stage: Stage, now: float) -> None:
+        """The robot goes into an epoch."""
+        self._stage, self._since_s = stage, now
+
+    def reach(self, stage: Stage, now: float) -> None:
+        """The robot is at a stage now."""
+        if stage != self._stage:
+            self.enter(stage, now)
+
+    def too_long(self, epoch: Epoch, now: float) -> list[str]:
+        """Leave out whom the robot has waited for `bid_s`; returns them."""
+        if now - self._since_s < self.members.patience.bid_s:
+            return []
+        self._since_s = now
+        return self._leave_out(epoch.lacks, epoch, now)
+
+    def too_long_for(self, message: Message, epoch: Epoch, now: float) -> list[str]:
+        """Leave out with others whom one of them leaves out, if the robot has waited about as long; returns them."""
+        if now - self._since_s < self.members.patience.bid_s / 2 or not message.declarations:
+            return []
+        waited = sorted(set(epoch.lacks).difference([message.sender]))
+        return self._leave_out(
+            [r for r in waited if all(r not in said.members for said in message.declarations)], epoch, now
+        )
+
+    def _leave_out(self, robots: Iterable[str], epoch: Epoch, now: float) -> list[str]:
+        """Mute those of them that are heard; who is silent is lost anyway, before long."""
+        out = [r for r in robots if r != self.members.me and self._is_heard(r, now)]
+        for robot in out:
+            self.members.mute(robot, now, bids=epoch.base is not None)
+        return out
+
+    def _is_heard(self, robot: str, now: float) -> bool:
+        return self.members.silent_s(robot, now) < self.members.patience.suspect_s / 2
