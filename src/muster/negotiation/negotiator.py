@@ -67,7 +67,7 @@ class Negotiator:
         self.epochs: list[Epoch] = []  # those of which the base was found
         self.knows = memory.knows
         self._before = memory
-        self._work = Work.remembered(self.robot, memory)
+        self._work = Work.remembered(self.robot, self.incarnation, memory)
         self._shown: set[str] = set()  # members that have shown the base of this epoch
         self._told: set[tuple[str, tuple[str, ...]]] = set()  # what was done twice, by whom
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
