@@ -37,8 +37,8 @@ class Fact:
     order
         above that of all facts that the robot knew: what follows from another fact comes after it.
     content
-        of "added": the task, as `tasks.content_of` writes it. Of "begun" and "waived": the incarnation of the robot that
-        was going to begin.
+        of "added": the task, as `tasks.content_of` writes it. Of "begun" and "waived": the incarnation of the robot
+        that was going to begin.
     """
 
     task: str
