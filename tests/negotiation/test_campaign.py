@@ -52,10 +52,12 @@ def test_an_error_is_a_failure(monkeypatch):
 def test_scenes_have_everything():
     scenes = [scene(seed) for seed in range(300)]
     kinds = Counter(kind for one in scenes for kind in {incident.kind for incident in one.incidents})
-    for kind in ("crash", "restart", "forget", "cut", "heal", "announce", "cancel", "release", "withdraw"):
+    kinds_there = ("crash", "restart", "forget", "cut", "deafen", "heal", "announce", "cancel", "release", "withdraw")
+    for kind in kinds_there:
         assert kinds[kind] > 15
     assert 30 < sum(one.links is not None for one in scenes) < 150
-    assert 90 < sum(one.work_s is not None for one in scenes) < 210
+    assert 90 < sum(one.work_s is not None for one in scenes) < 240
+    assert 45 < sum(one.method == "consensus-bundle" for one in scenes) < 105
     assert max(one.weather.loss for one in scenes) > 0.45
     assert max(one.weather.jitter_s for one in scenes) > 2 * min(one.weather.delay_s for one in scenes)
     assert any(one.weather.duplication for one in scenes)

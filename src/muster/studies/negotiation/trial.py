@@ -10,15 +10,18 @@ from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
+from muster.negotiation.epoch import opening_of
 from muster.negotiation.happenings import Memory
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.memory_network import MemoryNetwork
+from muster.negotiation.messages import Bid
+from muster.negotiation.methods import METHODS
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.taking_part import rules_of
 from muster.negotiation.tasks import task_of
-from muster.negotiation.valuation import AuctionValuer
+from muster.studies.negotiation.incidents import Incident
 from muster.studies.negotiation.observer import Observer
-from muster.studies.negotiation.scene import Incident, Scene, scene
+from muster.studies.negotiation.scene import Scene, scene
 from muster.verification import verify
 
 BOUND_S = 60.0
@@ -54,6 +57,7 @@ class Play:
         self.scene = given
         self.problem = Problem.compile(given.mission).ready()
         self.rules = rules_of(self.problem)
+        self.method = METHODS[given.method]
         self.report = Report(given)
         self._memory: dict[str, Memory] = {}
         self._forgot: set[str] = set()
@@ -85,7 +89,7 @@ class Play:
         self.report.counts["runs with links that go one way: agreement is not looked at"] += not groups
         if agreed:
             for group in groups:
-                self.report.failures += self._wrong(group)
+                self.report.failures += self._wrong([self.network.nodes[robot] for robot in group])
         else:
             stages = {name: (node.stage, node.epoch.own.members) for name, node in self.network.nodes.items()}
             self.report.failures.append(f"no agreement: {stages}")
@@ -96,10 +100,10 @@ class Play:
 
     def _negotiator(self, robot: str, incarnation: int) -> Negotiator:
         self.observer.started(robot)
-        return Negotiator(
+        return self.method.negotiator(
+            self.problem,
+            self.scene.terms,
             robot,
-            self.rules,
-            AuctionValuer(self.problem, self.scene.terms, robot),
             incarnation=incarnation,
             remembered=self._memory.pop(robot, None),
             forgot=robot in self._forgot,
@@ -108,10 +112,10 @@ class Play:
     def _happen(self, incident: Incident) -> None:
         kind, robot, nodes = incident.kind, incident.robot, self.network.nodes
         node = nodes.get(robot)
-        if kind == "cut":
-            self.network.cut(*incident.groups)
-        elif kind == "heal":
+        if kind in ("cut", "deafen", "heal"):
             self.network.heal()
+            self.network.cut(*incident.groups)
+            self.network.deafen(incident.links)
         elif kind in ("start", "restart", "forget"):
             self._start(robot, forgets=kind == "forget")
         elif node is None:
@@ -196,11 +200,16 @@ class Play:
             all(node.settled for node in nodes)
             and set(first.epoch.own.members) == set(group)
             and all(node.stage == first.stage and node.known == first.known for node in nodes)
+            and not any(self._could_be_told(node, nodes) for node in nodes)
         )
 
-    def _wrong(self, group: Sequence[str]) -> Iterator[str]:
+    def _could_be_told(self, node: Negotiator, nodes: Sequence[Negotiator]) -> bool:
+        """Whether a robot that has forgotten what it said could know it again from a majority of others."""
+        others = sum(other.knows for other in nodes if other is not node)
+        return not node.knows and others > len(self.rules.robots) // 2
+
+    def _wrong(self, nodes: Sequence[Negotiator]) -> Iterator[str]:
         """What is wrong with robots that agree."""
-        nodes = [self.network.nodes[robot] for robot in group]
         owners: dict[str, list[str]] = {}
         for node in nodes:
             for claim in node.route:
@@ -209,12 +218,33 @@ class Play:
             if len(robots) > 1 and not all(robot in self.observer.begun.get(task, ()) for robot in robots):
                 yield f"{task} is owned by {robots}"
         for node in nodes:
-            if bids := node.valuer.bids(node.epoch.refused):
+            if bids := self._could_add(node, nodes):
                 yield f"{node.robot} could add {bids}"
         routes = [{robot: node.valuer.route(robot) for robot in self.rules.robots} for node in nodes]
         if any(other != routes[0] for other in routes):
             yield f"views differ: {routes}"
         yield from self._judged(nodes[0], routes[0])
+
+    def _could_add(self, node: Negotiator, nodes: Sequence[Negotiator]) -> tuple[Bid, ...]:
+        """What a robot would bid if the auction began again, with all for sale that has to be."""
+        base = node.epoch.base
+        assert base is not None
+        begun = opening_of(base)
+        past = {task for tasks in begun.past.values() for task in tasks}
+        ahead = {robot: [t for t in node.valuer.route(robot) if t not in past] for robot in self.rules.robots}
+        asked = self.method.negotiator(self.problem, self.scene.terms, node.robot, incarnation=1).valuer
+        closed = self._closed(node, nodes).intersection(self.rules.with_added(base.added).tasks)
+        asked.begin(replace(begun, ahead=ahead, closed=closed))
+        return asked.bids(node.epoch.refused)
+
+    def _closed(self, node: Negotiator, nodes: Sequence[Negotiator]) -> set[str]:
+        """Tasks that nobody need own: done, cancelled, perhaps begun for good, or once and too few here that know."""
+        facts = node.facts
+        waived = {(fact.task, fact.robot, fact.content) for fact in facts if fact.kind == "waived"}
+        over = {fact.task for fact in facts if fact.kind in ("done", "cancelled")}
+        begun = {f.task for f in facts if f.kind == "begun" and (f.task, f.robot, f.content) not in waived}
+        few = sum(node.knows for node in nodes) <= len(self.rules.robots) // 2
+        return over | begun | (self.observer.once if few else set())
 
     def _judged(self, node: Negotiator, routes: dict[str, list[str]]) -> Iterator[str]:
         """What the judge says of the plan; what has happened may be: robots that forgot, or were alone, did it."""
