@@ -98,7 +98,9 @@ def test_a_task_that_waits_for_a_cancelled_one_is_nobodys():
 
 def test_what_was_begun_before_its_turn_is_not_offered_again():
     first, second = (Task(id=name, position=(1.0, 0.0)) for name in "ab")
-    mission = Mission(robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=(first, replace(second, prerequisites=("a",))))
+    mission = Mission(
+        robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=(first, replace(second, prerequisites=("a",)))
+    )
     assert layers(Problem.compile(mission).ready(), {1}) == [[0]]
 
 
