@@ -3,6 +3,7 @@
 from collections import Counter
 
 import pytest
+from tests.negotiation.campaign.mutants import plant
 from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
 
@@ -47,6 +48,23 @@ def test_a_task_begun_twice_is_seen():
 def test_an_error_is_a_failure(monkeypatch):
     monkeypatch.setattr(Negotiator, "handle", lambda node, message, now: 1 / 0)
     assert "ZeroDivisionError" in trial(0)[1][0]
+
+
+PLANTED = {  # from which seed on a few runs find the fault, and what it is: module, right, wrong
+    "half of the team is enough": (0, "base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
+    "nobody need know what is begun": (25, "work", "said and sum(declared.knows for declared in tell)", "said and 99"),
+    "who begins need not have said so": (0, "work", "return said and sum", "return sum"),
+    "who has forgotten counts": (90, "negotiator", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
+    "what is waived stays closed": (65, "knowledge", 'fact.kind == "waived"}', 'fact.kind == ""}'),
+}
+
+
+@pytest.mark.parametrize("fault", PLANTED)
+def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
+    """A test of the campaign; where other scenes take the place of these, other seeds will do."""
+    first, *where = PLANTED[fault]
+    plant(monkeypatch, *where)
+    assert any(trial(seed)[1] for seed in range(first, first + 30))
 
 
 def test_scenes_have_everything():

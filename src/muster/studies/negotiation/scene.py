@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import permutations
 from random import Random
 from typing import Any
@@ -12,6 +12,7 @@ from muster.allocation import consensus_bundle
 from muster.allocation.auction import Parameters
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
+from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import Weather
 from muster.studies.negotiation.incidents import Incident, Links, incidents
 from muster.studies.negotiation.missions import random_mission
@@ -36,6 +37,10 @@ class Scene:
         None: everybody hears everybody.
     work_s
         how long robots take for a task; None: they only agree.
+    zeal
+        the chance that who has nothing to do tries one of its tasks in the next tenth of a second.
+    patience
+        of the robots.
     incidents
         in no order.
     quiet_s
@@ -51,10 +56,8 @@ class Scene:
     work_s: float | None
     incidents: tuple[Incident, ...]
     quiet_s: float
-
-    @property
-    def forgets(self) -> bool:
-        return any(incident.kind == "forget" for incident in self.incidents)
+    zeal: float = 1.0
+    patience: Patience = field(default_factory=Patience)
 
     def described(self) -> Iterator[str]:
         """Lines for people."""
@@ -63,6 +66,7 @@ class Scene:
         mission = self.mission
         yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; {self.method}, {terms}"
         yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s"
+        yield f"taken for lost after {self.patience.suspect_s:g} s; zeal {self.zeal:g}"
         yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
         if self.links is not None:
             yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
@@ -100,19 +104,25 @@ def _troubled(seed: int, random: Random) -> Scene:
 
 def _besieged(seed: int, random: Random) -> Scene:
     """A small team that carries out tasks, most of which nobody may begin twice, while cuts move."""
-    mission = random_mission(
-        random, robots=random.choice((2, 3, 3, 4, 5)), tasks=random.randint(3, 10), once=random.choice((0.6, 1.0))
-    )
-    quiet_s = random.uniform(15, 50)
+    robots, tasks = random.choice((2, 3, 3, 3, 4, 5)), random.randint(1, 9)
+    once, free = random.choice((0.6, 1.0, 1.0)), random.random() < 0.8
+    mission = random_mission(random, robots=robots, tasks=tasks, once=once, free=free)
+    names, weather, patience = [robot.id for robot in mission.robots], _weather(random), Patience()
+    if random.random() < 0.7:  # who soon loses patience can be lost more often, but must hear most beats
+        patience = Patience(suspect_s=1.2, bid_s=1.8, mute_s=1.5)
+        weather = Weather(loss=0.3 * weather.loss, delay_s=0.3 * weather.delay_s, jitter_s=0.1 * weather.jitter_s)
+    quiet_s = patience.suspect_s * random.uniform(5, 20)
     return Scene(
         seed,
         mission,
         *_terms(random),
-        weather=_weather(random),
+        weather=weather,
         links=None,
-        work_s=random.choice((random.uniform(0.3, 2.0), random.uniform(2.0, 10.0))),
-        incidents=tuple(siege(mission, [robot.id for robot in mission.robots], quiet_s, random)),
+        work_s=patience.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
+        incidents=tuple(siege(mission, names, quiet_s, patience.suspect_s, random)),
         quiet_s=quiet_s,
+        zeal=random.choice((0.1, 0.3, 0.6)),
+        patience=patience,
     )
 
 
@@ -134,13 +144,14 @@ def _weather(random: Random) -> Weather:
 
 
 def _links(names: Sequence[str], random: Random) -> Links:
-    """A random tree with some more links; sometimes these go one way."""
-    links, both_ways = set[tuple[str, str]](), random.random() < 0.8
+    """A random tree with some more links; sometimes these go one way, and sometimes some of the tree do, too."""
+    links, one_way, broken = set[tuple[str, str]](), random.random() < 0.3, random.choice((0.0, 0.2))
     for k in range(1, len(names)):
-        links |= _link(names[k], names[random.randrange(k)])
+        a, b = names[k], names[random.randrange(k)]
+        links |= _link(a, b) if not one_way or random.random() >= broken else {random.choice(((a, b), (b, a)))}
     for a, b in permutations(names, 2):
         if random.random() < 0.1:
-            links |= _link(a, b) if both_ways else {(a, b)}
+            links |= {(a, b)} if one_way else _link(a, b)
     return frozenset(links)
 
 

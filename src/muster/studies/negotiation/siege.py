@@ -13,56 +13,93 @@ from muster.mission.model import Mission
 from muster.studies.negotiation.incidents import Incident, Links, orders
 from muster.studies.negotiation.missions import random_task
 
-
-def siege(mission: Mission, names: Sequence[str], until_s: float, random: Random) -> Iterator[Incident]:
-    """What happens to a team under siege."""
-    return (incident for incident in _waves(mission, names, until_s, random) if incident.at_s < until_s)
+_MOVING = ("next majority",) * 3 + ("ambush",)
+_MIXED = ("next majority", "any cut", "deafen", "deafen", "heal", "ambush")
 
 
-def _waves(mission: Mission, names: Sequence[str], until_s: float, random: Random) -> Iterator[Incident]:
-    for robot in names:
-        yield Incident(random.choice((0.0, 0.0, 0.0, random.uniform(0, until_s))), "start", robot)
-    yield from orders(mission, names, until_s, random)
-    group, now, wave = list(names), random.uniform(0, 6), 0
-    while now < until_s:
-        lasts_s = random.choice((random.uniform(0.05, 2), random.uniform(4, 9), random.uniform(4, 9)))
-        kind = random.choice(("next majority",) * 5 + ("any cut", "deafen", "deafen", "heal"))
-        if kind == "next majority":
-            bridge = random.choice(group)
-            group = _majority_with(bridge, group, names, random)
-            yield Incident(now, "cut", groups=(tuple(group), *_apart([r for r in names if r not in group], random)))
-            yield from _struck(bridge, now, lasts_s, random)
-        elif kind == "any cut":
-            yield Incident(now, "cut", groups=_apart(names, random))
-        elif kind == "deafen":
-            yield Incident(now, "deafen", links=_one_way(names, random))
-        else:
-            yield Incident(now, "heal")
-        if random.random() < 0.3:
-            task = random_task(random, f"w{wave}", before=[], skilled=False, once=True)
-            yield Incident(random.uniform(now, now + lasts_s), "announce", random.choice(names), task=task)
-        if random.random() < 0.2:
-            yield Incident(random.uniform(now, now + lasts_s), "release", random.choice(names))
-        now, wave = now + lasts_s, wave + 1
+def siege(
+    mission: Mission, names: Sequence[str], until_s: float, suspect_s: float, random: Random
+) -> Iterator[Incident]:
+    """What happens to a team whose robots take for lost of whom they have heard nothing for `suspect_s`."""
+    late_s = random.choice((0.0, 0.0, until_s))
+    starts = [Incident(random.choice((0.0, 0.0, random.uniform(0, late_s))), "start", robot) for robot in names]
+    usual = orders(mission, names, until_s, random) if random.random() < 0.3 else ()
+    waves = _Waves(names, suspect_s, random).until(until_s)
+    return (incident for incident in (*starts, *usual, *waves) if incident.at_s < until_s)
+
+
+class _Waves:
+    """Cuts, one after the other."""
+
+    def __init__(self, names: Sequence[str], suspect_s: float, random: Random) -> None:
+        self._names, self._suspect_s, self._random = names, suspect_s, random
+        self._danger = random.choice((0.0, 0.3, 0.6))
+        self._group = list(names)
+        self._now = random.uniform(0, suspect_s)
+        self._tasks = 0
+
+    def until(self, until_s: float) -> Iterator[Incident]:
+        random, kinds = self._random, self._random.choice((_MOVING, _MIXED))
+        while self._now < until_s:
+            kind = random.choice(kinds)
+            if kind == "ambush":
+                yield from self._ambush()
+            elif kind == "next majority":
+                yield from self._next_majority(self._danger)
+            elif kind == "any cut":
+                yield Incident(self._now, "cut", groups=_apart(self._names, random))
+            elif kind == "deafen":
+                yield Incident(self._now, "deafen", links=_one_way(self._names, random))
+            else:
+                yield Incident(self._now, "heal")
+            if random.random() < 0.5:
+                yield self._task()
+            if random.random() < 0.2:
+                yield Incident(self._now, "release", random.choice(self._names))
+            self._now += self._suspect_s * random.choice((random.uniform(0, 0.5), *[random.uniform(1.2, 4)] * 3))
+
+    def _ambush(self) -> Iterator[Incident]:
+        """All own something; some are cut off, and the others begin it; who comes over from them has forgotten that."""
+        yield Incident(self._now, "heal")
+        yield from (self._task() for _ in range(len(self._names) + 1))
+        self._now += self._suspect_s * self._random.uniform(0.3, 1)
+        self._group = list(self._names)
+        yield from self._next_majority(0.0)
+        self._now += self._suspect_s * self._random.uniform(1.5, 3.5)
+        yield from self._next_majority(0.8)
+        self._now += self._suspect_s * self._random.uniform(1, 3)
+
+    def _next_majority(self, danger: float) -> Iterator[Incident]:
+        bridge = self._random.choice(self._group)
+        self._group = _majority_with(bridge, self._group, self._names, self._random)
+        others = [robot for robot in self._names if robot not in self._group]
+        yield Incident(self._now, "cut", groups=(tuple(self._group), *_apart(others, self._random)))
+        if self._random.random() < danger:
+            yield from _struck(bridge, self._now, self._random)
+
+    def _task(self) -> Incident:
+        """A new one."""
+        self._tasks += 1
+        task = random_task(self._random, f"w{self._tasks}", before=[], skilled=False, once=True)
+        return Incident(self._now, "announce", self._random.choice(self._names), task=task)
 
 
 def _majority_with(bridge: str, before: Sequence[str], names: Sequence[str], random: Random) -> list[str]:
-    """A majority that has few robots but this one in common with the one before."""
+    """A majority, or half of them, that has few robots but this one in common with the one before."""
     fresh = [robot for robot in names if robot not in before]
     others = [robot for robot in before if robot != bridge]
     random.shuffle(fresh)
     random.shuffle(others)
-    return [bridge, *fresh, *others][: len(names) // 2 + 1]
+    return [bridge, *fresh, *others][: (len(names) + 1) // 2 + random.choice((0, 1 - len(names) % 2))]
 
 
-def _struck(robot: str, now: float, within_s: float, random: Random) -> Iterator[Incident]:
-    """Sometimes the robot in common crashes, before or after it was cut off, and starts again or not."""
-    if random.random() < 0.5:
-        return
-    crash = max(0.0, now + random.uniform(-1, within_s))
-    yield Incident(crash, "crash", robot)
-    if random.random() < 0.8:
-        yield Incident(crash + random.uniform(0.05, 5), random.choice(("restart", "forget")), robot)
+def _struck(robot: str, now: float, random: Random) -> Iterator[Incident]:
+    """The robot in common crashes, mostly before it comes to the others, and starts again there; or not at all."""
+    crash_s = now + random.choice((random.uniform(-1, 0), random.uniform(-1, 0), random.uniform(0, 4)))
+    yield Incident(max(0.0, crash_s), "crash", robot)
+    if random.random() < 0.9:
+        again_s = max(now, crash_s) + random.choice((random.uniform(0.05, 0.5), random.uniform(0.05, 5)))
+        yield Incident(again_s, random.choice(("restart", "forget", "forget", "forget")), robot)
 
 
 def _apart(names: Sequence[str], random: Random) -> tuple[tuple[str, ...], ...]:
