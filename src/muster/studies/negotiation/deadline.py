@@ -4,7 +4,7 @@ A robot that crashed at the last moment is missed after `suspect_s`; half as lon
 last. Who was left out is back after at most eight times `mute_s`. Then all rounds are held, with declarations before
 and agreement behind. A word takes as long as its way, and where it is lost until it is asked for again; it is said
 1 / (1 - loss) times on the average, and twice that is allowed for each round and hop. Loss has no upper bound, so
-agreement has none either: that runs keep to this was found by measuring; of 6,000 all but one needed at most 0.80 of it.
+agreement has none either: that runs keep to this was measured: of 6,000 all but one needed at most 0.80 of it.
 """
 
 from __future__ import annotations
