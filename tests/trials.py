@@ -20,7 +20,7 @@ class Report:
     seed: int
     failures: list[str] = field(default_factory=list)
     counts: Counter = field(default_factory=Counter)
-    figures: list[float] = field(default_factory=list)
+    figures: list = field(default_factory=list)
     story: list[str] = field(default_factory=list)
 
     def check(self, holds, what):

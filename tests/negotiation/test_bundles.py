@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 import muster
-from muster import ParameterError
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE, Parameters
+from muster import Mission, ParameterError, Robot, Task
+from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE, Parameters, layers
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.memory_network import MemoryNetwork, Weather
@@ -80,6 +80,28 @@ def test_over_a_line_of_robots_words_are_passed_on():
     central = CONSENSUS_BUNDLE.solve(problem, Stop())
     plan = plan_of_bundles(problem, Parameters(), view_of(next(iter(network.nodes.values()))))
     assert plan.routes == central.routes
+
+
+def test_a_task_that_waits_for_a_cancelled_one_is_nobodys():
+    first, second = (Task(id=name, position=(1.0, 0.0)) for name in "ab")
+    robots = tuple(Robot(id=name, position=(0.0, 0.0)) for name in ("r_0", "r_1"))
+    mission = Mission(robots=robots, tasks=(first, replace(second, prerequisites=("a",))))
+    network = network_of(Problem.compile(mission).ready())
+    network.start()
+    assert agreed(network)
+    assert sum(len(node.route) for node in network.nodes.values()) == 2
+    network.nodes["r_0"].cancel("a")
+    network.run(network.now + 1.0)
+    assert agreed(network)
+    assert [node.route for node in network.nodes.values()] == [(), ()]
+
+
+def test_what_was_begun_before_its_turn_is_not_offered_again():
+    first, second = (Task(id=name, position=(1.0, 0.0)) for name in "ab")
+    mission = Mission(
+        robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=(first, replace(second, prerequisites=("a",)))
+    )
+    assert layers(Problem.compile(mission).ready(), {1}) == [[0]]
 
 
 def test_the_method_has_its_own_parameters():

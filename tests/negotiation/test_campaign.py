@@ -3,6 +3,7 @@
 from collections import Counter
 
 import pytest
+from tests.negotiation.campaign.mutants import plant
 from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
 
@@ -49,13 +50,32 @@ def test_an_error_is_a_failure(monkeypatch):
     assert "ZeroDivisionError" in trial(0).failures[0]
 
 
+PLANTED = {  # from which seed on a few runs find the fault, and what it is: module, right, wrong
+    "half of the team is enough": (0, "base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
+    "nobody need know what is begun": (25, "work", "said and sum(declared.knows for declared in tell)", "said and 99"),
+    "who begins need not have said so": (0, "work", "return said and sum", "return sum"),
+    "who has forgotten counts": (90, "participant", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
+    "what is waived stays closed": (65, "knowledge", 'fact.kind == "waived"}', 'fact.kind == ""}'),
+}
+
+
+@pytest.mark.parametrize("fault", PLANTED)
+def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
+    """A test of the campaign; where other scenes take the place of these, other seeds will do."""
+    first, *where = PLANTED[fault]
+    plant(monkeypatch, *where)
+    assert any(trial(seed).failures for seed in range(first, first + 30))
+
+
 def test_scenes_have_everything():
     scenes = [scene(seed) for seed in range(300)]
     kinds = Counter(kind for one in scenes for kind in {incident.kind for incident in one.incidents})
-    for kind in ("crash", "restart", "forget", "cut", "heal", "announce", "cancel", "release", "withdraw"):
+    kinds_there = ("crash", "restart", "forget", "cut", "deafen", "heal", "announce", "cancel", "release", "withdraw")
+    for kind in kinds_there:
         assert kinds[kind] > 15
     assert 30 < sum(one.links is not None for one in scenes) < 150
-    assert 90 < sum(one.work_s is not None for one in scenes) < 210
+    assert 90 < sum(one.work_s is not None for one in scenes) < 240
+    assert 45 < sum(one.method == "consensus-bundle" for one in scenes) < 105
     assert max(one.weather.loss for one in scenes) > 0.45
     assert max(one.weather.jitter_s for one in scenes) > 2 * min(one.weather.delay_s for one in scenes)
     assert any(one.weather.duplication for one in scenes)

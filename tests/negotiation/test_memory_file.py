@@ -21,7 +21,7 @@ memories = st.builds(
     epoch=st.integers(0, 2**40),
     knows=st.booleans(),
     refused=st.frozensets(names),
-    reserved=st.frozensets(names),
+    reserved=st.lists(facts, max_size=3).map(tuple),
 )
 
 

@@ -375,6 +375,23 @@ class TestAtMostOnce:
         assert net.run(net.now + 2.0, lambda: net.nodes["r_4"].knows)
         assert net.nodes["r_4"].facts == net.nodes["r_0"].facts
 
+    def test_what_was_given_back_in_a_life_that_is_forgotten_may_be_begun_in_the_next_and_is_not_sold_then(self):
+        net = settled_team(line_mission(robots=3, once=self.ONCE))
+        assert not net.nodes["r_0"].begin("0")
+        net.run(net.now + 1.0)
+        net.nodes["r_0"].release("0")
+        agree(net)
+        net.crash("r_0")
+        net.start(["r_0"])
+        agree(net)
+        assert owners(net)["0"] == ["r_1"]
+        net.nodes["r_1"].release("0")
+        agree(net)
+        assert begin_once(net, "r_0", "0")
+        cut_off(net, ["r_0"], ["r_1", "r_2"])
+        assert not begin_once(net, "r_2", "0")
+        assert owners(net)["0"] == ["r_0"]
+
     def test_it_is_not_given_back_once_begun(self):
         net = settled_team(line_mission(robots=1, once=self.ONCE))
         assert begin_once(net, "r_0", "0")

@@ -143,7 +143,7 @@ def layers(problem: Problem, done: set[int]) -> list[list[int]]:
         for j in layer:
             for dependant in problem.dependants[j]:
                 left[dependant] -= 1
-                if left[dependant] == 0:
+                if left[dependant] == 0 and dependant not in done:
                     following.append(dependant)
         layer = sorted(following)
     return result

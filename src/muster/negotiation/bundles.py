@@ -48,7 +48,8 @@ class BundleValuer(TeamValuer):
         clock = ScoreClock(self.problem, self.params.discount)
         self._bidder = Bidder(self.problem, clock, self._me, self._routes[self._me])
         self.ledger = Ledger()
-        self._done = {j for route in self._routes for j in route}.union(closed)
+        self._done = {j for route in self._routes for j in route}
+        self._closed = closed
         self._layers = layers(self.problem, self._done)
         self._next_layer()
 
@@ -94,7 +95,8 @@ class BundleValuer(TeamValuer):
         self._beliefs, self._phase = Beliefs(m, n), _Phase.BUILDING
         self._bundles: list[list[int]] = [[] for _ in range(m)]  # of others: its own its bidder has
         layer = self._layers.pop(0) if self._layers else []
-        offered = [j for j in layer if self._done.issuperset(self.problem.prerequisites[j])]
+        ready = [j for j in layer if self._done.issuperset(self.problem.prerequisites[j])]
+        offered = [j for j in ready if j not in self._closed]
         self._offered = np.array(offered, dtype=np.int64)
         self._limit = self.params.bundle_size or first_limit(len(offered), m)
         self._bidder.offer(self._offered)

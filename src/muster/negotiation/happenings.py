@@ -69,7 +69,7 @@ class Memory:
     refused
         tasks for which it does not bid.
     reserved
-        tasks that it has said that it is going to begin for good.
+        facts by which it has said that it is going to begin tasks for good.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -77,7 +77,7 @@ class Memory:
     epoch: int = 0
     knows: bool = True
     refused: frozenset[str] = frozenset()
-    reserved: frozenset[str] = frozenset()
+    reserved: tuple[Fact, ...] = ()
 
 
 @dataclass

@@ -31,16 +31,18 @@ class Knowledge:
                 self.digest ^= _hash(fact)
         return new
 
-    def say(self, task: str, robot: str, kind: str, content: bytes = b"") -> list[Fact]:
-        """Add a fact of the robot itself, unless it has said so before; returns it if it is new."""
-        if any((f.task, f.robot, f.kind) == (task, robot, kind) for f in self.facts):
-            return []
-        return self.add(task, robot, kind, content)
+    def say(self, task: str, robot: str, kind: str, content: bytes = b"") -> tuple[Fact, bool]:
+        """Add a fact of the robot itself, unless it has said so before; the fact, and whether it is new."""
+        for fact in in_order(self.facts):
+            if (fact.task, fact.robot, fact.kind, fact.content) == (task, robot, kind, content):
+                return fact, False
+        return self.add(task, robot, kind, content), True
 
-    def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> list[Fact]:
+    def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> Fact:
         """Add a fact of the robot itself, which follows from all that it knows."""
-        order = 1 + max((fact.order for fact in self.facts), default=0)
-        return self.learn([Fact(task, robot, kind, order, content)])
+        said = Fact(task, robot, kind, 1 + max((fact.order for fact in self.facts), default=0), content)
+        self.learn([said])
+        return said
 
     @property
     def done(self) -> set[str]:
@@ -70,13 +72,16 @@ def in_order(facts: Iterable[Fact]) -> tuple[Fact, ...]:
 
 
 def holders(facts: Iterable[Fact]) -> dict[str, tuple[str, ...]]:
-    """By task that nobody may begin twice the robots that may have begun it, the first one first."""
-    waived = {(fact.task, fact.robot) for fact in facts if fact.kind == "waived"}
-    may: dict[str, tuple[str, ...]] = {}
+    """By task that nobody may begin twice the robots that may have begun it, the first one first.
+
+    What a robot waives it waives for the life in which it said that it was going to begin: it may have forgotten that.
+    """
+    waived = {(fact.task, fact.robot, fact.content) for fact in facts if fact.kind == "waived"}
+    may: dict[str, dict[str, None]] = {}
     for fact in in_order(facts):
-        if fact.kind == "begun" and (fact.task, fact.robot) not in waived:
-            may[fact.task] = (*may.get(fact.task, ()), fact.robot)
-    return may
+        if fact.kind == "begun" and (fact.task, fact.robot, fact.content) not in waived:
+            may.setdefault(fact.task, {})[fact.robot] = None
+    return {task: tuple(robots) for task, robots in may.items()}
 
 
 def _hash(fact: Fact) -> int:

@@ -121,12 +121,16 @@ def _plain(value: Any) -> Any:
 def _memory(data: dict[str, Any]) -> Memory:
     return Memory(
         claims=tuple(Claim(**claim) for claim in data["claims"]),
-        facts=tuple(Fact(**fact | {"content": bytes.fromhex(fact["content"])}) for fact in data["facts"]),
+        facts=_facts(data["facts"]),
         epoch=int(data["epoch"]),
         knows=bool(data["knows"]),
         refused=frozenset(data["refused"]),
-        reserved=frozenset(data["reserved"]),
+        reserved=_facts(data["reserved"]),
     )
+
+
+def _facts(data: list[dict[str, Any]]) -> tuple[Fact, ...]:
+    return tuple(Fact(**fact | {"content": bytes.fromhex(fact["content"])}) for fact in data)
 
 
 def _wrong(file: Path, field: str, value: str, expected: str) -> InputError:

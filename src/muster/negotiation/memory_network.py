@@ -67,6 +67,7 @@ class MemoryNetwork:
         self.counts: Counter[str] = Counter()
         self._random = Random(self.seed)
         self._side: dict[str, int] = {}
+        self._dead_links: Collection[tuple[str, str]] = ()
         self._order = itertools.count()
         self._next_wake: dict[str, float] = {}
         self._queue: list[tuple[float, int, list[str], Message | None]] = []  # what comes, to whom; None: time to tick
@@ -90,8 +91,12 @@ class MemoryNetwork:
         """Only robots of one group hear each other."""
         self._side = {robot: k for k, group in enumerate(groups) for robot in group}
 
+    def deafen(self, links: Collection[tuple[str, str]]) -> None:
+        """Nothing gets through from the first of two robots to the second."""
+        self._dead_links = links
+
     def heal(self) -> None:
-        self._side = {}
+        self._side, self._dead_links = {}, ()
 
     def at(self, when_s: float, what: Callable[[], None]) -> None:
         """Let something happen at a time."""
@@ -143,7 +148,7 @@ class MemoryNetwork:
     def _joined(self, one: str, other: str) -> bool:
         if self._side and self._side.get(one, -1) != self._side.get(other, -2):
             return False
-        return self.links is None or self.links(one, other)
+        return (one, other) not in self._dead_links and (self.links is None or self.links(one, other))
 
     def _post(self, to: Sequence[str], message: Message) -> None:
         """Send copies; those that arrive at the same time arrive as one."""

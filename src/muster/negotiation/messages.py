@@ -31,12 +31,13 @@ class Fact:
         of which task, and who says so.
     kind
         "done": the robot has done it. "begun": the robot has begun a task that nobody may begin twice, or is going to.
-        "waived": it has not, and is never going to. "added": the task belongs to the mission from now on. "moved": it
-        is elsewhere. "cancelled": nobody need do it.
+        "waived": it has not, and is never going to, in the life that said so. "added": the task belongs to the mission
+        from now on. "moved": it is elsewhere. "cancelled": nobody need do it.
     order
         above that of all facts that the robot knew: what follows from another fact comes after it.
     content
-        of "added" and "moved": the task, as `tasks.content_of` writes it.
+        of "added" and "moved": the task, as `tasks.content_of` writes it. Of "begun" and "waived": the incarnation of
+        the robot that was going to begin.
     """
 
     task: str

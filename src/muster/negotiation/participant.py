@@ -70,7 +70,7 @@ class Participant:
         self.knows = memory.knows
         self._before = memory
         self._identity = Identity(self.robot, self.incarnation)
-        self._work = Work.remembered(self.robot, memory)
+        self._work = Work.remembered(self.robot, self.incarnation, memory)
         self._agreement = Agreement(self.robot)
         self._waiting = Waiting(self.members)
         self._repairs = Repairs(self.robot, self.patience.retry_s)

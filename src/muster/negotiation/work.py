@@ -20,12 +20,14 @@ class Work:
 
     Parameters
     ----------
-    robot
-        its id.
+    robot, life
+        its id, and how often it has started.
     known
         what it knows for good.
-    begun, refused, reserved
-        tasks that it has begun; for which it does not bid; that it has said it is going to begin for good.
+    begun, refused
+        tasks that it has begun; for which it does not bid.
+    reserved
+        by task that it has said it is going to begin for good the fact that tells so.
     fresh
         facts that have not been sent yet.
     out
@@ -35,24 +37,26 @@ class Work:
     """
 
     robot: str
+    life: int = 0
     known: Knowledge = field(default_factory=Knowledge)
     begun: set[str] = field(default_factory=set)
     refused: set[str] = field(default_factory=set)
-    reserved: set[str] = field(default_factory=set)
+    reserved: dict[str, Fact] = field(default_factory=dict)
     fresh: list[Fact] = field(default_factory=list)
     out: bool = False
     restless: bool = False
 
     @classmethod
-    def remembered(cls, robot: str, memory: Memory) -> Work:
+    def remembered(cls, robot: str, life: int, memory: Memory) -> Work:
         begun = {claim.task for claim in memory.claims if claim.begun}
-        work = cls(robot, begun=begun, refused=set(memory.refused), reserved=set(memory.reserved))
+        reserved = {fact.task: fact for fact in memory.reserved}
+        work = cls(robot, life, begun=begun, refused=set(memory.refused), reserved=reserved)
         work.known.learn(memory.facts)
         return work
 
     def memory(self, claims: tuple[Claim, ...], epoch: int, *, knows: bool) -> Memory:
-        facts, refused, reserved = in_order(self.known.facts), frozenset(self.refused), frozenset(self.reserved)
-        return Memory(self.left_of(claims), facts, epoch, knows, refused, reserved)
+        facts, reserved = in_order(self.known.facts), in_order(self.reserved.values())
+        return Memory(self.left_of(claims), facts, epoch, knows, frozenset(self.refused), reserved)
 
     def left_of(self, claims: Iterable[Claim]) -> tuple[Claim, ...]:
         """The claims that still hold, with what has been begun first."""
@@ -67,13 +71,15 @@ class Work:
         moved = {fact.task for fact in self.known.facts.difference(knew) if fact.kind == "moved"}
         return tuple(claim for claim in self.left_of(epoch.route()) if claim.begun or claim.task not in moved)
 
-    def say(self, task: str, kind: str, content: bytes = b"") -> None:
-        """Say something that is true for good."""
-        self.fresh += self.known.say(task, self.robot, kind, content)
+    def say(self, task: str, kind: str, content: bytes = b"") -> Fact:
+        """Say something that is true for good, once."""
+        fact, is_new = self.known.say(task, self.robot, kind, content)
+        self.fresh += [fact] if is_new else []
+        return fact
 
     def say_again(self, task: str, kind: str, content: bytes) -> None:
         """The same of what may be said of a task more than once."""
-        self.fresh += self.known.add(task, self.robot, kind, content)
+        self.fresh.append(self.known.add(task, self.robot, kind, content))
 
     def may_begin(self, task: str, epoch: Epoch, shown: Iterable[str], rules: Rules) -> bool:
         """Whether the robot may begin a task that it owns in this epoch; `shown` are members that have its base."""
@@ -91,10 +97,9 @@ class Work:
         self.begun.add(task)
 
     def reserve(self, task: str) -> None:
-        """Say that the robot is going to begin a task that nobody may begin twice."""
+        """Say that the robot, in this life, is going to begin a task that nobody may begin twice."""
         if task not in self.reserved:
-            self.reserved.add(task)
-            self.say(task, "begun")
+            self.reserved[task] = self.say(task, "begun", str(self.life).encode())
 
     def finish(self, task: str) -> None:
         self.begun.discard(task)
@@ -109,24 +114,23 @@ class Work:
     def give_up(self, task: str) -> None:
         """Never bid for a task again."""
         if task in self.reserved:
-            self.reserved.discard(task)
-            self.say(task, "waived")
+            self.say(task, "waived", self.reserved.pop(task).content)
         self.refused.add(task)
         self.restless = True
 
     def withdraw(self) -> None:
         """Take no tasks any more, and give back all that has not been begun."""
-        for task in self.reserved - self.begun:
+        for task in self.reserved.keys() - self.begun:
             self.give_up(task)
         self.out = self.restless = True
 
     def give_up_lost(self, kept: Sequence[Claim]) -> None:
         """Give up what was reserved and went to another before it was begun."""
-        for task in self.reserved - self.begun - self.known.done - {claim.task for claim in kept}:
+        for task in self.reserved.keys() - self.begun - self.known.done - {claim.task for claim in kept}:
             self.give_up(task)
 
     def _is_reserved(self, task: str, base: Base, epoch: Epoch, shown: Iterable[str], rules: Rules) -> bool:
         """Whether a majority of the mission's robots knows that this one is going to begin the task."""
-        said = any((fact.task, fact.robot, fact.kind) == (task, self.robot, "begun") for fact in base.facts)
         tell = [declared for robot in shown if (declared := epoch.declaration_of(robot)) is not None]
-        return said and task in self.reserved and sum(declared.knows for declared in tell) >= rules.majority
+        said = self.reserved.get(task) in base.facts
+        return said and sum(declared.knows for declared in tell) >= rules.majority

@@ -3,6 +3,7 @@
 from tests.trials import Report
 
 from muster.studies.negotiation import replay
+from muster.studies.negotiation.observer import PROMISED_NEVER
 
 
 def trial(seed):
@@ -11,5 +12,7 @@ def trial(seed):
     with report.trying():
         played = replay(seed)
         report.story += played.scene.described()
-        report.failures, report.counts, report.figures = played.failures, played.counts, [played.took_s]
+        report.failures, report.figures = played.failures, [(played.took_s, played.share)]
+        report.counts.update(dict.fromkeys(PROMISED_NEVER, 0))
+        report.counts.update(played.counts)
     return report

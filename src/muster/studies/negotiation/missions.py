@@ -10,10 +10,12 @@ from muster.studies.uniform import place
 SKILLS = ("camera", "gripper")
 
 
-def random_mission(random: Random, *, robots: int, tasks: int) -> Mission:
-    """Robots r_0, r_1 ... and tasks 0, 1 ... in a square; tasks wait for some with lower numbers."""
-    linked, skilled, limited = (random.random() < share for share in (0.5, 0.3, 0.5))
-    once = random.choice((0.0, 0.0, 0.2, 0.5))
+def random_mission(random: Random, *, robots: int, tasks: int, once: float, free: bool = False) -> Mission:
+    """Robots r_0, r_1 ... and tasks 0, 1 ... in a square; tasks wait for some with lower numbers.
+
+    `once` is the share of tasks that nobody may begin twice. Where robots are `free` any of them can do any task.
+    """
+    linked, skilled, limited = (random.random() < share and not free for share in (0.5, 0.3, 0.5))
     return Mission(
         rules=Rules(objective=random.choice(OBJECTIVES), return_to_start=random.random() < 0.3),
         robots=tuple(

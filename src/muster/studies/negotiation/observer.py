@@ -13,6 +13,11 @@ from dataclasses import dataclass, field
 
 from muster.negotiation.negotiator import Negotiator
 
+OWNED_TWICE = "owned twice by robots that have not lost each other"
+BEGUN_TWICE = "begun twice by robots that have not lost each other"
+ONCE_TWICE = "at-most-once, and begun twice"
+PROMISED_NEVER = (OWNED_TWICE, BEGUN_TWICE, ONCE_TWICE)
+
 
 @dataclass
 class Observer:
@@ -61,6 +66,8 @@ class Observer:
         self._look_at_epoch(robot, node)
         owned = frozenset(claim.task for claim in node.route)
         for task in sorted(owned - self._owned.get(robot, frozenset())):
+            if task in self.once:
+                self._check_sale(node, task)
             for other, theirs in self._owned.items():
                 if task in theirs and other != robot:
                     self._clash(task, robot, other)
@@ -73,10 +80,12 @@ class Observer:
         if again and robot in before:
             return
         if before and task in self.once:
+            self.counts[ONCE_TWICE] += 1
             self.broken.append(f"{robot} begins {task}, begun by {', '.join(before)}")
         for other in before:
             self.counts["begun twice"] += 1
             if other != robot and frozenset((robot, other)) not in self._lost and (other, task) in self._lives:
+                self.counts[BEGUN_TWICE] += 1
                 self.broken.append(f"{robot} begins {task}, begun by {other}, which it has not lost")
         before.append(robot)
 
@@ -95,10 +104,18 @@ class Observer:
             if mutual and self._based.get(other) == epoch.base.digest:
                 self._lost.discard(frozenset((robot, other)))
 
+    def _check_sale(self, node: Negotiator, task: str) -> None:
+        """Of a task that nobody may begin twice: it is sold where more than half of the team is, and remembers."""
+        said = [node.epoch.declaration_of(member) for member in node.epoch.own.members]
+        know = sum(declared is not None and declared.knows for declared in said)
+        if any(sold.task == task for sold in node.epoch.sales) and 2 * know <= len(node.rules.robots):
+            self.broken.append(f"{node.robot} has bought {task}, and {know} of {len(node.rules.robots)} know")
+
     def _clash(self, task: str, robot: str, other: str) -> None:
         if frozenset((robot, other)) in self._lost:
             self.counts["owned twice by robots that have lost each other"] += 1
             return
         began = self.begun.get(task, ())
         if not (robot in began and other in began):
+            self.counts[OWNED_TWICE] += 1
             self.broken.append(f"{robot} and {other} both own {task}")

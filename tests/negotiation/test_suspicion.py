@@ -1,0 +1,25 @@
+"""False suspicions: what is measured is what the chance of losing all beats for so long lets expect."""
+
+from muster.negotiation.members import Patience
+from muster.negotiation.memory_network import TICK_S
+from muster.studies.negotiation import suspicion
+
+
+def expected(loss, beats):
+    """How often an hour so many words in a row are lost, when there is one every 0.2 to 0.25 s."""
+    return [3600 / gap_s * (1 - loss) * loss**beats for gap_s in (Patience().beat_s + TICK_S, Patience().beat_s)]
+
+
+def test_the_rate_is_that_of_runs_of_lost_beats():
+    seen = suspicion.rate(0.5, runs=12, seed=1)
+    assert expected(0.5, 20)[0] < seen.low < seen.mean < seen.high < expected(0.5, 15)[1]
+
+
+def test_at_30_percent_loss_fewer_than_one_in_10000_pair_hours():
+    seen = suspicion.rate(0.3, runs=12, seed=2)
+    assert 0 < seen.low < seen.high < 1e-4
+    assert suspicion.bound(0.3) < 1e-4
+
+
+def test_more_patience_fewer_suspicions():
+    assert suspicion.bound(0.3, Patience(suspect_s=6.0)) < suspicion.bound(0.3) / 1000
