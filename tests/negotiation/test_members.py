@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.negotiation.members import Members, Patience
+from muster.negotiation.members import FAR, Members, Patience
 from muster.negotiation.messages import Message, Pulse, Stage
 
 PATIENCE = Patience()
@@ -20,16 +20,28 @@ def test_all_are_taken_for_alive_at_first(members):
 
 
 def test_silence_for_suspect_s_is_death_and_a_word_is_life(members):
-    members.hear(Pulse("b", 1, 1), 1.0)
+    members.hear_from(Message("b", 1, 1, Stage(0)), 1.0)
     assert set(members.present(PATIENCE.suspect_s)) == {"a", "b"}
     assert set(members.present(1.0 + PATIENCE.suspect_s)) == {"a"}
     members.hear(Pulse("b", 1, 2), 9.0)
     assert set(members.present(9.0)) == {"a", "b"}
 
 
+def test_who_is_heard_through_others_alone_has_more_time(members):
+    members.hear(Pulse("b", 1, 1), 1.0)
+    assert not members.is_far("b")  # it has just begun, and may speak up
+    members.hear(Pulse("b", 1, 2), 3.0)
+    assert members.is_far("b")
+    assert not members.is_far("c")  # of which nothing was heard at all
+    assert set(members.present(2.9 + FAR * PATIENCE.suspect_s)) == {"a", "b"}
+    assert set(members.present(3.0 + FAR * PATIENCE.suspect_s)) == {"a"}
+    members.hear_from(Message("b", 1, 3, Stage(0)), 12.0)
+    assert not members.is_far("b")
+
+
 @pytest.mark.parametrize("old", [Pulse("b", 2, 5), Pulse("b", 2, 4), Pulse("b", 1, 99)])
 def test_old_news_do_not_count(members, old):
-    members.hear(Pulse("b", 2, 5), 1.0)
+    members.hear_from(Message("b", 2, 5, Stage(0)), 1.0)
     members.hear(old, 4.9)
     assert "b" not in members.present(5.0)
 

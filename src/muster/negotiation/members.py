@@ -37,6 +37,10 @@ class Patience:
     mute_s: float = 5.0
 
 
+FAR = 2.0
+"""By how many times longer robots wait for those that they do not hear themselves."""
+
+
 @dataclass
 class _Peer:
     incarnation: int = -1
@@ -46,13 +50,19 @@ class _Peer:
     mutings: int = 0
     may_return: bool = False
     spoke_s: float = -inf
+    born_s: float = inf  # when this incarnation was heard of first
     misses: tuple[str, ...] = ()
+
+    def is_far(self, suspect_s: float) -> bool:
+        """Whether the last that was heard of it had been passed on by others for a while."""
+        return self.heard_s - max(self.spoke_s, self.born_s) >= suspect_s / 2
 
     def hear(self, incarnation: int, number: int, now: float) -> bool:
         """Whether the robot has started anew."""
         if incarnation < self.incarnation or (incarnation == self.incarnation and number <= self.number):
             return False
         anew = -1 < self.incarnation < incarnation
+        self.born_s = now if incarnation > self.incarnation else self.born_s
         self.incarnation, self.number, self.heard_s = incarnation, number, now
         return anew
 
@@ -66,6 +76,8 @@ class Members:
     whom it misses, those that it has not heard themselves for half of `suspect_s`, or never; and who hears it passes
     on what it hears of these. Who misses somebody tells all, as that one may miss those that this one hears. Where all
     hear each other nobody misses anybody. Only what is new is passed on, else the dead would live on in rumours.
+
+    Words of robots that are heard through others alone have a long way: they have FAR times as long.
     """
 
     me: str
@@ -121,8 +133,19 @@ class Members:
 
     def present(self, now: float) -> tuple[str, ...]:
         """Those that take part, this robot included, in the order in which they are expected."""
-        since = now - self.patience.suspect_s
-        return tuple([r for r, p in self._peers.items() if p.heard_s > since and p.muted_until_s <= now])
+        lease_s = self.patience.suspect_s
+        near, far = now - lease_s, now - FAR * lease_s
+        return tuple(
+            [
+                r
+                for r, p in self._peers.items()
+                if p.muted_until_s <= now and (p.heard_s > near or (p.heard_s > far and p.is_far(lease_s)))
+            ]
+        )
+
+    def is_far(self, robot: str) -> bool:
+        """Whether a robot is heard through others alone."""
+        return robot != self.me and self._peers[robot].is_far(self.patience.suspect_s)
 
     def is_muted(self, robot: str, now: float) -> bool:
         return self._peers[robot].muted_until_s > now

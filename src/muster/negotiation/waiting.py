@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from muster.negotiation.epoch import Epoch
-from muster.negotiation.members import Members
+from muster.negotiation.members import FAR, Members
 from muster.negotiation.messages import Message, Stage
 
 
@@ -29,19 +29,24 @@ class Waiting:
 
     def too_long(self, epoch: Epoch, now: float) -> list[str]:
         """Leave out whom the robot has waited for `bid_s`; returns them."""
-        if now - self._since_s < self.members.patience.bid_s:
+        if now - self._since_s < self._bid_s(epoch):
             return []
         self._since_s = now
         return self._leave_out(epoch.lacks, epoch, now)
 
     def too_long_for(self, message: Message, epoch: Epoch, now: float) -> list[str]:
         """Leave out with others whom one of them leaves out, if the robot has waited about as long; returns them."""
-        if now - self._since_s < self.members.patience.bid_s / 2 or not message.declarations:
+        if now - self._since_s < self._bid_s(epoch) / 2 or not message.declarations:
             return []
         waited = sorted(set(epoch.lacks).difference([message.sender]))
         return self._leave_out(
             [r for r in waited if all(r not in said.members for said in message.declarations)], epoch, now
         )
+
+    def _bid_s(self, epoch: Epoch) -> float:
+        """Bids that have a long way come late, though nobody is mute."""
+        far = any(map(self.members.is_far, epoch.own.members))
+        return self.members.patience.bid_s * (FAR if far else 1.0)
 
     def _leave_out(self, robots: Iterable[str], epoch: Epoch, now: float) -> list[str]:
         """Mute those of them that are heard; who is silent is lost anyway, before long."""
