@@ -1,0 +1,198 @@
+"""The drift study: how far an estimate is from the truth by time, with and without fixes (TCF thesis, Appendix A6.1).
+
+The thesis flew a drone five times around the setpoints of Table A.21, by visual inertial odometry, and measured with
+motion capture (Figure A.14). Here a robot goes any way that is given, its sensors are simulated, and the same readings
+go into plain integration of odometry, a filter with the inertial unit, and that filter with fixes.
+
+By the table a pass is 9.98 m long and five are 51.6 m with the way there, at up to 0.5 m/s; the thesis' text counts
+four passes of 15 m, 60 m in all. Its errors, 0.15 m to 0.5 m, are 0.25 % to 0.83 % of 60 m.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.motion.frames import wrapped
+from muster.perception import air_fusion, ground_fusion
+from muster.perception.errors import AirErrors, GroundErrors
+from muster.perception.kalman import Floats
+
+START = (-2.18, 0.04, 0.118)
+SETPOINTS = ((-1.0, -1.0, 0.75), (1.0, -1.5, 1.25), (2.0, 0.0, 0.75), (1.0, 1.5, 1.25), (-1.0, 1.0, 0.75))
+"""Metres, map frame: where the drone of A6.1 stood, and Table A.21."""
+_A_STEP = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bias:
+    """What sensors get wrong always in the same way.
+
+    Parameters
+    ----------
+    scale
+        share by which it counts too much.
+    turn_radps, gyro_radps
+        of a robot in the plane: by how much the yaw rate of its wheels, and that of its gyro, is off. The filter looks
+        for the latter.
+    drift_mps
+        of a drone: by how much each coordinate of its velocity is off.
+    """
+
+    scale: float = 0.0
+    turn_radps: float = 0.0
+    gyro_radps: float = 0.0
+    drift_mps: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Drift:
+    """Errors by time. All arrays are (t,).
+
+    Parameters
+    ----------
+    times, travelled
+        seconds, and metres of the true way until then.
+    odometry, inertial, fixes
+        metres from the estimated place to the true one: odometry alone; odometry and inertial unit; both and fixes.
+    """
+
+    times: Floats
+    travelled: Floats
+    odometry: Floats
+    inertial: Floats
+    fixes: Floats
+
+    def share(self, errors: Floats) -> float:
+        """The last error as a share of the way travelled; 0 of no way."""
+        return float(errors[-1] / self.travelled[-1]) if self.travelled[-1] > 0 else 0.0
+
+
+def published_flight(*, passes: int = 5, speed_mps: float = 0.5, hold_s: float = 5.0, dt: float = 0.1) -> Floats:
+    """The places (t, 3), `dt` apart, of a flight as in A6.1: straight and even, around and back to the first setpoint.
+
+    Five passes, 0.5 m/s and about 10 readings a second are the thesis'; how long the drone stayed is chosen so that the
+    flight takes the four minutes between the marks of its figures.
+    """
+    stops = np.array([START, *SETPOINTS * passes, SETPOINTS[0]])
+    parts = [stops[:1]]
+    for start, end in itertools.pairwise(stops):
+        steps = math.ceil(np.linalg.norm(end - start) / (speed_mps * dt))
+        parts += [
+            start + (end - start) * np.arange(1, steps + 1)[:, None] / steps,
+            np.tile(end, (round(hold_s / dt), 1)),
+        ]
+    return np.concatenate(parts)
+
+
+def air_drift(
+    positions: Floats, dt: float, errors: AirErrors, bias: Bias, *, fix_every_s: float, seed: int = 0
+) -> Drift:
+    """The study of a drone that is truly at positions (t, 3), `dt` seconds apart, and begins where it knows.
+
+    Raises
+    ------
+    ParameterError
+        for another shape, or fixes that are not whole steps apart.
+    """
+    _require(positions, dt)
+    every = _steps(fix_every_s, dt)
+    random = np.random.default_rng(seed)
+    velocities = np.diff(positions, axis=0) / dt
+    accelerations = np.diff(velocities, axis=0, prepend=np.zeros((1, 3))) / dt
+    said = velocities * (1 + bias.scale) + bias.drift_mps + random.normal(0, errors.velocity_mps, velocities.shape)
+    felt = accelerations + random.normal(0, errors.acceleration_mps2, accelerations.shape)
+    fixes = positions[1:] + random.normal(0, errors.position_m, velocities.shape)
+
+    def flown(until_fix: int) -> Floats:
+        estimate = air_fusion.hovering_at(positions[0], 0.0)
+        places = [estimate.mean[:3]]
+        for step, (acceleration, velocity, fix) in enumerate(zip(felt, said, fixes, strict=True), 1):
+            estimate = air_fusion.moved(estimate, dt, errors, acceleration)
+            estimate = air_fusion.by_odometry(estimate, velocity, errors).estimate
+            if step % until_fix == 0:
+                estimate = air_fusion.by_position(estimate, fix, errors).estimate
+            places.append(estimate.mean[:3])
+        return np.array(places)
+
+    reckoned = positions[0] + np.vstack([np.zeros(3), np.cumsum(said * dt, axis=0)])
+    return _drift(positions, dt, reckoned, flown(len(positions)), flown(every))
+
+
+def ground_drift(
+    poses: Floats, dt: float, errors: GroundErrors, bias: Bias, *, fix_every_s: float, seed: int = 0
+) -> Drift:
+    """The study of a robot whose true poses are (t, 3): x, y, heading, `dt` seconds apart; it begins where it knows.
+
+    Its speed is along its heading, forward or backward. Fixes are of the position alone.
+
+    Raises
+    ------
+    ParameterError
+        for another shape, or fixes that are not whole steps apart.
+    """
+    _require(poses, dt)
+    every = _steps(fix_every_s, dt)
+    random = np.random.default_rng(seed)
+    speeds, turns = _driven(poses, dt)
+    wheel = random.normal(0, np.hypot(errors.odometry_share * speeds, errors.odometry_mps))
+    said = speeds * (1 + bias.scale) + wheel
+    wheel_turns = turns + bias.turn_radps + random.normal(0, errors.odometry_radps, len(turns))
+    gyro = turns + bias.gyro_radps + random.normal(0, errors.gyro_radps, len(turns))
+    ahead = np.diff(speeds, prepend=0.0) / dt + random.normal(0, errors.acceleration_mps2, len(turns))
+    fixes = poses[1:, :2] + random.normal(0, errors.position_m, (len(turns), 2))
+
+    def driven(until_fix: int) -> Floats:
+        estimate = ground_fusion.standing_at(poses[0], [0.0] * 3, errors.gyro_bias_radps)
+        places = [estimate.mean[:2]]
+        for step in range(len(turns)):
+            estimate = ground_fusion.moved(estimate, dt, errors, float(ahead[step]))
+            estimate = ground_fusion.by_odometry(estimate, said[step], wheel_turns[step], errors).estimate
+            estimate = ground_fusion.by_gyro(estimate, gyro[step], errors).estimate
+            if (step + 1) % until_fix == 0:
+                estimate = ground_fusion.by_position(estimate, fixes[step], errors).estimate
+            places.append(estimate.mean[:2])
+        return np.array(places)
+
+    state = np.array([*poses[0], 0.0, 0.0, 0.0])
+    reckoned = [state[:2]]
+    for speed, turn in zip(said, wheel_turns, strict=True):
+        state[3:5] = speed, turn
+        state = ground_fusion.arc(state, dt)[0]
+        reckoned.append(state[:2])
+    return _drift(poses[:, :2], dt, np.array(reckoned), driven(len(poses)), driven(every))
+
+
+def _driven(poses: Floats, dt: float) -> tuple[Floats, Floats]:
+    """Speeds ahead and yaw rates (t - 1,) of the arcs between poses."""
+    turns = wrapped(np.diff(poses[:, 2]))
+    way = np.diff(poses[:, :2], axis=0)
+    middle = poses[:-1, 2] + turns / 2
+    chords = way[:, 0] * np.cos(middle) + way[:, 1] * np.sin(middle)
+    return chords / np.sinc(turns / (2 * math.pi)) / dt, turns / dt
+
+
+def _drift(truth: Floats, dt: float, *estimated: Floats) -> Drift:
+    pieces = np.linalg.norm(np.diff(truth, axis=0), axis=1)
+    travelled = np.concatenate([[0.0], np.cumsum(pieces)])
+    odometry, inertial, fixes = (np.linalg.norm(places - truth, axis=1) for places in estimated)
+    times: Floats = dt * np.arange(len(truth), dtype=np.float64)
+    return Drift(times, travelled, odometry, inertial, fixes)
+
+
+def _steps(every_s: float, dt: float) -> int:
+    steps = round(every_s / dt) if math.isfinite(every_s) else 0
+    if steps < 1 or abs(steps * dt - every_s) > _A_STEP:
+        raise ParameterError(f"fix_every_s: {every_s}; expected a whole number of steps of {dt} s")
+    return steps
+
+
+def _require(places: Floats, dt: float) -> None:
+    if places.ndim != 2 or places.shape[1] != 3 or len(places) < 2:
+        raise ParameterError(f"places: shape {places.shape}; expected (t, 3), t >= 2")
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")

@@ -1,0 +1,83 @@
+"""How much sensors of a robot err: standard deviations that filters count with and simulated sensors draw from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+from muster.mission.errors import ParameterError
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Deviations:
+    """Numbers of at least 0."""
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not 0 <= value < math.inf:
+                raise ParameterError(f"{field.name}: {value}; expected a finite number of at least 0")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroundErrors(_Deviations):
+    """Of a robot in the plane. All are standard deviations of independent errors.
+
+    Parameters
+    ----------
+    acceleration_mps2, yaw_acceleration_radps2
+        by how much its accelerations differ in a step from those that are measured; where none are, from 0.
+    odometry_share, odometry_mps
+        of the speed by wheels: a share of it, and what there is at rest; they add as variances.
+    odometry_radps
+        of the yaw rate by wheels.
+    gyro_radps, gyro_bias_radps, gyro_walk
+        of the yaw rate by the inertial unit; of its bias at the beginning; and by how much that wanders in a second
+        (rad/s per root of s).
+    position_m, heading_rad
+        of fixes, each coordinate.
+    range_m, bearing_rad
+        of a landmark that is seen.
+
+    Raises
+    ------
+    ParameterError
+        if one is negative or not finite.
+    """
+
+    acceleration_mps2: float = 0.3
+    yaw_acceleration_radps2: float = 1.0
+    odometry_share: float = 0.02
+    odometry_mps: float = 0.005
+    odometry_radps: float = 0.05
+    gyro_radps: float = 0.01
+    gyro_bias_radps: float = 0.01
+    gyro_walk: float = 1e-4
+    position_m: float = 0.05
+    heading_rad: float = 0.05
+    range_m: float = 0.01
+    bearing_rad: float = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class AirErrors(_Deviations):
+    """Of a drone. All are standard deviations of independent errors, each coordinate of the map frame.
+
+    Parameters
+    ----------
+    acceleration_mps2
+        of the measured acceleration; where none is measured, of the acceleration itself.
+    velocity_mps
+        of the velocity by odometry, visual or other.
+    position_m
+        of position fixes.
+
+    Raises
+    ------
+    ParameterError
+        if one is negative or not finite.
+    """
+
+    acceleration_mps2: float = 0.2
+    velocity_mps: float = 0.05
+    position_m: float = 0.05

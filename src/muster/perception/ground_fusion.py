@@ -1,0 +1,165 @@
+"""Where a robot in the plane is, from odometry, inertial data and fixes: an extended Kalman filter.
+
+TCF thesis, section 2.1.1: a filter that fuses odometry and inertial unit, and what both give with fixes from outside:
+positions, as of GPS or motion capture, and artificial landmarks (tags, cylinders) at known places.
+
+The state is (6,): x, y in metres and heading in radians of the map frame; speed ahead in m/s; yaw rate in rad/s; bias
+of the gyro in rad/s. Its heading is kept in [-pi, pi).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.motion.frames import wrapped
+from muster.perception.errors import GroundErrors
+from muster.perception.kalman import (
+    Correction,
+    Estimate,
+    Floats,
+    corrected,
+    extended_correction,
+    extended_prediction,
+)
+
+X, Y, HEADING, SPEED, YAW_RATE, BIAS = range(6)
+_NUMBERS = 6
+_STRAIGHT = 1e-4
+"""Half a turn in a step, in radians, below which a series stands for sin(h) / h and its derivative."""
+
+
+def standing_at(pose: npt.ArrayLike, deviations: npt.ArrayLike, gyro_bias_radps: float = 0.0) -> Estimate:
+    """A robot at rest at a pose (3,) that is known within `deviations` (3,), and its gyro's bias within another."""
+    spread = np.array([*np.asarray(deviations, dtype=np.float64), 0.0, 0.0, gyro_bias_radps])
+    return Estimate(np.array([*np.asarray(pose, dtype=np.float64), 0.0, 0.0, 0.0]), np.diag(spread**2))
+
+
+def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2: float = 0.0) -> Estimate:
+    """The estimate `dt` seconds later: an arc at even speed and yaw rate, and the measured acceleration ahead.
+
+    Raises
+    ------
+    ParameterError
+        if `dt` is not above 0.
+    """
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    heading = estimate.mean[HEADING]
+    pushes = np.zeros((_NUMBERS, 2))  # of an acceleration ahead, of one of the turn
+    pushes[[X, Y, SPEED], 0] = dt * dt / 2 * math.cos(heading), dt * dt / 2 * math.sin(heading), dt
+    pushes[[HEADING, YAW_RATE], 1] = dt * dt / 2, dt
+    spread = pushes @ np.diag([errors.acceleration_mps2**2, errors.yaw_acceleration_radps2**2]) @ pushes.T
+    spread[BIAS, BIAS] = errors.gyro_walk**2 * dt
+
+    def motion(state: Floats) -> tuple[Floats, Floats]:
+        after, derivative = arc(state, dt)
+        return after + pushes[:, 0] * acceleration_mps2, derivative
+
+    return _turned(extended_prediction(estimate, motion, spread))
+
+
+def arc(state: Floats, dt: float) -> tuple[Floats, Floats]:
+    """The state (6,) `dt` seconds later at even speed and yaw rate, and its derivative (6, 6)."""
+    heading, speed, half = state[HEADING], state[SPEED], state[YAW_RATE] * dt / 2
+    chord, slope = _sinc(half)
+    ahead = np.array([math.cos(heading + half), math.sin(heading + half)])
+    left = np.array([-ahead[1], ahead[0]])
+    after = state.copy()
+    after[:2] += dt * speed * chord * ahead
+    after[HEADING] += 2 * half
+    derivative = np.eye(_NUMBERS)
+    derivative[:2, HEADING] = dt * speed * chord * left
+    derivative[:2, SPEED] = dt * chord * ahead
+    derivative[:2, YAW_RATE] = dt * speed * (slope * ahead + chord * left) * dt / 2
+    derivative[HEADING, YAW_RATE] = dt
+    return after, derivative
+
+
+def by_odometry(estimate: Estimate, speed_mps: float, yaw_rate_radps: float, errors: GroundErrors) -> Correction:
+    """What the wheels say: speed ahead and yaw rate."""
+    speed = math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps)
+    sensor = np.eye(_NUMBERS)[[SPEED, YAW_RATE]]
+    return _linear(estimate, sensor, [speed_mps, yaw_rate_radps], [speed, errors.odometry_radps])
+
+
+def by_speed(estimate: Estimate, speed_mps: float, errors: GroundErrors) -> Correction:
+    """What an odometer without a sense of direction says."""
+    spread = math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps)
+    return _linear(estimate, np.eye(_NUMBERS)[[SPEED]], [speed_mps], [spread])
+
+
+def by_gyro(estimate: Estimate, yaw_rate_radps: float, errors: GroundErrors) -> Correction:
+    """What the inertial unit says: yaw rate and bias together."""
+    sensor = np.zeros((1, _NUMBERS))
+    sensor[0, [YAW_RATE, BIAS]] = 1.0
+    return _linear(estimate, sensor, [yaw_rate_radps], [errors.gyro_radps])
+
+
+def by_position(estimate: Estimate, position: npt.ArrayLike, errors: GroundErrors) -> Correction:
+    """A fix (2,) from outside, in the map frame."""
+    return _linear(estimate, np.eye(_NUMBERS)[[X, Y]], position, [errors.position_m] * 2)
+
+
+def by_heading(estimate: Estimate, heading_rad: float, errors: GroundErrors) -> Correction:
+    """A heading from outside, in radians from east."""
+    near = estimate.mean[HEADING] + wrapped(heading_rad - estimate.mean[HEADING])
+    return _linear(estimate, np.eye(_NUMBERS)[[HEADING]], [near], [errors.heading_rad])
+
+
+def by_landmark(
+    estimate: Estimate, landmark: npt.ArrayLike, range_m: float, bearing_rad: float, errors: GroundErrors
+) -> Correction:
+    """A landmark at a known place (2,) of the map, seen at a range and a bearing from straight ahead, to the left.
+
+    Raises
+    ------
+    ParameterError
+        if the robot is believed to stand on it: it has no bearing then.
+    """
+    place = np.asarray(landmark, dtype=np.float64)
+
+    def sensor(state: Floats) -> tuple[Floats, Floats]:
+        east, north = place - state[:2]
+        away = math.hypot(east, north)
+        if away == 0:
+            raise ParameterError(f"landmark: {place.tolist()}; expected one that is not where the robot is")
+        derivative = np.zeros((2, _NUMBERS))
+        derivative[0, :2] = -east / away, -north / away
+        derivative[1, :3] = north / away**2, -east / away**2, -1.0
+        return np.array([away, math.atan2(north, east) - state[HEADING]]), derivative
+
+    uncertainty = np.diag([errors.range_m**2, errors.bearing_rad**2])
+    seen = [range_m, bearing_rad]
+    return _turned_correction(extended_correction(estimate, sensor, seen, uncertainty, _range_and_bearing))
+
+
+def _range_and_bearing(seen: Floats, expected: Floats) -> Floats:
+    return np.array([seen[0] - expected[0], wrapped(seen[1] - expected[1])])
+
+
+def _sinc(half: float) -> tuple[float, float]:
+    """Sin(h) / h, and its derivative."""
+    if abs(half) < _STRAIGHT:
+        return 1 - half * half / 6, -half / 3
+    chord = math.sin(half) / half
+    return chord, (math.cos(half) - chord) / half
+
+
+def _linear(estimate: Estimate, sensor: Floats, measured: npt.ArrayLike, deviations: list[float]) -> Correction:
+    return _turned_correction(corrected(estimate, sensor, measured, np.diag(np.square(deviations))))
+
+
+def _turned(estimate: Estimate) -> Estimate:
+    mean = estimate.mean.copy()
+    mean[HEADING] = wrapped(mean[HEADING])
+    return Estimate(mean, estimate.covariance)
+
+
+def _turned_correction(correction: Correction) -> Correction:
+    return Correction(
+        _turned(correction.estimate), correction.innovation, correction.innovation_covariance, correction.gain
+    )

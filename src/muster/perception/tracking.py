@@ -1,0 +1,90 @@
+"""What a robot says of itself, fused: telemetry with errors in, telemetry with the filter's pose out.
+
+Each report is taken in as a position fix, with the odometer's count as odometry. So whoever carries a plan out works
+with the fused pose where noise is on, and needs to know nothing of filters.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from muster.motion.port import Telemetry
+from muster.perception import air_fusion, ground_fusion
+from muster.perception.errors import AirErrors, GroundErrors
+from muster.perception.kalman import Estimate
+
+
+class Tracker(Protocol):
+    """Of one robot; reports come in the order in which they were made."""
+
+    def fused(self, said: Telemetry) -> Telemetry:
+        """The report with the filter's pose. One that is no newer than the last changes nothing in the filter."""
+        ...
+
+    @property
+    def estimate(self) -> Estimate | None:
+        """The filter's state after the last report; None before the first."""
+        ...
+
+
+class GroundTracker:
+    """A robot that drives the way it looks. Its speed comes from `odometry_m`, place and heading from fixes."""
+
+    def __init__(self, errors: GroundErrors) -> None:
+        self._errors = errors
+        self._estimate: Estimate | None = None
+        self._last: Telemetry | None = None
+
+    @property
+    def estimate(self) -> Estimate | None:
+        return self._estimate
+
+    def fused(self, said: Telemetry) -> Telemetry:
+        if self._estimate is None or self._last is None:
+            errors = self._errors
+            pose = (*said.position[:2], said.heading)
+            spread = (errors.position_m, errors.position_m, errors.heading_rad)
+            self._estimate, self._last = ground_fusion.standing_at(pose, spread), said
+        elif said.time_s > self._last.time_s:
+            self._estimate, self._last = self._advanced(self._estimate, self._last, said), said
+        x, y, heading, speed = map(float, self._estimate.mean[:4])
+        velocity = (speed * math.cos(heading), speed * math.sin(heading), said.velocity[2])
+        return replace(said, position=(x, y, said.position[2]), heading=heading, velocity=velocity)
+
+    def _advanced(self, estimate: Estimate, last: Telemetry, said: Telemetry) -> Estimate:
+        errors = self._errors
+        dt = said.time_s - last.time_s
+        estimate = ground_fusion.moved(estimate, dt, errors)
+        speed = (said.odometry_m - last.odometry_m) / dt
+        estimate = ground_fusion.by_speed(estimate, speed, errors).estimate
+        estimate = ground_fusion.by_position(estimate, said.position[:2], errors).estimate
+        return ground_fusion.by_heading(estimate, said.heading, errors).estimate
+
+
+class AirTracker:
+    """A robot that moves in any direction. Its velocity is odometry; its heading stays as it was said."""
+
+    def __init__(self, errors: AirErrors) -> None:
+        self._errors = errors
+        self._estimate: Estimate | None = None
+        self._time_s = -math.inf
+
+    @property
+    def estimate(self) -> Estimate | None:
+        return self._estimate
+
+    def fused(self, said: Telemetry) -> Telemetry:
+        errors = self._errors
+        if self._estimate is None:
+            self._estimate, self._time_s = air_fusion.hovering_at(said.position, errors.position_m), said.time_s
+        elif said.time_s > self._time_s:
+            moved = air_fusion.moved(self._estimate, said.time_s - self._time_s, errors)
+            moved = air_fusion.by_odometry(moved, said.velocity, errors).estimate
+            self._estimate = air_fusion.by_position(moved, np.array(said.position), errors).estimate
+            self._time_s = said.time_s
+        x, y, z, *velocity = map(float, self._estimate.mean)
+        return replace(said, position=(x, y, z), velocity=(velocity[0], velocity[1], velocity[2]))
