@@ -107,7 +107,13 @@ class Drive:
         heading = self.state[2]
         self.state, _ = fusion.arc(self.state, dt)
         push = dt * dt / 2 * ahead
-        self.state[:5] += [push * math.cos(heading), push * math.sin(heading), dt * dt / 2 * turn, dt * ahead, dt * turn]
+        self.state[:5] += [
+            push * math.cos(heading),
+            push * math.sin(heading),
+            dt * dt / 2 * turn,
+            dt * ahead,
+            dt * turn,
+        ]
         self.state[5] += self.random.normal(0, ERRORS.gyro_walk * math.sqrt(dt))
 
     def corrections(self, fix):

@@ -117,7 +117,7 @@ def _to_walls(beams: Floats, walls: Floats) -> Floats:
     ax, ay = walls[:, 0], walls[:, 1]
     wx, wy = walls[:, 2] - ax, walls[:, 3] - ay
     dx, dy = beams[:, :1], beams[:, 1:]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of walls along a beam
         across = dx * wy - dy * wx
         along = (ax * wy - ay * wx) / across
         share = (ax * dy - ay * dx) / across
