@@ -173,10 +173,35 @@ def test_two_landmarks_tell_the_pose():
     np.testing.assert_allclose(estimate.mean[:3], 0, atol=0.02)
 
 
+@given(states, st.floats(0.05, 1))
+def test_what_was_counted_leads_along_the_arc(state, dt):
+    """From a known pose, by an exact odometer and an exact heading, to where the arc ends."""
+    state[3] = abs(state[3])
+    if abs(state[4] * dt) > 3:
+        return
+    exact = GroundErrors(
+        acceleration_mps2=10, yaw_acceleration_radps2=10, odometry_share=0, odometry_mps=1e-6, heading_rad=1e-6
+    )
+    truth, _ = fusion.arc(state, dt)
+    estimate = fusion.standing_at(state[:3], [1e-9] * 3)
+    after = fusion.moved_as_counted(estimate, dt, state[3] * dt, float(truth[2]), exact)
+    np.testing.assert_allclose(after.mean[[0, 1, 3, 4]], truth[[0, 1, 3, 4]], atol=1e-4)
+    assert abs(wrapped(after.mean[2] - truth[2])) < 1e-4
+
+
+def test_a_turn_leaves_doubt_about_the_way():
+    estimate = fusion.standing_at([0, 0, 0], [0, 0, 0])
+    straight, bent = (fusion.moved_as_counted(estimate, 1.0, 0.4, turn, ERRORS) for turn in (0.0, 1.0))
+    assert straight.deviations[0] < 0.01
+    assert bent.deviations[0] == pytest.approx(0.4 * bent.mean[fusion.YAW_RATE] / 4, rel=0.2)
+
+
 def test_refusals():
     estimate = fusion.standing_at([0.0, 0.0, 0.0], [1.0, 1.0, 1.0])
     with pytest.raises(ParameterError, match=r"^dt: 0; expected seconds above 0$"):
         fusion.moved(estimate, 0, ERRORS)
+    with pytest.raises(ParameterError, match=r"^dt: -1; expected seconds above 0$"):
+        fusion.moved_as_counted(estimate, -1, 0.0, 0.0, ERRORS)
     with pytest.raises(ParameterError, match=r"^landmark: \[0.0, 0.0\]; expected one that is not where the robot is$"):
         fusion.by_landmark(estimate, [0.0, 0.0], 1.0, 0.0, ERRORS)
     with pytest.raises(ParameterError, match=r"^measured: shape \(3,\); expected \(2,\)$"):

@@ -76,8 +76,8 @@ def published_flight(*, passes: int = 5, speed_mps: float = 0.5, hold_s: float =
     """The places (t, 3), `dt` apart, of a flight as in A6.1: straight around and back to the first setpoint.
 
     Five passes, 0.5 m/s at most and about 10 readings a second are the thesis'. From setpoint to setpoint the drone
-    moves by the share 3 s^2 - 2 s^3 of the time s, fastest half way; how long it stays is chosen so that the flight takes the
-    four minutes between the marks of the thesis' figures.
+    moves by the share 3 s^2 - 2 s^3 of the time s, fastest half way; how long it stays is chosen so that the flight
+    takes the four minutes between the marks of the thesis' figures.
     """
     stops = np.array([START, *SETPOINTS * passes, SETPOINTS[0]])
     parts = [stops[:1]]

@@ -24,6 +24,7 @@ from muster.perception.kalman import (
     corrected,
     extended_correction,
     extended_prediction,
+    predicted,
 )
 
 X, Y, HEADING, SPEED, YAW_RATE, BIAS = range(6)
@@ -62,6 +63,36 @@ def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2
     return _turned(extended_prediction(estimate, motion, spread))
 
 
+def moved_as_counted(
+    estimate: Estimate, dt: float, metres: float, heading_rad: float, errors: GroundErrors
+) -> Estimate:
+    """The estimate `dt` seconds later, by what an odometer counted in between and the heading that the robot then has.
+
+    For reports that are rare: odometry makes the prediction itself, as in the thesis. Speed and yaw rate of the state
+    are then means of the interval. Who turned before or after it drove is off that arc by up to half the way times the
+    turn; half of this is taken for a standard deviation.
+
+    Raises
+    ------
+    ParameterError
+        if `dt` is not above 0.
+    """
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    change = np.diag([0.0, 0.0, 0.0, errors.acceleration_mps2 * dt, errors.yaw_acceleration_radps2 * dt, 0.0]) ** 2
+    change[BIAS, BIAS] = errors.gyro_walk**2 * dt
+    before = predicted(estimate, np.eye(_NUMBERS), change)
+    spread = math.hypot(errors.odometry_share * metres, errors.odometry_mps * dt) / dt
+    before = _linear(before, np.eye(_NUMBERS)[[SPEED]], [metres / dt], [spread]).estimate
+    turning = np.eye(_NUMBERS)[[HEADING]] + dt * np.eye(_NUMBERS)[[YAW_RATE]]
+    near = float((turning @ before.mean)[0])
+    facing = near + float(wrapped(heading_rad - near))
+    before = _linear(before, turning, [facing], [errors.heading_rad]).estimate
+    bulge = metres * abs(before.mean[YAW_RATE]) * dt / 4
+    slack = np.diag([bulge**2, bulge**2, 0.0, 0.0, 0.0, 0.0])
+    return _turned(extended_prediction(before, lambda state: arc(state, dt), slack))
+
+
 def arc(state: Floats, dt: float) -> tuple[Floats, Floats]:
     """The state (6,) `dt` seconds later at even speed and yaw rate, and its derivative (6, 6)."""
     heading, speed, half = state[HEADING], state[SPEED], state[YAW_RATE] * dt / 2
@@ -84,12 +115,6 @@ def by_odometry(estimate: Estimate, speed_mps: float, yaw_rate_radps: float, err
     speed = math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps)
     sensor = np.eye(_NUMBERS)[[SPEED, YAW_RATE]]
     return _linear(estimate, sensor, [speed_mps, yaw_rate_radps], [speed, errors.odometry_radps])
-
-
-def by_speed(estimate: Estimate, speed_mps: float, errors: GroundErrors) -> Correction:
-    """What an odometer without a sense of direction says."""
-    spread = math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps)
-    return _linear(estimate, np.eye(_NUMBERS)[[SPEED]], [speed_mps], [spread])
 
 
 def by_gyro(estimate: Estimate, yaw_rate_radps: float, errors: GroundErrors) -> Correction:

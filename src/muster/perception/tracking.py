@@ -1,18 +1,19 @@
 """What a robot says of itself, fused: telemetry with errors in, telemetry with the filter's pose out.
 
 Each report is taken in as a position fix, with the odometer's count as odometry. So whoever carries a plan out works
-with the fused pose where noise is on, and needs to know nothing of filters.
+with the fused pose where noise is on, and needs to know nothing of filters: a `FusedPort` is a robot's port as others.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
-from muster.motion.port import Telemetry
+from muster.motion.port import RobotPort, Telemetry, Waypoint
 from muster.perception import air_fusion, ground_fusion
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.kalman import Estimate
@@ -56,13 +57,10 @@ class GroundTracker:
         return replace(said, position=(x, y, said.position[2]), heading=heading, velocity=velocity)
 
     def _advanced(self, estimate: Estimate, last: Telemetry, said: Telemetry) -> Estimate:
-        errors = self._errors
+        metres = said.odometry_m - last.odometry_m
         dt = said.time_s - last.time_s
-        estimate = ground_fusion.moved(estimate, dt, errors)
-        speed = (said.odometry_m - last.odometry_m) / dt
-        estimate = ground_fusion.by_speed(estimate, speed, errors).estimate
-        estimate = ground_fusion.by_position(estimate, said.position[:2], errors).estimate
-        return ground_fusion.by_heading(estimate, said.heading, errors).estimate
+        estimate = ground_fusion.moved_as_counted(estimate, dt, metres, said.heading, self._errors)
+        return ground_fusion.by_position(estimate, said.position[:2], self._errors).estimate
 
 
 class AirTracker:
@@ -88,3 +86,28 @@ class AirTracker:
             self._time_s = said.time_s
         x, y, z, *velocity = map(float, self._estimate.mean)
         return replace(said, position=(x, y, z), velocity=(velocity[0], velocity[1], velocity[2]))
+
+
+class FusedPort:
+    """A robot's port whose telemetry is fused; orders go through as they are."""
+
+    def __init__(self, port: RobotPort, tracker: Tracker) -> None:
+        self._port = port
+        self._tracker = tracker
+
+    @property
+    def robot(self) -> str:
+        return self._port.robot
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`."""
+        return self._port.send(waypoints)
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self._port.cancel()
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        said = self._port.telemetry()
+        return None if said is None else self._tracker.fused(said)
