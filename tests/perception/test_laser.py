@@ -112,6 +112,24 @@ def test_a_map_of_cells_and_one_of_polygons():
     assert np.isfinite(ranges).all()
 
 
+@pytest.mark.parametrize("name", ["market-rescue-arena", "floor"])
+def test_the_nearest_thing_on_a_shipped_map_is_as_near_as_the_map_says(name):
+    """Of polygons and of an image: no beam is shorter than the clearance, and the shortest is hardly longer."""
+    pytest.importorskip("shapely")
+    import muster
+    from muster.motion.world import Body, World
+    from muster.simulation.walls import faces_and_slabs
+
+    mission = muster.load(name)
+    world, body = World.of(mission), Body(0.0, "ground")
+    walls = faces_at(faces_and_slabs(world, body)[0], 0.1)
+    scanner = Scanner(field_rad=math.radians(359.9), step_rad=math.radians(0.5), reach_m=30.0)
+    starts = np.array([robot.position[:2] for robot in mission.robots])
+    for place, clearance in zip(starts, world.clearance(starts, "ground"), strict=True):
+        nearest = scanner.ranges((*place, 0.3), walls).min()
+        assert clearance - 1e-9 <= nearest <= clearance / math.cos(math.radians(0.5)) + 0.01
+
+
 def test_faces_at_a_height():
     faces = np.array([[0, 0, 1, 0, -math.inf, math.inf], [0, 1, 1, 1, 2.0, 3.0]])
     np.testing.assert_array_equal(faces_at(faces, 0.1), [[0, 0, 1, 0]])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import muster
+from muster.mission.errors import ParameterError
 from muster.motion.port import Telemetry, Waypoint
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.tracking import AirTracker, FusedPort, GroundTracker
@@ -81,3 +82,25 @@ def test_a_report_that_is_no_newer_changes_nothing(tracker):
     assert tracker.estimate is before
     assert again.position == first.position
     assert again.order == 4
+
+
+@pytest.mark.parametrize("tracker", [GroundTracker(GroundErrors()), AirTracker(AirErrors())])
+def test_after_a_long_silence_the_place_is_the_one_that_is_said(tracker):
+    tracker.fused(Telemetry(0.0, (0.0, 0.0, 0.0), 0.0, (0.2, 0.0, 0.0), 0.0, 1, 0))
+    tracker.fused(Telemetry(0.1, (0.02, 0.0, 0.0), 0.0, (0.2, 0.0, 0.0), 0.02, 1, 0))
+    late = tracker.fused(Telemetry(200.0, (3.0, 20.0, 0.0), 2.0, (0.0, 0.0, 0.0), 35.0, 1, 1))
+    assert math.dist(late.position, (3.0, 20.0, 0.0)) < 0.05
+    assert late.heading == pytest.approx(2.0, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: GroundTracker(GroundErrors(position_m=0)), "position_m: 0; expected a number above 0"),
+        (lambda: GroundTracker(GroundErrors(heading_rad=0)), "heading_rad: 0; expected a number above 0"),
+        (lambda: AirTracker(AirErrors(velocity_mps=0)), "velocity_mps: 0; expected a number above 0"),
+    ],
+)
+def test_what_is_exact_needs_no_filter(make, message):
+    with pytest.raises(ParameterError, match=f"^{message}"):
+        make()

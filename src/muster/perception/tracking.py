@@ -13,6 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
+from muster.mission.errors import ParameterError
 from muster.motion.port import RobotPort, Telemetry, Waypoint
 from muster.perception import air_fusion, ground_fusion
 from muster.perception.errors import AirErrors, GroundErrors
@@ -33,9 +34,17 @@ class Tracker(Protocol):
 
 
 class GroundTracker:
-    """A robot that drives the way it looks. Its speed comes from `odometry_m`, place and heading from fixes."""
+    """A robot that drives the way it looks. Its speed comes from `odometry_m`, place and heading from fixes.
+
+    Raises
+    ------
+    ParameterError
+        if place or heading are said without error: there is nothing to filter then.
+    """
 
     def __init__(self, errors: GroundErrors) -> None:
+        _require("position_m", errors.position_m)
+        _require("heading_rad", errors.heading_rad)
         self._errors = errors
         self._estimate: Estimate | None = None
         self._last: Telemetry | None = None
@@ -64,9 +73,17 @@ class GroundTracker:
 
 
 class AirTracker:
-    """A robot that moves in any direction. Its velocity is odometry; its heading stays as it was said."""
+    """A robot that moves in any direction. Its velocity is odometry; its heading stays as it was said.
+
+    Raises
+    ------
+    ParameterError
+        if place or velocity are said without error: there is nothing to filter then.
+    """
 
     def __init__(self, errors: AirErrors) -> None:
+        _require("position_m", errors.position_m)
+        _require("velocity_mps", errors.velocity_mps)
         self._errors = errors
         self._estimate: Estimate | None = None
         self._time_s = -math.inf
@@ -111,3 +128,8 @@ class FusedPort:
         """See `RobotPort`."""
         said = self._port.telemetry()
         return None if said is None else self._tracker.fused(said)
+
+
+def _require(name: str, deviation: float) -> None:
+    if deviation == 0:
+        raise ParameterError(f"{name}: 0; expected a number above 0: what is exact needs no filter")
