@@ -37,7 +37,7 @@ def mission(tmp_path, robot):
     return muster.load(str(file))
 
 
-@pytest.mark.parametrize(("steps", "share"), [(1, 0.35), (5, 0.45), (10, 0.6)])
+@pytest.mark.parametrize(("steps", "share"), [(1, 0.25), (5, 0.45), (10, 0.55)])
 def test_a_robot_on_the_ground(tmp_path, steps, share):
     """Around a square's corners, which it takes turning on the spot."""
     drives = mission(

@@ -35,7 +35,7 @@ class Bias:
     Parameters
     ----------
     scale
-        share by which it counts too much.
+        share by which odometry counts too much. On the ground the filter looks for it, in the air not.
     turn_radps, gyro_radps
         of a robot in the plane: by how much the yaw rate of its wheels, and that of its gyro, is off. The filter looks
         for the latter.
@@ -144,10 +144,11 @@ def ground_drift(
     ahead = np.diff(speeds) / dt
     ahead += random.normal(0, errors.acceleration_mps2, len(ahead))
     fixes = poses[:, :2] + random.normal(0, errors.position_m, (len(poses), 2))
-    start = np.array([*poses[0], speeds[0], turns[0], 0.0])
+    start = np.array([*poses[0], speeds[0], turns[0], 0.0, 0.0])
+    known = np.diag(np.square([0.0] * 5 + [errors.gyro_bias_radps, errors.odometry_slip]))
 
     def driven(until_fix: int) -> Floats:
-        estimate = Estimate(start, np.diag([0.0] * 5 + [errors.gyro_bias_radps**2]))
+        estimate = Estimate(start, known)
         places = [estimate.mean[:2]]
         for step in range(1, len(poses)):
             estimate = ground_fusion.moved(estimate, dt, errors, float(ahead[step - 1]))
@@ -160,7 +161,7 @@ def ground_drift(
 
     state, reckoned = start, [start[:2]]
     for speed, turn in zip(_between(said), _between(wheel_turns), strict=True):
-        state = ground_fusion.arc(np.array([*state[:3], speed, turn, 0.0]), dt)[0]
+        state = ground_fusion.arc(np.array([*state[:3], speed, turn, 0.0, 0.0]), dt)[0]
         reckoned.append(state[:2])
     return _drift(poses[:, :2], dt, np.array(reckoned), driven(len(poses)), driven(every))
 

@@ -29,6 +29,8 @@ class GroundErrors(_Deviations):
         by how much its accelerations differ in a step from those that are measured; where none are, from 0.
     odometry_share, odometry_mps
         of the speed by wheels: a share of it, and what there is at rest; they add as variances.
+    odometry_slip
+        of the share of what wheels count that is never travelled, at the beginning; fixes tell the filter.
     odometry_radps
         of the yaw rate by wheels.
     gyro_radps, gyro_bias_radps, gyro_walk
@@ -49,6 +51,7 @@ class GroundErrors(_Deviations):
     yaw_acceleration_radps2: float = 1.0
     odometry_share: float = 0.02
     odometry_mps: float = 0.005
+    odometry_slip: float = 0.02
     odometry_radps: float = 0.05
     gyro_radps: float = 0.01
     gyro_bias_radps: float = 0.01

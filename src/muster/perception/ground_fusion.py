@@ -3,8 +3,10 @@
 TCF thesis, section 2.1.1: a filter that fuses odometry and inertial unit, and what both give with fixes from outside:
 positions, as of GPS or motion capture, and artificial landmarks (tags, cylinders) at known places.
 
-The state is (6,): x, y in metres and heading in radians of the map frame; speed ahead in m/s; yaw rate in rad/s; bias
-of the gyro in rad/s. Its heading is kept in [-pi, pi).
+The state is (7,): x, y in metres and heading in radians of the map frame; speed ahead in m/s, as
+wheels count it; yaw rate in rad/s; bias of the gyro in rad/s; slip, the share of what wheels count that is not
+travelled. Its heading is kept in [-pi, pi). Speed is counted, not true, so that odometry is linear in the state: as a
+product of both it would teach the filter a slip out of noise alone.
 """
 
 from __future__ import annotations
@@ -27,16 +29,16 @@ from muster.perception.kalman import (
     predicted,
 )
 
-X, Y, HEADING, SPEED, YAW_RATE, BIAS = range(6)
-_NUMBERS = 6
+X, Y, HEADING, SPEED, YAW_RATE, BIAS, SLIP = range(7)
+_NUMBERS = 7
 _STRAIGHT = 1e-4
 """Half a turn in a step, in radians, below which a series stands for sin(h) / h and its derivative."""
 
 
-def standing_at(pose: npt.ArrayLike, deviations: npt.ArrayLike, gyro_bias_radps: float = 0.0) -> Estimate:
-    """A robot at rest at a pose (3,) that is known within `deviations` (3,), and its gyro's bias within another."""
-    spread = np.array([*np.asarray(deviations, dtype=np.float64), 0.0, 0.0, gyro_bias_radps])
-    return Estimate(np.array([*np.asarray(pose, dtype=np.float64), 0.0, 0.0, 0.0]), np.diag(spread**2))
+def standing_at(pose: npt.ArrayLike, deviations: npt.ArrayLike, errors: GroundErrors) -> Estimate:
+    """A robot at rest at a pose (3,) that is known within `deviations` (3,)."""
+    spread = [*np.asarray(deviations, dtype=np.float64), 0.0, 0.0, errors.gyro_bias_radps, errors.odometry_slip]
+    return Estimate(np.array([*np.asarray(pose, dtype=np.float64), *[0.0] * 4]), np.diag(np.square(spread)))
 
 
 def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2: float = 0.0) -> Estimate:
@@ -79,7 +81,9 @@ def moved_as_counted(
     """
     if not 0 < dt < math.inf:
         raise ParameterError(f"dt: {dt}; expected seconds above 0")
-    change = np.diag([0.0, 0.0, 0.0, errors.acceleration_mps2 * dt, errors.yaw_acceleration_radps2 * dt, 0.0]) ** 2
+    change = np.zeros((_NUMBERS, _NUMBERS))
+    change[SPEED, SPEED] = (errors.acceleration_mps2 * dt) ** 2
+    change[YAW_RATE, YAW_RATE] = (errors.yaw_acceleration_radps2 * dt) ** 2
     change[BIAS, BIAS] = errors.gyro_walk**2 * dt
     before = predicted(estimate, np.eye(_NUMBERS), change)
     spread = math.hypot(errors.odometry_share * metres, errors.odometry_mps * dt) / dt
@@ -89,32 +93,33 @@ def moved_as_counted(
     facing = near + float(wrapped(heading_rad - near))
     before = _linear(before, turning, [facing], [errors.heading_rad]).estimate
     bulge = metres * abs(before.mean[YAW_RATE]) * dt / 4
-    slack = np.diag([bulge**2, bulge**2, 0.0, 0.0, 0.0, 0.0])
+    slack = np.diag([bulge**2, bulge**2] + [0.0] * (_NUMBERS - 2))
     return _turned(extended_prediction(before, lambda state: arc(state, dt), slack))
 
 
 def arc(state: Floats, dt: float) -> tuple[Floats, Floats]:
-    """The state (6,) `dt` seconds later at even speed and yaw rate, and its derivative (6, 6)."""
-    heading, speed, half = state[HEADING], state[SPEED], state[YAW_RATE] * dt / 2
+    """The state (7,) `dt` seconds later at even speed and yaw rate, and its derivative (7, 7)."""
+    heading, half, kept = state[HEADING], state[YAW_RATE] * dt / 2, 1 - state[SLIP]
+    way = dt * state[SPEED] * kept
     chord, slope = _sinc(half)
     ahead = np.array([math.cos(heading + half), math.sin(heading + half)])
     left = np.array([-ahead[1], ahead[0]])
     after = state.copy()
-    after[:2] += dt * speed * chord * ahead
+    after[:2] += way * chord * ahead
     after[HEADING] += 2 * half
     derivative = np.eye(_NUMBERS)
-    derivative[:2, HEADING] = dt * speed * chord * left
-    derivative[:2, SPEED] = dt * chord * ahead
-    derivative[:2, YAW_RATE] = dt * speed * (slope * ahead + chord * left) * dt / 2
+    derivative[:2, HEADING] = way * chord * left
+    derivative[:2, SPEED] = dt * kept * chord * ahead
+    derivative[:2, SLIP] = -dt * state[SPEED] * chord * ahead
+    derivative[:2, YAW_RATE] = way * (slope * ahead + chord * left) * dt / 2
     derivative[HEADING, YAW_RATE] = dt
     return after, derivative
 
 
 def by_odometry(estimate: Estimate, speed_mps: float, yaw_rate_radps: float, errors: GroundErrors) -> Correction:
     """What the wheels say: speed ahead and yaw rate."""
-    speed = math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps)
-    sensor = np.eye(_NUMBERS)[[SPEED, YAW_RATE]]
-    return _linear(estimate, sensor, [speed_mps, yaw_rate_radps], [speed, errors.odometry_radps])
+    spread = [math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps), errors.odometry_radps]
+    return _linear(estimate, np.eye(_NUMBERS)[[SPEED, YAW_RATE]], [speed_mps, yaw_rate_radps], spread)
 
 
 def by_gyro(estimate: Estimate, yaw_rate_radps: float, errors: GroundErrors) -> Correction:

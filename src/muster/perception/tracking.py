@@ -58,10 +58,11 @@ class GroundTracker:
             errors = self._errors
             pose = (*said.position[:2], said.heading)
             spread = (errors.position_m, errors.position_m, errors.heading_rad)
-            self._estimate, self._last = ground_fusion.standing_at(pose, spread), said
+            self._estimate, self._last = ground_fusion.standing_at(pose, spread, errors), said
         elif said.time_s > self._last.time_s:
             self._estimate, self._last = self._advanced(self._estimate, self._last, said), said
-        x, y, heading, speed = map(float, self._estimate.mean[:4])
+        x, y, heading, counted, _, _, slip = map(float, self._estimate.mean)
+        speed = counted * (1 - slip)
         velocity = (speed * math.cos(heading), speed * math.sin(heading), said.velocity[2])
         return replace(said, position=(x, y, said.position[2]), heading=heading, velocity=velocity)
 
