@@ -212,6 +212,7 @@ class Theatre:
             assert said is not None
             self.team.tell(robot, Sense(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
             self._log.see(robot, said, self.time_s)
+        self.team.hear(0.0)  # also if the world took all the time: words that nobody hears fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.hear(left_s)
         self._notice_agreement()
