@@ -38,6 +38,8 @@ class Log:
         self._problem = problem
         self._observer, self._on_happening = observer, on_happening
         self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
+        self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
+        self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
         self._out: dict[str, str] = {}  # robot: why
         self._plans: list[Plan] = []
         self._causes: list[dict[str, Any]] = []
@@ -55,14 +57,12 @@ class Log:
         """Take in what a robot tells of itself."""
         self.used[robot] = used
         task = str(data.get("task", ""))
-        if kind == "arrives" and task not in self.ledger.ends_s:
-            self.ledger.arrive(task, used, at_s)
+        if kind == "arrives":
+            self._came[robot, task] = used, at_s
         elif kind == "starts":
             self._start(robot, task, at_s)
         elif kind == "ends":
-            self._at_work.pop(task, None)
-            if task not in self.ledger.ends_s:
-                self.ledger.end(task, robot, at_s)
+            self._end(robot, task, at_s)
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
@@ -155,12 +155,25 @@ class Log:
         )
 
     def _start(self, robot: str, task: str, at_s: float) -> None:
+        self._began_s[robot, task] = at_s
         other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
         if other != robot:
             self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
-        elif task not in self._at_work:
+        elif task not in self.ledger.ends_s and task not in self._at_work:
             self._at_work[task] = robot
-            self.ledger.begin(task, at_s)
+            self._note_begun(robot, task)
+
+    def _end(self, robot: str, task: str, at_s: float) -> None:
+        """A task counts for the robot that ends it first, whoever else was at it, or had given it up."""
+        self._at_work.pop(task, None)
+        if task not in self.ledger.ends_s:
+            self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
+            self._note_begun(robot, task)
+            self.ledger.end(task, robot, at_s)
+
+    def _note_begun(self, robot: str, task: str) -> None:
+        self.ledger.arrive(task, *self._came[robot, task])
+        self.ledger.begin(task, self._began_s[robot, task])
 
     def _lose(self, robot: str, why: str) -> None:
         """A robot is out: what it was at is given up."""
