@@ -244,11 +244,11 @@ class Theatre:
         if not self._is_possible(event):
             self._log.tell(self.time_s, "without_effect", plain(event))
             return
-        if not self._log.befalls(event, self.time_s):
-            return
         if event.robot_fails is not None:
-            self._fail(event.robot_fails)
-        elif event.robot_silent is not None:
+            self._fail(event.robot_fails)  # first, as its last words are of what was before
+        if not self._log.befalls(event, self.time_s) or event.robot_fails is not None:
+            return
+        if event.robot_silent is not None:
             self._set_radio(event.robot_silent, on=False)
         elif event.robot_returns is not None:
             self._return(event)

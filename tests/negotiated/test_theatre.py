@@ -1,0 +1,74 @@
+"""What befalls bodies and processes, and what robots say of it, in whatever order it comes."""
+
+import pytest
+
+from muster import Event, Mission, Negotiation, Robot, Task
+from muster._negotiated.log import Log
+from muster._negotiated.simulation import Theatre, order_of
+from muster._negotiated.words import Befalls, Did
+from muster.allocation.problem import Problem
+from muster.execution.record import NoObserver
+from muster.mission.model import MovedTask
+from muster.simulation import KinematicWorld
+
+pytest.importorskip("cryptography", reason="the extra `net` is not installed")
+
+MISSION = Mission(
+    robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(9, 0))), tasks=(Task(id="t", position=(0, 0)),)
+)
+
+
+class Processes:
+    """Robots' processes that do nothing; what is told to them is kept, and they have last words."""
+
+    def __init__(self, on_word, last_words=()):
+        self.living, self.gone, self.news, self.told = ["a", "b"], {}, {}, []
+        self._on_word, self._last_words, self._killed = on_word, last_words, []
+
+    def tell(self, robot, word):
+        self.told.append((robot, word))
+
+    def kill(self, robot):
+        self._killed.append(robot)
+
+    def hear(self, wait_s):
+        for robot in self._killed:
+            for word in self._last_words:
+                self._on_word(robot, word)
+            self.living.remove(robot)
+            self.gone[robot] = "killed"
+        self._killed.clear()
+
+    def agree(self, robots):
+        return False
+
+
+def did(*happenings, usages=()):
+    return Did(happenings=happenings, used=1.0, usages=dict(usages), idle=True, settled=True, heard=0)
+
+
+def theatre_of(events, tmp_path, last_words=()):
+    mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
+    order = order_of(Problem.compile(mission), Negotiation(), tmp_path)
+    log = Log(order.problem, NoObserver(), lambda happening: None)
+    theatre = Theatre(mission, KinematicWorld(mission), order, log)
+    theatre.team = Processes(theatre.hear, last_words)
+    return theatre, log
+
+
+def test_what_a_robot_began_just_before_it_failed_another_does_not_begin_twice(tmp_path):
+    words = did((0.0, "arrives", {"task": "t"}), (0.0, "starts", {"task": "t"}))
+    theatre, log = theatre_of([Event(at_s=0, robot_fails="a")], tmp_path, [words])
+    theatre.go_on(1.0)
+    theatre.hear("b", did((1.0, "arrives", {"task": "t"}), (1.0, "starts", {"task": "t"})))
+    assert "twice" not in {happening.kind for happening in log.happenings}
+    assert log.ledger.starts_s == {"t": 1.0}
+
+
+def test_what_a_robot_has_done_just_before_it_failed_is_done(tmp_path):
+    words = did((0.0, "ends", {"task": "t"}), usages={"t": (1.0, 1.0)})
+    theatre, log = theatre_of([Event(at_s=0, robot_fails="a")], tmp_path, [words])
+    theatre.hear("a", did((0.0, "arrives", {"task": "t"}), (0.0, "starts", {"task": "t"})))
+    theatre.go_on(1.0)
+    assert log.ledger.done_by == {"t": "a"}
+    assert log.ledger.starts_s == {"t": 0.0}
