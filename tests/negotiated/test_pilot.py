@@ -7,6 +7,8 @@ from tests.negotiated.company import Company
 
 from muster import Event, Mission, Robot, Task
 from muster.mission.model import MovedTask
+from muster.negotiation.messages import Fact, Message, Stage
+from muster.negotiation.tasks import content_of
 
 LONG_S = 600.0
 
@@ -104,6 +106,38 @@ def test_a_task_that_moves_is_done_where_it_is_then():
     company.pilots["a"].befalls(Event(at_s=0, move_task=MovedTask(task="t", position=(0, 20))))
     assert ends(company) == {"t": 1}
     assert company.world.ports["a"].telemetry().position == pytest.approx((0, 20, 0), abs=0.05)
+
+
+def hear(company, robot, *facts):
+    """One robot hears facts of another; only they got through."""
+    node, stage = company.net.nodes[robot], company.net.nodes[robot].stage
+    message = Message("r_1", 1, 0, Stage(stage.epoch), facts=facts)
+    node.handle(message, company.net.now)
+
+
+@pytest.mark.parametrize(("kind", "done"), [("cancelled", 0), ("moved", 1)])
+def test_what_is_heard_of_a_task_before_it_is_heard_that_there_is_one_holds(kind, done):
+    company = Company(square())
+    company.run(2.0)
+    new, elsewhere = (Task(id="new", position=(x, 5.0)) for x in (5.0, 30.0))
+    hear(company, "r_0", Fact("new", "r_1", kind, 2, content_of(elsewhere) if kind == "moved" else b""))
+    company.run(4.0)
+    hear(company, "r_0", Fact("new", "r_1", "added", 1, content_of(new)))
+    assert ends(company)["new"] == done
+    if done:
+        (robot,) = {robot for _, robot, said, data in company.told if said == "ends" and data["task"] == "new"}
+        assert company.pilots[robot]._executor.ledger.tasks["new"] == elsewhere
+
+
+def test_of_two_places_of_a_task_the_last_holds_though_it_is_heard_first():
+    company = Company(square())
+    company.run(2.0)
+    first, last = (Task(id="0", position=(x, 5.0), duration_s=0.0) for x in (5.0, 30.0))
+    hear(company, "r_0", Fact("0", "r_1", "moved", 2, content_of(last)))
+    company.run(2.2)
+    hear(company, "r_0", Fact("0", "r_1", "moved", 1, content_of(first)))
+    company.run(4.0)
+    assert {pilot._executor.ledger.tasks["0"].position for pilot in company.pilots.values()} == {last.position}
 
 
 def test_a_task_that_is_cancelled_is_left():

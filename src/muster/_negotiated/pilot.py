@@ -72,7 +72,7 @@ class Pilot:
         self._limited = problem.holds("capacity")
         self._hand = self._executor.crew[port.robot]
         self._hand.recall(used)
-        self._learned: frozenset[Fact] = frozenset()
+        self._learned: set[Fact] = set()
         self._known = 0  # the digest of what was learned
 
     @property
@@ -129,21 +129,28 @@ class Pilot:
         return [claim.task for claim in self._negotiator.route if claim.task in still]
 
     def _learn(self) -> None:
-        """Take in what others did, and what is new, as it is known among the robots."""
+        """Take in what others did, and what is new, as it is known among the robots.
+
+        What is heard of a task before it is heard that there is one waits for that.
+        """
         if self._known == self._negotiator.known:
             return
-        facts, self._known = self._negotiator.facts, self._negotiator.known
-        for fact in in_order(facts - self._learned):
+        facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
+        places = {fact.task: fact for fact in facts if fact.kind == "moved"}  # the last of each
+        tasks = self._executor.ledger.tasks
+        for fact in facts:
+            if fact in self._learned or (fact.kind != "added" and fact.task not in tasks):
+                continue
+            self._learned.add(fact)
             if fact.kind == "done":
                 self._executor.end_elsewhere(fact.task, fact.robot)
             elif fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
-            elif fact.kind == "moved":
+            elif fact.kind == "moved" and fact is places[fact.task]:
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
                 self._executor.report(Event(at_s=0.0, move_task=move))
-            elif fact.kind == "added" and fact.task not in self._executor.ledger.tasks:
+            elif fact.kind == "added" and fact.task not in tasks:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
-        self._learned = facts
 
     def _owned(self, rest: Rest) -> Revision:
         """The plan of the rest is what the robot owns, but for what it cannot do: that it gives back."""
