@@ -108,6 +108,17 @@ def test_a_task_that_moves_is_done_where_it_is_then():
     assert company.world.ports["a"].telemetry().position == pytest.approx((0, 20, 0), abs=0.05)
 
 
+def test_a_new_task_that_is_said_once_more_is_not_refused_though_it_has_moved():
+    company = Company(square())
+    company.run(2.0)
+    new = Event(at_s=0, new_task=Task(id="new", position=(5.0, 5.0)))
+    move = Event(at_s=0, move_task=MovedTask(task="new", position=(30.0, 5.0)))
+    for event in (new, move, new):
+        assert company.pilots["r_0"].befalls(event) is None
+        company.run(company.world.time_s + 1.0)
+    assert ends(company)["new"] == 1
+
+
 def hear(company, robot, *facts):
     """One robot hears facts of another; only they got through."""
     node, stage = company.net.nodes[robot], company.net.nodes[robot].stage

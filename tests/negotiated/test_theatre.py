@@ -72,3 +72,14 @@ def test_what_a_robot_has_done_just_before_it_failed_is_done(tmp_path):
     theatre.go_on(1.0)
     assert log.ledger.done_by == {"t": "a"}
     assert log.ledger.starts_s == {"t": 0.0}
+
+
+def test_what_a_robot_was_told_that_is_gone_another_is_told_unless_it_does_not_hold_any_more(tmp_path):
+    new = Event(at_s=0, new_task=Task(id="n", position=(1, 1)))
+    moves = [Event(at_s=at_s, move_task=MovedTask(task="t", position=(x, 5.0))) for at_s, x in ((0, 1.0), (0.2, 2.0))]
+    events = [new, moves[0], Event(at_s=0.1, robot_silent="a"), moves[1], Event(at_s=0.3, robot_fails="a")]
+    theatre, _ = theatre_of(events, tmp_path)
+    while theatre.time_s < 0.4:
+        theatre.go_on(1.0)
+    said = [(robot, word.event) for robot, word in theatre.team.told if isinstance(word, Befalls)]
+    assert said == [("a", new), ("a", moves[0]), ("b", moves[1]), ("b", new)]

@@ -19,7 +19,7 @@ from muster.motion.port import RobotPort
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.tasks import task_of
+from muster.negotiation.tasks import content_of, task_of
 
 _ITS_OWN = {
     "sets_out",
@@ -104,7 +104,7 @@ class Pilot:
         """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""
         try:
             if event.new_task is not None:
-                if event.new_task != self._executor.ledger.tasks.get(event.new_task.id):  # else it is said once more
+                if not self._is_known(event.new_task):  # else it is said once more
                     self._negotiator.announce(event.new_task)
             elif event.cancel_task is not None:
                 self._negotiator.cancel(event.cancel_task)
@@ -173,6 +173,11 @@ class Pilot:
             if not route or route[-1] in begun or not exceeds(me.used + ahead[robot][""], capacity):
                 return _revision({robot: tuple(route)}, ahead)
             self._negotiator.release(route.pop())
+
+    def _is_known(self, task: Task) -> bool:
+        """Whether it was heard that there is this task, wherever it is now."""
+        content = content_of(task)
+        return any(fact.kind == "added" and fact.content == content for fact in self._negotiator.facts)
 
     def _moved(self, move: MovedTask) -> Task:
         ledger = self._executor.ledger

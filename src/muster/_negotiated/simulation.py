@@ -161,6 +161,7 @@ class Theatre:
         self._due_s = world.time_s
         self._unsaid: list[Event] = []  # of what concerns tasks, while no robot can be reached
         self._said: dict[str, list[Event]] = {}  # the same by the robot that was told
+        self._last_move: dict[str, Event] = {}  # of each task
         self._orders: dict[str, int] = {}  # that bodies were given
         self._agreed_at: Stage | None = None  # of the auction, when its plan was taken in last
 
@@ -205,6 +206,8 @@ class Theatre:
             pass
         while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
             self._befalls(self._ahead.pop(0))
+        for robot in self._said.keys() & self.team.gone.keys():
+            self._unsaid += filter(self._holds, self._said.pop(robot))  # nobody else may know
         while self._unsaid and self._connected:
             self._say(self._unsaid.pop(0), self._connected[0])
         for robot in self.team.living:
@@ -260,6 +263,8 @@ class Theatre:
                 self._say(event, robot)
         else:
             self._unsaid.append(event)
+            if event.move_task is not None:
+                self._last_move[event.move_task.task] = event
 
     def _is_possible(self, event: Event) -> bool:
         """Whether the robot that an event is about is in a state to which it applies."""
@@ -273,12 +278,11 @@ class Theatre:
         return True
 
     def _fail(self, robot: str) -> None:
-        """A robot breaks down, with its process. What only it was told has to be said again."""
+        """A robot breaks down, with its process."""
         self._world.fail(robot)
         self.team.kill(robot)
         while robot in self.team.living:
             self.team.hear(_LOOK_S)
-        self._unsaid += self._said.pop(robot, [])
 
     def _return(self, event: Event) -> None:
         robot = event.robot_returns
@@ -296,6 +300,10 @@ class Theatre:
     def _set_radio(self, robot: str, *, on: bool) -> None:
         (self._cut_off.discard if on else self._cut_off.add)(robot)
         self.team.tell(robot, Radio(on))
+
+    def _holds(self, event: Event) -> bool:
+        """Whether no later event has made void what this one says."""
+        return event.move_task is None or event is self._last_move[event.move_task.task]
 
     def _say(self, event: Event, robot: str) -> None:
         self._spoken[robot] = self._spoken.get(robot, 0) + 1
