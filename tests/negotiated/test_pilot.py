@@ -187,6 +187,22 @@ def test_a_robot_that_uses_more_than_planned_gives_back_what_it_cannot_do():
     assert ("b", "far") in {(robot, data["task"]) for _, robot, kind, data in company.told if kind == "ends"}
 
 
+def test_who_has_lost_the_majority_does_what_may_be_done_twice_and_rests():
+    own, follows = Task(id="own", position=(5, 9), across_partition="at-most-once"), Task(id="free", position=(9, 9))
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(20.0 * k, 0.0)) for k in range(3)),
+        tasks=(own, follows, Task(id="waits", position=(0, 9), prerequisites=("own",))),
+    )
+    company = Company(mission)
+    company.run(2.0)
+    company.crash("r_1")
+    company.crash("r_2")
+    assert ends(company) == {"free": 1}
+    company.restart("r_1")
+    company.run(company.world.time_s + 5.0)
+    assert ends(company) == {"free": 1, "own": 1, "waits": 1}
+
+
 def test_a_robot_that_is_stuck_leaves_its_tasks_to_others():
     mission = square(robots=2, tasks=4)
     company = Company(mission)

@@ -124,8 +124,8 @@ class Pilot:
 
     @property
     def _wanted(self) -> list[str]:
-        """What it owns, in order."""
-        still = {task.id for task in self._executor.ledger.open}
+        """What it owns, in order, without what has to wait for more robots: meanwhile it does the rest."""
+        still = {task.id for task in self._executor.ledger.open} - self._negotiator.held
         return [claim.task for claim in self._negotiator.route if claim.task in still]
 
     def _learn(self) -> None:

@@ -98,7 +98,7 @@ class Participant:
     @property
     def twice(self) -> Mapping[str, tuple[str, ...]]:
         """Tasks that several have done or begun, with these, as far as this robot knows."""
-        base = self.epochs[-1].base if self.epochs else None
+        base = self._base
         done = {task: doers for task, doers in self._work.known.doers.items() if len(doers) > 1}
         return {**(base.twice if base else {}), **done}
 
@@ -140,9 +140,14 @@ class Participant:
         return out
 
     @property
+    def _base(self) -> Base | None:
+        """The last that was found."""
+        return self.epochs[-1].base if self.epochs else None
+
+    @property
     def _rules(self) -> Rules:
         """The rules with the tasks that were added."""
-        base = self.epochs[-1].base if self.epochs else None
+        base = self._base
         return self.rules.with_added(base.added) if base else self.rules
 
     def _enter(self, number: int, now: float) -> list[Outgoing]:
