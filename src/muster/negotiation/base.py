@@ -248,8 +248,3 @@ def _with_followers(tasks: frozenset[str], routes: Routes, rules: Rules) -> froz
 
 def _digest(declarations: Sequence[Declaration]) -> bytes:
     return blake2b(repr([replace(d, facts=in_order(d.facts)) for d in declarations]).encode(), digest_size=8).digest()
-
-
-def with_begun(claims: Sequence[Claim], task: str) -> tuple[Claim, ...]:
-    """The claims, one of them begun."""
-    return tuple(replace(claim, begun=True) if claim.task == task else claim for claim in claims)
