@@ -1,5 +1,7 @@
 """What befalls bodies and processes, and what robots say of it, in whatever order it comes."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from muster import Event, Mission, Negotiation, Robot, Task
@@ -9,6 +11,7 @@ from muster._negotiated.words import Befalls, Did
 from muster.allocation.problem import Problem
 from muster.execution.record import NoObserver
 from muster.mission.model import MovedTask
+from muster.negotiation.messages import Stage
 from muster.simulation import KinematicWorld
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
@@ -40,7 +43,10 @@ class Processes:
         self._killed.clear()
 
     def agree(self, robots):
-        return False
+        return "a" in self.news
+
+    def views(self, robots):
+        return {"a": SimpleNamespace(stage=Stage(3, b"base"))}
 
 
 def did(*happenings, usages=()):
@@ -83,3 +89,10 @@ def test_what_a_robot_was_told_that_is_gone_another_is_told_unless_it_does_not_h
         theatre.go_on(1.0)
     said = [(robot, word.event) for robot, word in theatre.team.told if isinstance(word, Befalls)]
     assert said == [("a", new), ("a", moves[0]), ("b", moves[1]), ("b", new)]
+
+
+def test_the_plan_of_a_robot_that_has_gone_on_since_all_agreed_is_not_taken_in(tmp_path):
+    theatre, log = theatre_of([], tmp_path)
+    theatre.team.news["a"] = SimpleNamespace(stage=Stage(2, b"base", 1, ended=True))
+    theatre.go_on(1.0)
+    assert log.account.objective_planned is None

@@ -239,7 +239,9 @@ class Theatre:
         if stage == self._agreed_at:
             return
         for view in self.team.views(connected[:1]).values():
-            self._agreed_at = view.stage
+            if view.stage != stage:  # it has gone on meanwhile, and owns by now what nobody has agreed on yet
+                return
+            self._agreed_at = stage
             self._log.agreed(self._method.plan(self._order.problem, self._order.terms, view, None), self.time_s)
 
     def _befalls(self, event: Event) -> None:
