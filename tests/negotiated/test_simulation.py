@@ -128,6 +128,8 @@ def test_what_is_neither_a_plan_nor_a_negotiation_is_refused():
         muster.simulate(line(), "auction")
     with pytest.raises(ParameterError, match="expected auction"):
         muster.simulate(line(), Negotiation(method="dance"))
+    with pytest.raises(ParameterError, match="speed: 11; expected at most 10"):
+        muster.simulate(line(), Negotiation(), speed=11.0)
 
 
 def test_who_does_not_agree_in_time_does_not_begin():

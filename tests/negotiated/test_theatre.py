@@ -6,7 +6,8 @@ import pytest
 
 from muster import Event, Mission, Negotiation, Robot, Task
 from muster._negotiated.log import Log
-from muster._negotiated.simulation import Theatre, order_of
+from muster._negotiated.simulation import order_of
+from muster._negotiated.theatre import Theatre
 from muster._negotiated.words import Befalls, Did
 from muster.allocation.problem import Problem
 from muster.execution.record import NoObserver
