@@ -43,7 +43,12 @@ class Processes:
             self.gone[robot] = "killed"
         self._killed.clear()
 
+    def start(self, robot):
+        self.living.append(robot)
+        del self.gone[robot]
+
     def agree(self, robots):
+        self.asked_of = list(robots)
         return "a" in self.news
 
     def views(self, robots):
@@ -97,3 +102,11 @@ def test_the_plan_of_a_robot_that_has_gone_on_since_all_agreed_is_not_taken_in(t
     theatre.team.news["a"] = SimpleNamespace(stage=Stage(2, b"base", 1, ended=True))
     theatre.go_on(1.0)
     assert log.account.objective_planned is None
+
+
+def test_the_radio_of_a_robot_works_that_was_cut_off_then_failed_and_returns(tmp_path):
+    events = [Event(at_s=0, robot_silent="a"), Event(at_s=0.1, robot_fails="a"), Event(at_s=0.2, robot_returns="a")]
+    theatre, _ = theatre_of(events, tmp_path)
+    while theatre.time_s < 0.3:
+        theatre.go_on(1.0)
+    assert sorted(theatre.team.asked_of) == ["a", "b"]

@@ -167,6 +167,7 @@ class Theatre:
         """A robot breaks down, with its process."""
         self._world.fail(robot)
         self.team.kill(robot)
+        self._cut_off.discard(robot)  # its next process has a radio that works
         while robot in self.team.living:
             self.team.hear(_LOOK_S)
 
