@@ -204,15 +204,30 @@ def test_who_has_lost_the_majority_does_what_may_be_done_twice_and_rests():
 
 
 def test_a_robot_that_is_stuck_leaves_its_tasks_to_others():
-    mission = square(robots=2, tasks=4)
+    mission = square(seed=1, robots=2, tasks=6)
     company = Company(mission)
-    company.run(3.0)
+    company.run(1.0)
+    owned = {claim.task for claim in company.net.nodes["r_0"].route}
     company.world.fail("r_0", silent=False)  # it stands, and its process goes on
     assert set(ends(company)) == {task.id for task in mission.tasks}
+    assert owned
+    assert "robot_stuck" in {kind for _, robot, kind, _ in company.told if robot == "r_0"}
     assert company.pilots["r_0"].befalls(Event(at_s=0, robot_returns="r_0")) is None
     company.world.recover("r_0")
     company.pilots["r_1"].befalls(Event(at_s=0, new_task=Task(id="new", position=mission.robots[0].position)))
     assert ends(company)["new"] == 1
+
+
+def test_a_robot_that_is_out_asks_for_no_new_epoch_whenever_it_hears_of_something():
+    company = Company(square(seed=1, robots=2, tasks=6))
+    company.run(1.0)
+    company.world.fail("r_0", silent=False)
+    ends(company)
+    assert "robot_stuck" in {kind for _, _, kind, _ in company.told}
+    before = company.net.nodes["r_1"].stage.epoch
+    company.pilots["r_0"]._executor.plan_again("heard", {})
+    company.run(company.world.time_s + 2.0)
+    assert company.net.nodes["r_1"].stage.epoch == before
 
 
 def test_a_robot_that_comes_late_takes_tasks():
