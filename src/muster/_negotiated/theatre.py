@@ -7,7 +7,7 @@ import time
 
 from muster._negotiated.log import Log
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
-from muster.execution.executor import may_bring_work
+from muster.execution.changes import may_bring_work
 from muster.mission.errors import MusterError
 from muster.mission.model import Event, Mission
 from muster.mission.yaml_writer import plain
