@@ -45,7 +45,7 @@ class Processes:
 
     def start(self, robot):
         self.living.append(robot)
-        del self.gone[robot]
+        self.gone.pop(robot, None)
 
     def agree(self, robots):
         self.asked_of = list(robots)
@@ -62,7 +62,7 @@ def did(*happenings, usages=()):
 def theatre_of(events, tmp_path, last_words=()):
     mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
     order = order_of(Problem.compile(mission), Negotiation(), tmp_path)
-    log = Log(order.problem, NoObserver(), lambda happening: None)
+    log = Log(order.problem, NoObserver(), lambda happening: None, order.late)
     theatre = Theatre(mission, KinematicWorld(mission), order, log)
     theatre.team = Processes(theatre.hear, last_words)
     return theatre, log
@@ -110,3 +110,10 @@ def test_the_radio_of_a_robot_works_that_was_cut_off_then_failed_and_returns(tmp
     while theatre.time_s < 0.3:
         theatre.go_on(1.0)
     assert sorted(theatre.team.asked_of) == ["a", "b"]
+
+
+def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):
+    events = [Event(at_s=at_s, robot_joins=Robot(id=robot, position=(0, 9))) for at_s, robot in ((0, "j"), (99, "k"))]
+    theatre, log = theatre_of(events, tmp_path)
+    theatre.go_on(1.0)
+    assert set(log.account.used) == {"a", "b", "j"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from muster.allocation.problem import Problem
@@ -29,12 +29,20 @@ class Log:
         is told all.
     on_happening
         is told what happens.
+    late
+        robots that are not there before they join.
     """
 
-    def __init__(self, problem: Problem, observer: Observer, on_happening: Callable[[Happening], None]) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        observer: Observer,
+        on_happening: Callable[[Happening], None],
+        late: Collection[str] = (),
+    ) -> None:
         self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisites"))
         self.happenings: list[Happening] = []
-        self.used = {robot.id: 0.0 for robot in problem.mission.robots}
+        self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
         self._observer, self._on_happening = observer, on_happening
         self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
@@ -87,6 +95,8 @@ class Log:
             self.ledger.move(event.move_task.task, event.move_task.position)
         elif event.robot_fails is not None:
             self._lose(event.robot_fails, f"failed at {now_s:g} s")
+        elif event.robot_joins is not None:
+            self.used[event.robot_joins.id] = 0.0
         elif event.robot_returns is not None:
             self._out.pop(event.robot_returns, None)
         what = "task" if kind.endswith("_task") else "robot"

@@ -94,7 +94,7 @@ def negotiate_and_carry_out(
             observe_s=0.0 if recorder is None else 0.1,
         )
         order = order_of(problem, negotiation, memory)
-        log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None))
+        log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
         theatre = Theatre(problem.mission, world, order, log)
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
