@@ -44,6 +44,12 @@ class Negotiator(Participant):
         return self._rules.once
 
     @property
+    def held(self) -> frozenset[str]:
+        """Tasks that nobody who is here may begin, until more are here that know."""
+        base = self._base
+        return base.held if base else frozenset()
+
+    @property
     def route(self) -> tuple[Claim, ...]:
         """What this robot owns, in the order in which it is going to do it; nothing before it has heard the others."""
         return self._work.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()

@@ -122,7 +122,8 @@ class Work:
         """Take no tasks any more, and give back all that has not been begun."""
         for task in self.reserved.keys() - self.begun:
             self.give_up(task)
-        self.out = self.restless = True
+        self.restless |= not self.out
+        self.out = True
 
     def give_up_lost(self, kept: Sequence[Claim]) -> None:
         """Give up what was reserved and went to another before it was begun."""
