@@ -218,6 +218,38 @@ def test_a_robot_that_is_stuck_leaves_its_tasks_to_others():
     assert ends(company)["new"] == 1
 
 
+def test_a_robot_that_is_stuck_at_what_nobody_may_do_again_tells_so_and_nobody_waits_for_it():
+    once = {"across_partition": "at-most-once"}
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(20.0 * k, 0.0)) for k in range(3)),
+        tasks=(
+            Task(id="a", position=(40.0, 2.0), duration_s=50.0, **once),
+            Task(id="b", position=(0.0, 2.0), prerequisites=("a",)),
+            Task(id="c", position=(-2.0, 6.0)),
+        ),
+    )
+    company = Company(mission)
+    assert company.run(20.0, lambda: company.times("starts")["a"] == 1)
+    company.world.fail("r_2", silent=False)
+    assert ends(company) == {"c": 1}
+    assert company.times("starts") == {"a": 1, "c": 1}
+
+
+def test_nobody_waits_for_a_task_that_was_begun_and_is_cancelled():
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(20.0 * k, 0.0)) for k in range(2)),
+        tasks=(
+            Task(id="a", position=(20.0, 2.0), duration_s=50.0),
+            Task(id="b", position=(0.0, 2.0), prerequisites=("a",)),
+        ),
+    )
+    company = Company(mission)
+    assert company.run(20.0, lambda: company.times("starts")["a"] == 1)
+    company.pilots["r_0"].befalls(Event(at_s=0, cancel_task="a"))
+    assert ends(company) == {}
+    assert company.world.time_s < 40.0
+
+
 def test_a_robot_that_is_out_asks_for_no_new_epoch_whenever_it_hears_of_something():
     company = Company(square(seed=1, robots=2, tasks=6))
     company.run(1.0)

@@ -146,6 +146,7 @@ class Pilot:
                 self._executor.end_elsewhere(fact.task, fact.robot)
             elif fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
+                self._negotiator.abandon(fact.task)
             elif fact.kind == "moved" and fact is places[fact.task]:
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
                 self._executor.report(Event(at_s=0.0, move_task=move))
@@ -163,6 +164,8 @@ class Pilot:
         if not rest.crew:
             for task in begun - once:
                 self._negotiator.release(task)
+            for task in begun & once:  # nobody else may do it, nor what waits for it
+                self._negotiator.cancel(task)
             self._negotiator.withdraw()
             return _revision({}, {})
         (me,) = rest.crew

@@ -118,6 +118,10 @@ class Negotiator(Participant):
         """Take a task out of the mission; who has begun it goes on."""
         self._work.say(task, "cancelled")
 
+    def abandon(self, task: str) -> None:
+        """Stop with a task that is cancelled, if it was begun: nobody waits any more for what waits for it."""
+        self._work.abandon(task)
+
     def release(self, task: str) -> None:
         """Give a task back, also one that was begun: others may have it, this robot does not bid for it any more.
 

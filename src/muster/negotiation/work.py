@@ -105,6 +105,11 @@ class Work:
         self.begun.discard(task)
         self.say(task, "done")
 
+    def abandon(self, task: str) -> None:
+        if task in self.begun:
+            self.begun.discard(task)
+            self.restless = True
+
     def release(self, task: str, rules: Rules) -> None:
         if task in rules.once and task in self.begun:
             raise ParameterError(f"release: {shown(task)}; expected a task that may be begun again")
