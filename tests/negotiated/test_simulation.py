@@ -82,6 +82,14 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
     assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
 
 
+def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
+    report, told = carried_out(line([Event(at_s=8 + k, robot_fails=f"r_{k}") for k in range(3)]))
+    assert set(report.tasks_done) < {task.id for task in line().tasks}
+    assert {h.data["robot"] for h in told["robot_fails"]} == {"r_0", "r_1", "r_2"}
+    assert all("failed at" in reason for _, reason in report.tasks_lost)
+    assert sum(robot.usage_flown for robot in report.robots) > 10  # that of the dead, too
+
+
 def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     mission = Mission(
         robots=tuple(Robot(id=f"r_{k}", position=(30.0 * k, 0.0), radius_m=0.3) for k in range(2)),

@@ -51,7 +51,7 @@ class Theatre:
         if isinstance(word, Steer):
             self._orders[robot] = self._world.ports[robot].send(word.waypoints)
         elif isinstance(word, Did):
-            self._did[robot] = word
+            self._did[robot], self._log.used[robot] = word, word.used
             for at_s, kind, data in word.happenings:
                 self._log.take(robot, at_s, kind, data, word.used)
             for task, usage in word.usages.items():

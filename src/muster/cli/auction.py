@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ from muster.cli.auction_options import (
 )
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
+    Finite,
     format_option,
     ignore_option,
     load_mission,
@@ -57,7 +59,7 @@ class Agreement:
 @ignore_option
 @terms_options
 @click.option(
-    "--time-limit", type=click.FloatRange(min=0), default=60.0, show_default=True, metavar="S", help="To agree within."
+    "--time-limit", type=Finite(0, 1e6), default=60.0, show_default=True, metavar="S", help="To agree within."
 )
 @robot_options
 @click.option(
@@ -107,7 +109,7 @@ def command(
     from muster.negotiation.methods import method_named
 
     if mission is None:
-        return _replayed(others["network_seed"])
+        return _replayed(others)
     _check_together(others)
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
     require_csv(book)
@@ -130,8 +132,14 @@ def command(
     return INCOMPLETE if require_complete and not plan.complete else DONE
 
 
-def _replayed(seed: int | None) -> int:
+def _replayed(others: Mapping[str, Any]) -> int:
     """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
+    seed = others["network_seed"]
+    for name in _OF_A_SIMULATED_NETWORK:
+        if seed is not None and others[name] is not None:
+            raise ParameterError(
+                f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
+            )
     if seed is None:
         raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
     from muster.studies.negotiation.trial import replay

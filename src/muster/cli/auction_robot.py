@@ -114,7 +114,10 @@ class _Watch:
         refused = "".join(
             f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
         )
-        self._say(f"agreed after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}")
+        without = f" without {', '.join(status.silent)}" if status.silent else ""
+        self._say(
+            f"agreed{without} after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}"
+        )
 
 
 def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Transport:

@@ -49,7 +49,7 @@ class Team:
     """
 
     def __init__(self, order: Order, on_word: Callable[[str, object], None] = lambda robot, word: None) -> None:
-        require_net()
+        require_net("cryptography", "msgpack", *(("zenoh",) if order.transport == "zenoh" else ()))
         self.robots = [robot.id for robot in order.problem.mission.robots]
         self.news: dict[str, News] = {}
         self.gone: dict[str, str] = {}
