@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from muster.cli.agreement import Agreement
 from muster.cli.auction_options import (
     method_options,
     result_options,
@@ -37,19 +37,10 @@ from muster.mission.plan import Plan
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
     from muster.negotiation.methods import Method
-    from muster.negotiation.view import View
 
 _FILE = click.Path(path_type=Path)
 _OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file")
 _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
-
-
-@dataclass(frozen=True)
-class Agreement:
-    """What robots have agreed on: how each sees it (by robot), and how long it took, seconds."""
-
-    views: dict[str, View]
-    took_s: float
 
 
 @click.command()

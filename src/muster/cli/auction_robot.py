@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.auction import Agreement
+from muster.cli.agreement import Agreement
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.codec import Codec
