@@ -296,6 +296,17 @@ def test_what_does_not_go_together_is_told(muster, three, options, message):
     assert err.count("\n") == 1
 
 
+def test_what_is_no_number_is_refused(muster, three):
+    code, _, err = muster("auction", three, "--simulate-network", 1, "--cut", "nan")
+    assert code == 2
+    assert "nan is not in the range" in err
+
+
+def test_a_run_of_the_campaign_has_its_own_faults(muster):
+    code, _, err = muster("auction", "--simulate-network", 1, "--loss", 0.1)
+    assert (code, err.partition(";")[0]) == (2, "--loss given")
+
+
 def test_a_key_is_not_overwritten_and_is_its_owners_alone(muster, three):
     assert Path("key").stat().st_mode & 0o777 == 0o600
     code, _, err = muster("auction", "--new-key", "key")

@@ -1,11 +1,15 @@
 """Robots as real processes, over the real transport, in a simulated world that goes on at the pace of real time."""
 
+import threading
+import time
+
 import pytest
 
 import muster
 from muster import Event, Mission, Negotiation, Robot, Task
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import DelayedTask, MovedTask
+from muster.simulation import KinematicWorld
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
@@ -78,6 +82,14 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
     assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
 
 
+def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
+    report, told = carried_out(line([Event(at_s=8 + k, robot_fails=f"r_{k}") for k in range(3)]))
+    assert set(report.tasks_done) < {task.id for task in line().tasks}
+    assert {h.data["robot"] for h in told["robot_fails"]} == {"r_0", "r_1", "r_2"}
+    assert all("failed at" in reason for _, reason in report.tasks_lost)
+    assert sum(robot.usage_flown for robot in report.robots) > 10  # that of the dead, too
+
+
 def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     mission = Mission(
         robots=tuple(Robot(id=f"r_{k}", position=(30.0 * k, 0.0), radius_m=0.3) for k in range(2)),
@@ -102,11 +114,30 @@ def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():
     assert "twice" not in told
 
 
+def test_robots_are_heard_though_the_world_is_slower_than_real_time(monkeypatch):
+    advance = KinematicWorld.advance
+
+    def slowly(world, until_s):
+        time.sleep(0.06)
+        return advance(world, until_s)
+
+    monkeypatch.setattr(KinematicWorld, "advance", slowly)
+    mission = Mission(robots=(Robot(id="a", position=(0, 0)),), tasks=(Task(id="t", position=(4, 0)),))
+    halt = threading.Event()
+    guard = threading.Timer(30.0, halt.set)
+    guard.start()
+    report, _ = carried_out(mission, halt=halt)
+    guard.cancel()
+    assert report.tasks_done == ("t",)
+
+
 def test_what_is_neither_a_plan_nor_a_negotiation_is_refused():
     with pytest.raises(ParameterError, match="expected a Plan or a Negotiation"):
         muster.simulate(line(), "auction")
     with pytest.raises(ParameterError, match="expected auction"):
         muster.simulate(line(), Negotiation(method="dance"))
+    with pytest.raises(ParameterError, match="speed: 11; expected at most 10"):
+        muster.simulate(line(), Negotiation(), speed=11.0)
 
 
 def test_who_does_not_agree_in_time_does_not_begin():

@@ -1,4 +1,4 @@
-"""What a robot's process keeps is what it has when it starts again, and is kept before anything is sent."""
+"""What a robot's process keeps is what it has when it starts again."""
 
 import string
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from muster.mission.errors import InputError
 from muster.negotiation.happenings import Memory
-from muster.negotiation.memory_file import Kept, Remembering, kept_in
+from muster.negotiation.memory_file import Kept, kept_in
 from muster.negotiation.messages import Claim, Fact
 
 names = st.text(string.ascii_letters + '"\\ ä/', min_size=1, max_size=4)
@@ -44,27 +44,3 @@ def test_other_content_is_refused(tmp_path, text):
     file.write_bytes(text.encode("latin-1"))
     with pytest.raises(InputError, match="memory: other content; expected what --memory has written"):
         kept_in(file, "ab", "r")
-
-
-def test_nothing_is_sent_before_it_is_kept():
-    told = []
-
-    class Wire:
-        room, datagrams, bytes_sent, lost_here = 1200, 3, 4, 5
-
-        def send(self, data, to=None):
-            told.append((data, to))
-
-        def receive(self, wait_s):
-            return [b"heard"]
-
-        def close(self):
-            told.append("closed")
-
-    transport = Remembering(Wire(), lambda: told.append("kept"))
-    transport.send(b"news")
-    transport.send(b"answer", "r_1")
-    transport.close()
-    assert told == ["kept", (b"news", None), "kept", (b"answer", "r_1"), "closed"]
-    assert transport.receive(0.0) == [b"heard"]
-    assert (transport.room, transport.datagrams, transport.bytes_sent, transport.lost_here) == (1200, 3, 4, 5)

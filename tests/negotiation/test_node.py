@@ -142,3 +142,12 @@ def test_the_transport_is_closed_when_something_goes_wrong(alone):
     with pytest.raises(KeyboardInterrupt), node:
         raise KeyboardInterrupt
     assert transport.closed
+
+
+def test_nothing_is_sent_before_it_is_kept(alone):
+    _, transport, node = alone
+    sent_by_then = []
+    node.keep = lambda: sent_by_then.append(len(transport.sent))
+    node.start()
+    assert sent_by_then == list(range(len(transport.sent)))
+    assert sent_by_then

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from muster.allocation.problem import Problem
@@ -29,15 +29,25 @@ class Log:
         is told all.
     on_happening
         is told what happens.
+    late
+        robots that are not there before they join.
     """
 
-    def __init__(self, problem: Problem, observer: Observer, on_happening: Callable[[Happening], None]) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        observer: Observer,
+        on_happening: Callable[[Happening], None],
+        late: Collection[str] = (),
+    ) -> None:
         self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisites"))
         self.happenings: list[Happening] = []
-        self.used = {robot.id: 0.0 for robot in problem.mission.robots}
+        self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
         self._observer, self._on_happening = observer, on_happening
         self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
+        self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
+        self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
         self._out: dict[str, str] = {}  # robot: why
         self._plans: list[Plan] = []
         self._causes: list[dict[str, Any]] = []
@@ -55,14 +65,12 @@ class Log:
         """Take in what a robot tells of itself."""
         self.used[robot] = used
         task = str(data.get("task", ""))
-        if kind == "arrives" and task not in self.ledger.ends_s:
-            self.ledger.arrive(task, used, at_s)
+        if kind == "arrives":
+            self._came[robot, task] = used, at_s
         elif kind == "starts":
             self._start(robot, task, at_s)
         elif kind == "ends":
-            self._at_work.pop(task, None)
-            if task not in self.ledger.ends_s:
-                self.ledger.end(task, robot, at_s)
+            self._end(robot, task, at_s)
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
@@ -87,6 +95,8 @@ class Log:
             self.ledger.move(event.move_task.task, event.move_task.position)
         elif event.robot_fails is not None:
             self._lose(event.robot_fails, f"failed at {now_s:g} s")
+        elif event.robot_joins is not None:
+            self.used[event.robot_joins.id] = 0.0
         elif event.robot_returns is not None:
             self._out.pop(event.robot_returns, None)
         what = "task" if kind.endswith("_task") else "robot"
@@ -155,12 +165,25 @@ class Log:
         )
 
     def _start(self, robot: str, task: str, at_s: float) -> None:
+        self._began_s[robot, task] = at_s
         other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
         if other != robot:
             self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
-        elif task not in self._at_work:
+        elif task not in self.ledger.ends_s and task not in self._at_work:
             self._at_work[task] = robot
-            self.ledger.begin(task, at_s)
+            self._note_begun(robot, task)
+
+    def _end(self, robot: str, task: str, at_s: float) -> None:
+        """A task counts for the robot that ends it first, whoever else was at it, or had given it up."""
+        self._at_work.pop(task, None)
+        if task not in self.ledger.ends_s:
+            self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
+            self._note_begun(robot, task)
+            self.ledger.end(task, robot, at_s)
+
+    def _note_begun(self, robot: str, task: str) -> None:
+        self.ledger.arrive(task, *self._came[robot, task])
+        self.ledger.begin(task, self._began_s[robot, task])
 
     def _lose(self, robot: str, why: str) -> None:
         """A robot is out: what it was at is given up."""

@@ -19,7 +19,7 @@ from muster.motion.port import RobotPort
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.tasks import task_of
+from muster.negotiation.tasks import content_of, task_of
 
 _ITS_OWN = {
     "sets_out",
@@ -72,7 +72,7 @@ class Pilot:
         self._limited = problem.holds("capacity")
         self._hand = self._executor.crew[port.robot]
         self._hand.recall(used)
-        self._learned: frozenset[Fact] = frozenset()
+        self._learned: set[Fact] = set()
         self._known = 0  # the digest of what was learned
 
     @property
@@ -104,7 +104,7 @@ class Pilot:
         """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""
         try:
             if event.new_task is not None:
-                if event.new_task != self._executor.ledger.tasks.get(event.new_task.id):  # else it is said once more
+                if not self._is_known(event.new_task):  # else it is said once more
                     self._negotiator.announce(event.new_task)
             elif event.cancel_task is not None:
                 self._negotiator.cancel(event.cancel_task)
@@ -124,26 +124,34 @@ class Pilot:
 
     @property
     def _wanted(self) -> list[str]:
-        """What it owns, in order."""
-        still = {task.id for task in self._executor.ledger.open}
+        """What it owns, in order, without what has to wait for more robots: meanwhile it does the rest."""
+        still = {task.id for task in self._executor.ledger.open} - self._negotiator.held
         return [claim.task for claim in self._negotiator.route if claim.task in still]
 
     def _learn(self) -> None:
-        """Take in what others did, and what is new, as it is known among the robots."""
+        """Take in what others did, and what is new, as it is known among the robots.
+
+        What is heard of a task before it is heard that there is one waits for that.
+        """
         if self._known == self._negotiator.known:
             return
-        facts, self._known = self._negotiator.facts, self._negotiator.known
-        for fact in in_order(facts - self._learned):
+        facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
+        places = {fact.task: fact for fact in facts if fact.kind == "moved"}  # the last of each
+        tasks = self._executor.ledger.tasks
+        for fact in facts:
+            if fact in self._learned or (fact.kind != "added" and fact.task not in tasks):
+                continue
+            self._learned.add(fact)
             if fact.kind == "done":
                 self._executor.end_elsewhere(fact.task, fact.robot)
             elif fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
-            elif fact.kind == "moved":
+                self._negotiator.abandon(fact.task)
+            elif fact.kind == "moved" and fact is places[fact.task]:
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
                 self._executor.report(Event(at_s=0.0, move_task=move))
-            elif fact.kind == "added" and fact.task not in self._executor.ledger.tasks:
+            elif fact.kind == "added" and fact.task not in tasks:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
-        self._learned = facts
 
     def _owned(self, rest: Rest) -> Revision:
         """The plan of the rest is what the robot owns, but for what it cannot do: that it gives back."""
@@ -156,6 +164,8 @@ class Pilot:
         if not rest.crew:
             for task in begun - once:
                 self._negotiator.release(task)
+            for task in begun & once:  # nobody else may do it, nor what waits for it
+                self._negotiator.cancel(task)
             self._negotiator.withdraw()
             return _revision({}, {})
         (me,) = rest.crew
@@ -166,6 +176,11 @@ class Pilot:
             if not route or route[-1] in begun or not exceeds(me.used + ahead[robot][""], capacity):
                 return _revision({robot: tuple(route)}, ahead)
             self._negotiator.release(route.pop())
+
+    def _is_known(self, task: Task) -> bool:
+        """Whether it was heard that there is this task, wherever it is now."""
+        content = content_of(task)
+        return any(fact.kind == "added" and fact.content == content for fact in self._negotiator.facts)
 
     def _moved(self, move: MovedTask) -> Task:
         ledger = self._executor.ledger

@@ -10,7 +10,7 @@ from muster._negotiated.pilot import Pilot
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
 from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
-from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.node import Node
 from muster.negotiation.seat import Orders, Seat, Teller
 from muster.negotiation.transport import Around, Transport
 from muster.negotiation.watch import Ready
@@ -31,7 +31,7 @@ def decide_for_itself(seat: Seat) -> None:
         return radios[0]
 
     with seat.node(by_radio) as node:
-        robot = _Robot(seat, node.negotiator, radios[0])
+        robot = Being(seat, node, radios[0])
         if not seat.comes_late:
             seat.pipe.send(Ready())
             orders.go.wait()
@@ -81,11 +81,11 @@ class PipePort:
         return self.said
 
 
-class _Robot:
+class Being:
     """What the process does beside the auction."""
 
-    def __init__(self, seat: Seat, negotiator: Negotiator, radio: RadioLink) -> None:
-        self._seat, self._negotiator, self._radio = seat, negotiator, radio
+    def __init__(self, seat: Seat, node: Node, radio: RadioLink) -> None:
+        self._seat, self._node, self._radio = seat, node, radio
         self._pilot: Pilot | None = None
         self._now_s = 0.0
         self._heard = 0
@@ -120,19 +120,24 @@ class _Robot:
             used=pilot.used,
             usages={str(data["task"]): pilot.usage(data["task"]) for _, kind, data in happenings if kind == "ends"},
             idle=pilot.idle,
-            settled=self._negotiator.settled,
+            settled=self._node.negotiator.settled,
             heard=self._heard,
         )
         if did != self._told:
             self._told = replace(did, happenings=[], usages={})
             self._seat.pipe.send(did)
 
+    def _steer(self, steer: Steer) -> None:
+        """Steer the body, after what the robot has begun by that is kept: in its next life it must know."""
+        self._node.keep()
+        self._seat.pipe.send(steer)
+
     def _sense(self, sense: Sense) -> None:
         self._now_s = sense.now_s
         if self._pilot is None:
             seat = self._seat
-            self._port = PipePort(seat.robot, seat.pipe.send, sense.orders, sense.telemetry)
-            self._pilot = Pilot(seat.problem, self._port, self._negotiator, sense.now_s, sense.used)
+            self._port = PipePort(seat.robot, self._steer, sense.orders, sense.telemetry)
+            self._pilot = Pilot(seat.problem, self._port, self._node.negotiator, sense.now_s, sense.used)
         else:
             self._port.said = sense.telemetry
 

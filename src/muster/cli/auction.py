@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from muster.cli.agreement import Agreement
 from muster.cli.auction_options import (
     method_options,
     result_options,
@@ -19,6 +20,7 @@ from muster.cli.auction_options import (
 )
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
+    Finite,
     format_option,
     ignore_option,
     load_mission,
@@ -35,19 +37,10 @@ from muster.mission.plan import Plan
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
     from muster.negotiation.methods import Method
-    from muster.negotiation.view import View
 
 _FILE = click.Path(path_type=Path)
 _OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file")
 _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
-
-
-@dataclass(frozen=True)
-class Agreement:
-    """What robots have agreed on: how each sees it (by robot), and how long it took, seconds."""
-
-    views: dict[str, View]
-    took_s: float
 
 
 @click.command()
@@ -57,7 +50,7 @@ class Agreement:
 @ignore_option
 @terms_options
 @click.option(
-    "--time-limit", type=click.FloatRange(min=0), default=60.0, show_default=True, metavar="S", help="To agree within."
+    "--time-limit", type=Finite(0, 1e6), default=60.0, show_default=True, metavar="S", help="To agree within."
 )
 @robot_options
 @click.option(
@@ -107,7 +100,7 @@ def command(
     from muster.negotiation.methods import method_named
 
     if mission is None:
-        return _replayed(others["network_seed"])
+        return _replayed(others)
     _check_together(others)
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
     require_csv(book)
@@ -130,8 +123,14 @@ def command(
     return INCOMPLETE if require_complete and not plan.complete else DONE
 
 
-def _replayed(seed: int | None) -> int:
+def _replayed(others: Mapping[str, Any]) -> int:
     """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
+    seed = others["network_seed"]
+    for name in _OF_A_SIMULATED_NETWORK:
+        if seed is not None and others[name] is not None:
+            raise ParameterError(
+                f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
+            )
     if seed is None:
         raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
     from muster.studies.negotiation.trial import replay

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import settings_of
+from muster.cli.options import Finite, settings_of
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
-_SECONDS = click.FloatRange(min=0)
-_SHARE = click.FloatRange(min=0, max=1, max_open=True)
+_SECONDS = Finite(0, 1e6)
+_SHARE = Finite(0, 0.99)
 
 
 def _group(*options: Callable[[Any], Any]) -> Callable[[Verb], Verb]:

@@ -10,12 +10,12 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.auction import Agreement
+from muster.cli.agreement import Agreement
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.codec import Codec
 from muster.negotiation.keys import read_key
-from muster.negotiation.memory_file import Kept, Remembering, keeper, kept_in
+from muster.negotiation.memory_file import Kept, keeper, kept_in
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
@@ -70,12 +70,14 @@ def agree_with_others(
 
     if forgot and negotiator.rules.once:
         say(f"{len(negotiator.rules.once)} tasks are for at most one robot: without --memory they may find none")
-    transport_of = _transport(problem, transport, options)
-    carrier = transport_of if file is None else Remembering(transport_of, keeper(file, kept, negotiator))
+    carrier = _transport(problem, transport, options)
     codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
     seal = Seal(key, digest, robot, kept.incarnation)
     staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
-    with Node(negotiator, carrier, codec, seal) as node:
+    node = Node(negotiator, carrier, codec, seal)
+    if file is not None:
+        node.keep = keeper(file, kept, negotiator)
+    with node:
         watch = _Watch(negotiator, say)
         view, took_s = take_part(node, negotiator, staying, watch)
         watch.say_how_it_ended(node.status(), took_s)
@@ -112,7 +114,10 @@ class _Watch:
         refused = "".join(
             f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
         )
-        self._say(f"agreed after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}")
+        without = f" without {', '.join(status.silent)}" if status.silent else ""
+        self._say(
+            f"agreed{without} after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}"
+        )
 
 
 def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Transport:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.auction import Agreement
+from muster.cli.agreement import Agreement
 from muster.mission.errors import MusterError, ParameterError
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.methods import Method

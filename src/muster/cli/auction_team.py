@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.auction import Agreement
+from muster.cli.agreement import Agreement
 from muster.cli.auction_table import auction_table
 from muster.cli.tables import counted
 from muster.mission.errors import MusterError

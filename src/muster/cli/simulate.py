@@ -61,7 +61,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--speed",
     type=Finite(0.001, 1e6),
     metavar="X",
-    help="X times real time, telling events.  [default: at once; 1 with --negotiate]",
+    help="X times real time, telling events.  [default: at once; with --negotiate 1, at most 10]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."

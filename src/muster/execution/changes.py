@@ -183,3 +183,9 @@ def new_hand(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now
     home = robot.place_at_end(mission.rules)
     in_time = mission.rules.usage == "time"
     return Hand(robot, ports[robot.id], None if home is None else place(home), in_time, heard_s=now, since_s=now)
+
+
+def may_bring_work(event: Event, *, open_tasks: bool) -> bool:
+    """Whether an event to come can bring work, or a robot for what is open."""
+    helps = event.robot_joins or event.robot_returns or event.move_task
+    return event.new_task is not None or bool(helps and open_tasks)

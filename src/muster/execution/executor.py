@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from muster.execution.changes import OUT, SILENT, Change, Changes, new_hand
+from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_hand
 from muster.execution.dispatch import Dispatch
 from muster.execution.doing import Doer, Way, straight
 from muster.execution.hand import Activity, Hand
@@ -140,6 +140,12 @@ class Executor:
         return self.ended_s is not None
 
     @property
+    def idle(self) -> bool:
+        """Whether nobody of the crew has anything to do, or a way to go."""
+        ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
+        return not ways and not any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
+
+    @property
     def due_s(self) -> float:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
         available = [hand.robot.available_from_s for hand in self._present if hand.route]
@@ -261,12 +267,6 @@ class Executor:
         self._tell("replanned", {"causes": causes, **revision.difference()})
         self._observer.on_plan(self.now_s, self.plan)
 
-    @property
-    def idle(self) -> bool:
-        """Whether nobody of the crew has anything to do, or a way to go."""
-        ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
-        return not ways and not any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
-
     def _end_if_over(self) -> None:
         if self._alone and not self.done and self.idle and not any(map(self._matters, self._script)):
             last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
@@ -306,9 +306,3 @@ class Executor:
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         self.happenings.append(Happening(self.now_s, kind, data))
         self._observer.on_event(self.now_s, kind, data)
-
-
-def may_bring_work(event: Event, *, open_tasks: bool) -> bool:
-    """Whether an event to come can bring work, or a robot for what is open."""
-    helps = event.robot_joins or event.robot_returns or event.move_task
-    return event.new_task is not None or bool(helps and open_tasks)

@@ -71,6 +71,9 @@ class Base:
         of them what was done, in order, and those by which there are more tasks, in tie order, or tasks are elsewhere.
     closed
         tasks that are not for sale, whoever owns them.
+    held
+        tasks that nobody may begin on this base: those that nobody may begin twice, if too few robots are here to know,
+        and what waits for them.
     dropped
         (robot, task) that were declared, and are not kept.
     twice
@@ -86,6 +89,7 @@ class Base:
     done: tuple[Fact, ...]
     added: tuple[Fact, ...]
     closed: frozenset[str]
+    held: frozenset[str]
     dropped: tuple[tuple[str, str], ...]
     twice: Mapping[str, tuple[str, ...]]
     rounds: int
@@ -142,6 +146,7 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
         done=finished,
         added=added,
         closed=frozenset(gone.union(reserved, rules.once if few else ())),
+        held=_with_followers(rules.once - done, routes, rules) if few else frozenset(),
         dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),
         twice=twice,
         rounds=max(declaration.rounds for declaration in declarations),
@@ -232,10 +237,14 @@ def _last_of_a_cycle(routes: Routes, rules: Rules) -> str | None:
     return None
 
 
+def _with_followers(tasks: frozenset[str], routes: Routes, rules: Rules) -> frozenset[str]:
+    """These tasks and those that wait for them, but for what has been begun."""
+    begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
+    found = tasks - begun
+    while more := {t for t, needs in rules.prerequisites.items() if found.intersection(needs)} - begun - found:
+        found |= more
+    return found
+
+
 def _digest(declarations: Sequence[Declaration]) -> bytes:
     return blake2b(repr([replace(d, facts=in_order(d.facts)) for d in declarations]).encode(), digest_size=8).digest()
-
-
-def with_begun(claims: Sequence[Claim], task: str) -> tuple[Claim, ...]:
-    """The claims, one of them begun."""
-    return tuple(replace(claim, begun=True) if claim.task == task else claim for claim in claims)

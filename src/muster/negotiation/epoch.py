@@ -137,6 +137,11 @@ class Epoch:
             rounds.append(tuple(heard[robot] for robot in self.own.members))
         return tuple(rounds)
 
+    @property
+    def declarations(self) -> list[Declaration]:
+        """What members have declared, as far as it was heard."""
+        return [self._declared[robot] for robot in self.own.members if robot in self._declared]
+
     def declaration_of(self, robot: str) -> Declaration | None:
         return self._declared.get(robot)
 
@@ -164,7 +169,7 @@ class Epoch:
         """Find the base, if all members have declared the same members."""
         if self._waits_for:
             return False
-        base = agreed([self._declared[robot] for robot in self.own.members], self.rules)
+        base = agreed(self.declarations, self.rules)
         self.base = base.keeping(self.valuer.begin(opening_of(base)))
         self._reach(0)
         for digest, bids in self._early:

@@ -1,6 +1,7 @@
-"""What a robot's process keeps to start again where it stopped: a file of JSON, written before anything is sent.
+"""What a robot's process keeps to start again where it stopped: a file of JSON.
 
-So a robot that starts again never says in the same epoch something else than it has said before.
+It is written before anything is sent, and before work begins. So a robot that starts again never says in the same epoch
+something else than it has said before, and never waives what it has begun.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from muster.mission.errors import Finding, InputError
 from muster.negotiation.happenings import Memory
 from muster.negotiation.messages import Claim, Fact
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.transport import Around, Transport
 
 _SCHEMA = "muster-memory/1"
 
@@ -89,26 +89,6 @@ def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]
             kept.save(file)
 
     return keep
-
-
-class Remembering(Around):
-    """A transport that sends nothing before what the robot knows has been kept.
-
-    Parameters
-    ----------
-    transport
-        what carries messages.
-    keep
-        keeps what the robot knows.
-    """
-
-    def __init__(self, transport: Transport, keep: Callable[[], None]) -> None:
-        super().__init__(transport)
-        self._keep = keep
-
-    def send(self, data: bytes, to: str | None = None) -> None:
-        self._keep()
-        super().send(data, to)
 
 
 def _plain(value: Any) -> Any:

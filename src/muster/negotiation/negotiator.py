@@ -44,6 +44,12 @@ class Negotiator(Participant):
         return self._rules.once
 
     @property
+    def held(self) -> frozenset[str]:
+        """Tasks that nobody who is here may begin, until more are here that know."""
+        base = self._base
+        return base.held if base else frozenset()
+
+    @property
     def route(self) -> tuple[Claim, ...]:
         """What this robot owns, in the order in which it is going to do it; nothing before it has heard the others."""
         return self._work.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()
@@ -111,6 +117,10 @@ class Negotiator(Participant):
     def cancel(self, task: str) -> None:
         """Take a task out of the mission; who has begun it goes on."""
         self._work.say(task, "cancelled")
+
+    def abandon(self, task: str) -> None:
+        """Stop with a task that is cancelled, if it was begun: nobody waits any more for what waits for it."""
+        self._work.abandon(task)
 
     def release(self, task: str) -> None:
         """Give a task back, also one that was begun: others may have it, this robot does not bid for it any more.

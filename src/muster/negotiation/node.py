@@ -76,12 +76,19 @@ class Node:
         what its messages go through. Without a seal they travel open: for tests alone.
     clock
         the machine's by default.
+
+    Attributes
+    ----------
+    keep
+        keeps what the robot knows for its next life; by default it does not. The node calls it before it sends
+        anything, who carries work out before that begins.
     """
 
     def __init__(
         self, negotiator: Negotiator, transport: Transport, codec: Codec, seal: Seal | None, clock: Clock | None = None
     ) -> None:
         self.negotiator, self.transport = negotiator, transport
+        self.keep: Callable[[], None] = lambda: None
         self.sent: Counter[str] = Counter()
         self.sent_bytes: Counter[str] = Counter()
         self.received = 0
@@ -172,6 +179,7 @@ class Node:
 
     def _transmit(self, kind: str, pieces: Iterable[bytes], to: str | None) -> None:
         """Send a message, and count it."""
+        self.keep()
         self.sent[kind] += 1
         before = self.transport.bytes_sent
         for piece in pieces:

@@ -21,6 +21,8 @@ from muster.mission.errors import MusterError
 from muster.negotiation.seat import CLOSING_S, HERE, Seat, hold_auction
 from muster.negotiation.watch import Born, Failed, Gone, Order
 
+_LOOK_S = 0.02
+
 
 def main() -> None:
     """Start the robots that are ordered, and stay until the last has ended."""
@@ -46,10 +48,12 @@ def main() -> None:
             break
     for pipe in pipes:
         pipe.close()
-    threading.Thread(target=_end_with, args=(starter, pids), daemon=True).start()
+    ending = threading.Thread(target=_end_with, args=(starter, pids))
+    ending.start()
     while pids:
         pid, status = os.wait()
         _tell(starter, Gone(*pids.pop(pid), _cause(status)))
+    ending.join()
 
 
 def _tell(starter: Connection, word: Born | Gone | Failed) -> bool:
@@ -64,7 +68,9 @@ def _end_with(starter: Connection, pids: Mapping[int, tuple[str, int]]) -> None:
     try:
         starter.recv()
     except (EOFError, OSError):
-        time.sleep(CLOSING_S)  # robots notice by themselves; not one that was stopped
+        until_s = time.monotonic() + CLOSING_S  # robots notice by themselves; not one that was stopped
+        while pids and time.monotonic() < until_s:
+            time.sleep(_LOOK_S)
         for pid in list(pids):
             os.kill(pid, signal.SIGKILL)
 

@@ -14,6 +14,8 @@ from muster.negotiation.view import View, view_of
 
 _STEP_S = 0.05
 _NAMES_SHOWN = 5
+_HEARD_S = 3.0
+"""Until then somebody may speak up who understands this robot."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +46,8 @@ def take_part(
 ) -> tuple[View, float]:
     """Take part until all that are there agree; what the robot knows then, and how long agreement took, seconds.
 
+    When the whole team has agreed, that holds, though robots leave, or fall silent, while this one stays for others.
+
     `on_look` is told, about twenty times a second, how far the robot is.
 
     Raises
@@ -54,7 +58,8 @@ def take_part(
     """
     clock = clock or SystemClock()
     began_s = clock.now()
-    agreed_s: float | None = None
+    agreed: tuple[View, float] | None = None
+    by_all = False
     while True:
         node.step(_STEP_S)
         status, passed_s = node.status(), clock.now() - began_s
@@ -62,13 +67,14 @@ def take_part(
         _check_name(status, negotiator)
         _check_company(status, negotiator, passed_s, staying)
         whole = len(status.members) == len(negotiator.rules.robots)
-        if not status.settled or not (whole or passed_s >= staying.wait_s):
-            agreed_s = None
-        elif agreed_s is None:
-            agreed_s = passed_s
-        if agreed_s is not None and passed_s >= agreed_s + staying.linger_s:
-            return view_of(negotiator), agreed_s
-        if agreed_s is None and passed_s > staying.limit_s:
+        if status.settled and (whole or (passed_s >= staying.wait_s and not by_all)):
+            if agreed is None or agreed[0].stage != negotiator.stage:
+                agreed, by_all = (view_of(negotiator), passed_s), whole
+        elif not by_all:
+            agreed = None
+        if agreed is not None and passed_s >= agreed[1] + staying.linger_s:
+            return agreed
+        if agreed is None and passed_s > staying.limit_s:
             raise NetworkError(f"{status.robot}: no agreement within {staying.limit_s:g} s; {_how_far(status)}")
 
 
@@ -85,10 +91,12 @@ def _check_name(status: NodeStatus, negotiator: Negotiator) -> None:
 
 
 def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, staying: Staying) -> None:
-    """Say why nobody can be understood, as soon as that is certain."""
+    """Say why nobody can be understood."""
     if status.received or len(negotiator.rules.robots) == 1:
         return
     refused = status.refused
+    if passed_s < min(_HEARD_S, staying.wait_s, staying.limit_s):
+        return
     if refused["other_version"]:
         raise NetworkError(f"{status.robot}: the others speak another version; expected the same Muster everywhere")
     if refused["other_mission"]:

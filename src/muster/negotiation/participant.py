@@ -98,7 +98,7 @@ class Participant:
     @property
     def twice(self) -> Mapping[str, tuple[str, ...]]:
         """Tasks that several have done or begun, with these, as far as this robot knows."""
-        base = self.epochs[-1].base if self.epochs else None
+        base = self._base
         done = {task: doers for task, doers in self._work.known.doers.items() if len(doers) > 1}
         return {**(base.twice if base else {}), **done}
 
@@ -140,9 +140,14 @@ class Participant:
         return out
 
     @property
+    def _base(self) -> Base | None:
+        """The last that was found."""
+        return self.epochs[-1].base if self.epochs else None
+
+    @property
     def _rules(self) -> Rules:
         """The rules with the tasks that were added."""
-        base = self.epochs[-1].base if self.epochs else None
+        base = self._base
         return self.rules.with_added(base.added) if base else self.rules
 
     def _enter(self, number: int, now: float) -> list[Outgoing]:
@@ -247,9 +252,9 @@ class Participant:
         self.epochs.append(self.epoch)
         self._agreement.find_base()
         self._learn(base.facts)
-        said = [d for d in map(self.epoch.declaration_of, self.epoch.own.members) if d is not None]
         me = self.epoch.own.members.index(self.robot)
-        told = sum(d.knows and d.incarnations[me] == self.incarnation for d in said if d.robot != self.robot)
+        others = [d for d in self.epoch.declarations if d.robot != self.robot]
+        told = sum(d.knows and d.incarnations[me] == self.incarnation for d in others)
         self.knows = self.knows or told >= self.rules.majority
         self._work.give_up_lost(base.routes[self.robot])
         self.happenings += [Happening("dropped", (robot,), task) for robot, task in base.dropped]
@@ -257,8 +262,7 @@ class Participant:
 
     def _is_outdated(self) -> bool:
         """Whether a member has started anew since it declared."""
-        said = map(self.epoch.declaration_of, self.epoch.own.members)
-        return any(d is not None and self.members.incarnation(d.robot) > d.incarnation for d in said)
+        return any(self.members.incarnation(d.robot) > d.incarnation for d in self.epoch.declarations)
 
     def _has_news(self) -> bool:
         """Whether the others must know of something that was not known when this epoch began."""
@@ -272,8 +276,8 @@ class Participant:
 
     def _could_be_told(self) -> bool:
         """Whether this robot has forgotten what it said, and enough that know it are here."""
-        said = [d for d in map(self.epoch.declaration_of, self.epoch.own.members) if d is not None]
-        return self.epoch.ended and not self.knows and sum(d.knows for d in said) >= self.rules.majority
+        know = sum(declared.knows for declared in self.epoch.declarations)
+        return self.epoch.ended and not self.knows and know >= self.rules.majority
 
     def _beat(self, now: float) -> Message:
         """That the robot lives, whom it has heard, what it lacks; and what others may lack of its own words."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.negotiation.codec import Codec
-from muster.negotiation.memory_file import Kept, Remembering, keeper, kept_in
+from muster.negotiation.memory_file import Kept, keeper, kept_in
 from muster.negotiation.methods import method_named
 from muster.negotiation.node import Node
 from muster.negotiation.seal import Seal, mission_digest
@@ -108,11 +108,12 @@ class Seat:
             remembered=kept.memory,
             absent=order.late,
         )
-        transport = around(self._transport())
-        if file is not None:
-            transport = Remembering(transport, keeper(file, replace(kept, incarnation=self.life), negotiator))
         codec = Codec([robot.id for robot in self.problem.robots], [task.id for task in self.problem.tasks])
-        return Node(negotiator, transport, codec, Seal(order.key, digest, self.robot, self.life))
+        seal = Seal(order.key, digest, self.robot, self.life)
+        node = Node(negotiator, around(self._transport()), codec, seal)
+        if file is not None:
+            node.keep = keeper(file, replace(kept, incarnation=self.life), negotiator)
+        return node
 
     def _transport(self) -> Transport:
         here = self.ports[self.robot]

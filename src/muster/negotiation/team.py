@@ -49,7 +49,7 @@ class Team:
     """
 
     def __init__(self, order: Order, on_word: Callable[[str, object], None] = lambda robot, word: None) -> None:
-        require_net()
+        require_net("cryptography", "msgpack", *(("zenoh",) if order.transport == "zenoh" else ()))
         self.robots = [robot.id for robot in order.problem.mission.robots]
         self.news: dict[str, News] = {}
         self.gone: dict[str, str] = {}
@@ -132,14 +132,14 @@ class Team:
                 self._pipes[robot].send(word)
 
     def hear(self, wait_s: float) -> None:
-        """Take in what robots tell; waits for the first word for so long at most."""
+        """Take in all that robots have told; waits for the first word for so long at most."""
         ends: dict[object, str | None] = {pipe: robot for robot, pipe in self._pipes.items()}
         for end in wait([self._nursery_pipe, *self._pipes.values()], wait_s):
             robot = ends.get(end)
             if robot is None:
                 self._hear_nursery()
-            elif robot in self._pipes:  # else the nursery has just told of its end
-                self._hear_robot(robot)
+            else:
+                self._hear_out(robot)
         if self.began_s is None and self._ready.issuperset(self._life):
             self.began_s = time.monotonic()
             for robot in self._life:
@@ -186,6 +186,11 @@ class Team:
         elif isinstance(word, Gone) and word.life == self._life.get(word.robot):
             self._lose(word.robot, word.why)
 
+    def _hear_out(self, robot: str) -> None:
+        """Take in all that a robot has told, if it has not ended."""
+        while robot in self._pipes and self._pipes[robot].poll():
+            self._hear_robot(robot)
+
     def _hear_robot(self, robot: str) -> None:
         try:
             word = self._pipes[robot].recv()
@@ -208,8 +213,7 @@ class Team:
                 self.kill(robot)
 
     def _lose(self, robot: str, why: str) -> None:
-        while robot in self._pipes and self._pipes[robot].poll():  # its last words may tell more than its end
-            self._hear_robot(robot)
+        self._hear_out(robot)  # its last words may tell more than its end
         self.gone[robot] = why
         pipe = self._pipes.pop(robot, None)
         if pipe is not None:

@@ -105,6 +105,11 @@ class Work:
         self.begun.discard(task)
         self.say(task, "done")
 
+    def abandon(self, task: str) -> None:
+        if task in self.begun:
+            self.begun.discard(task)
+            self.restless = True
+
     def release(self, task: str, rules: Rules) -> None:
         if task in rules.once and task in self.begun:
             raise ParameterError(f"release: {shown(task)}; expected a task that may be begun again")
@@ -122,7 +127,8 @@ class Work:
         """Take no tasks any more, and give back all that has not been begun."""
         for task in self.reserved.keys() - self.begun:
             self.give_up(task)
-        self.out = self.restless = True
+        self.restless |= not self.out
+        self.out = True
 
     def give_up_lost(self, kept: Sequence[Claim]) -> None:
         """Give up what was reserved and went to another before it was begun."""

@@ -1,0 +1,17 @@
+"""What robots that hold an auction have agreed on, for the command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from muster.negotiation.view import View
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """What robots have agreed on: how each sees it (by robot), and how long it took, seconds."""
+
+    views: dict[str, View]
+    took_s: float
