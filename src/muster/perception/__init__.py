@@ -1,0 +1,1 @@
+"""What robots see: cameras, tags, points of interest."""
