@@ -5,7 +5,8 @@
     camera_matrix: {rows: 3, cols: 3, data: [fx, 0, cx, 0, fy, cy, 0, 0, 1]}
     distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}
 
-There the centre of the first pixel is (0, 0); here it is (0.5, 0.5), so half a pixel is added to the principal point.
+OpenCV, with which it is made, has the centre of the first pixel at (0, 0); here it is (0.5, 0.5), so half a pixel is
+added to the principal point.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from typing import Any
 
 import yaml
 
-from muster.mission.errors import Finding, InputError, ParameterError
-from muster.perception.camera import Intrinsics
+from muster.mission.errors import Finding, InputError
+from muster.perception.camera import Intrinsics, fault_in
 
 _NUMBERS_OF_LENS = (4, 5, 8, 12, 14)
 
@@ -33,7 +34,7 @@ def read_intrinsics(path: str | Path) -> Intrinsics:
         of such a lens must be rectified, and have a file of their own then.
     """
     content = _mapping(path)
-    width, height = (_number(path, content, key) for key in ("image_width", "image_height"))
+    width, height = _number(path, content, "image_width"), _number(path, content, "image_height")
     fx, skew, cx, _, fy, cy, *last = _numbers(path, content, "camera_matrix", (9,))
     if skew or last != [0, 0, 1]:
         raise _wrong(path, "camera_matrix", [skew, *last], "no skew, and the last row 0, 0, 1")
@@ -41,12 +42,10 @@ def read_intrinsics(path: str | Path) -> Intrinsics:
         lens = _numbers(path, content, "distortion_coefficients", _NUMBERS_OF_LENS)
         if any(lens):
             raise _wrong(path, "distortion_coefficients", lens, "all 0: rectify the images before")
-    try:
-        return Intrinsics(width=width, height=height, fx=fx, fy=fy, cx=cx + 0.5, cy=cy + 0.5)
-    except ParameterError as error:
-        field, _, rest = str(error).partition(": ")
-        value, _, expected = rest.partition("; expected ")
-        raise _wrong(path, field, value, expected) from None
+    values: dict[str, Any] = {"width": width, "height": height, "fx": fx, "fy": fy, "cx": cx + 0.5, "cy": cy + 0.5}
+    if (fault := fault_in(values)) is not None:
+        raise _wrong(path, *fault)
+    return Intrinsics(**values)
 
 
 def _mapping(path: str | Path) -> Mapping[str, Any]:

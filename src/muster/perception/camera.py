@@ -14,8 +14,10 @@ pixel covers 0 to 1, so its centre is (0.5, 0.5), and the middle of a picture 64
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -75,21 +77,9 @@ class Intrinsics:
     cy: float
 
     def __post_init__(self) -> None:
-        for f in fields(self):
-            value = getattr(self, f.name)
-            if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-                raise ParameterError(f"{f.name}: {value!r}; expected a number of pixels")
-            if not math.isfinite(value):
-                raise ParameterError(f"{f.name}: {value}; expected a finite number of pixels")
-        for name in ("width", "height"):
-            if (value := getattr(self, name)) < 1 or value != int(value):
-                raise ParameterError(f"{name}: {value}; expected a whole number of pixels of at least 1")
-        for name in ("fx", "fy"):
-            if (value := getattr(self, name)) <= 0:
-                raise ParameterError(f"{name}: {value}; expected a focal length above 0, in pixels")
-        for name, most in (("cx", self.width), ("cy", self.height)):
-            if not 0 <= (value := getattr(self, name)) <= most:
-                raise ParameterError(f"{name}: {value}; expected a principal point within the picture, 0 to {most}")
+        fault = fault_in({f.name: getattr(self, f.name) for f in fields(self)})
+        if fault is not None:
+            raise ParameterError("{}: {}; expected {}".format(*fault))
 
     @classmethod
     def of_view(cls, width: int, height: int, fov_rad: float) -> Intrinsics:
@@ -108,6 +98,25 @@ class Intrinsics:
     def matrix(self) -> Floats:
         """(3, 3): takes points of the image frame to pixels times depth."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+
+def fault_in(values: Mapping[str, Any]) -> tuple[str, Any, str] | None:
+    """What is wrong first with the numbers of `Intrinsics`, by name: which one, its value, what was expected."""
+    for name, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+            return name, repr(value), "a number of pixels"
+        if not math.isfinite(value):
+            return name, value, "a finite number of pixels"
+    for name in ("width", "height"):
+        if values[name] < 1 or values[name] != int(values[name]):
+            return name, values[name], "a whole number of pixels of at least 1"
+    for name in ("fx", "fy"):
+        if values[name] <= 0:
+            return name, values[name], "a focal length above 0, in pixels"
+    for name, most in (("cx", values["width"]), ("cy", values["height"])):
+        if not 0 <= values[name] <= most:
+            return name, values[name], f"a principal point within the picture, 0 to {most}"
+    return None
 
 
 @dataclass(frozen=True, eq=False)

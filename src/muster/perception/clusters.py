@@ -125,7 +125,7 @@ def _lloyd(positions: Floats, centres: Floats) -> Labels:
     """Each estimate to its nearest centre, each centre to the mean of its estimates, until none moves."""
     labels = np.zeros(len(positions), dtype=np.int64)
     for _ in range(_ROUNDS):
-        new = ((positions[:, None] - centres) ** 2).sum(axis=2).argmin(axis=1)
+        new = ((centres**2).sum(axis=1) - 2 * positions @ centres.T).argmin(axis=1)
         for cluster in range(len(centres)):
             if (mine := new == cluster).any():  # an empty one stays where it is
                 centres[cluster] = positions[mine].mean(axis=0)

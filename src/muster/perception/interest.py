@@ -2,9 +2,9 @@
 
 The thesis takes the mean of a cluster. Where every estimate has its covariance, they are weighed by it, as a Kalman
 filter would that sees a thing at rest again and again: views from afar and aslant, which are stretched along the view,
-count less along it. Where they scatter more than their covariances say, the answer's covariance grows by as much. Errors
-are taken as independent from sighting to sighting: what is the same in all of them does not average out, and no scatter
-shows it.
+count less along it. Where they scatter more than their covariances say, the answer's covariance grows by as much.
+Errors are taken as independent from sighting to sighting: what is the same in all of them does not average out, and no
+scatter shows it.
 """
 
 from __future__ import annotations

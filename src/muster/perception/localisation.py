@@ -1,9 +1,11 @@
 """Where on the map is what a camera sees: TCF thesis (4.41)-(4.45).
 
-`on_ground` takes the ground as flat, (4.41)-(4.43). `by_size` knows how large a tag is, and needs no ground: it solves
-for the tag's pose from its four corners (infinitesimal plane-based pose estimation: Collins and Bartoli, IJCV 2014; in
-OpenCV). `by_length_as_printed` is (4.44) and (4.45), which the thesis proposes for that. It is kept to show its error: a
-tag seen aslant looks shorter, so that it is placed too far away; and L f / l is the depth along the optical axis, which
+`on_ground` takes the ground as flat, (4.41)-(4.43). `by_size` knows how large a tag is, and needs no ground: it finds
+the pose from which the four corners are where they are seen (perspective-n-point). OpenCV's own method for squares,
+`SOLVEPNP_IPPE_SQUARE`, is not used: on exact corners it gives NaN for many poses (5.0).
+
+`by_length_as_printed` is (4.44) and (4.45), which the thesis proposes for that. It is kept to show its error: a tag
+seen aslant looks shorter, so that it is placed too far away; and L f / l is the depth along the optical axis, which
 the thesis takes for the distance along the ray, so that what is off the axis is placed too near.
 """
 
@@ -15,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.motion.frames import transform
+from muster.motion.frames import moved, transform
 from muster.perception.camera import View
 from muster.perception.extra import require_physics
 from muster.perception.tags import CORNERS
@@ -77,13 +79,14 @@ def ground_covariance(
 class TagPose:
     """Where a tag is: its pose (4, 4) in the map, and how far off its corners are then in the picture (RMS, pixels).
 
-    `other` is the second pose that four corners leave open, and its error: a small tag from afar looks nearly the same
-    tilted one way or the other. Its place is much the same.
+    `other` is the second pose that fits, less well, with its error: a small tag from afar looks nearly the same tilted
+    one way or the other. Its place is much the same. Where a tag squarely faces the camera both poses are one.
     """
 
     pose: Floats
     error_px: float
-    other: tuple[Floats, float] | None
+    other: Floats
+    other_error_px: float
 
     @property
     def position(self) -> Floats:
@@ -104,19 +107,16 @@ def by_size(view: View, corners: npt.ArrayLike, size_m: float) -> TagPose:
     require_physics("the pose of a tag by its size", "cv2")
     import cv2
 
-    at = _checked(corners, size_m)
-    # OpenCV has y upwards on the tag, and so z out of it: the half turn about x between the two is taken back below
-    square = np.ascontiguousarray(CORNERS * (size_m, -size_m, 0.0))
-    _, turns, shifts, errors = cv2.solvePnPGeneric(
-        square, at, view.intrinsics.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
-    )
-    half_turn = np.diag([1.0, -1.0, -1.0])
-    poses = [
-        view.pose @ transform(np.ravel(shift), np.asarray(cv2.Rodrigues(turn)[0]) @ half_turn)
-        for turn, shift in zip(turns, shifts, strict=True)
-    ]
-    ranked = sorted(zip(poses, map(float, np.ravel(errors)), strict=True), key=lambda found: found[1])
-    return TagPose(*ranked[0], ranked[1] if len(ranked) > 1 else None)
+    at, square, camera = _checked(corners, size_m), CORNERS * size_m, view.intrinsics.matrix
+    _, turn, shift = cv2.solvePnP(square, at, camera, None, flags=cv2.SOLVEPNP_ITERATIVE)
+    first = transform(np.ravel(shift), np.asarray(cv2.Rodrigues(turn)[0]))
+    start = _tilted_the_other_way(first)
+    turn, shift = cv2.solvePnPRefineLM(square, at, camera, None, cv2.Rodrigues(start[:3, :3])[0], start[:3, 3:].copy())
+    second = transform(np.ravel(shift), np.asarray(cv2.Rodrigues(turn)[0]))
+    poses = [view.pose @ pose for pose in (first, second)]
+    errors = [_error_px(view, moved(pose, square), at) for pose in poses]
+    best = int(errors[1] < errors[0])
+    return TagPose(poses[best], errors[best], poses[1 - best], errors[1 - best])
 
 
 def by_length_as_printed(view: View, corners: npt.ArrayLike, size_m: float) -> Floats:
@@ -135,6 +135,19 @@ def by_length_as_printed(view: View, corners: npt.ArrayLike, size_m: float) -> F
     focal = (view.intrinsics.fx + view.intrinsics.fy) / 2
     distance = np.sqrt(2) * size_m * focal / length  # (4.44)
     return np.asarray(view.position + distance * view.rays(centre)[0])
+
+
+def _tilted_the_other_way(pose: Floats) -> Floats:
+    """A pose (4, 4) of the image frame, its z mirrored at the line of sight: half a turn about that, one about z."""
+    sight = pose[:3, 3] / np.linalg.norm(pose[:3, 3])
+    about_sight = 2 * np.outer(sight, sight) - np.eye(3)
+    return transform(pose[:3, 3], about_sight @ pose[:3, :3] @ np.diag([-1.0, -1.0, 1.0]))
+
+
+def _error_px(view: View, places: Floats, pixels: Floats) -> float:
+    """RMS distance in the picture; infinite for what is not before the camera."""
+    error = float(np.sqrt(((view.project(places) - pixels) ** 2).sum(axis=1).mean()))
+    return error if np.isfinite(error) else np.inf
 
 
 def _checked(corners: npt.ArrayLike, size_m: float) -> Floats:

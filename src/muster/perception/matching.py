@@ -122,9 +122,12 @@ def matched(truth: Floats, found: Floats, farthest_m: float = math.inf) -> list[
 
 def _places(name: str, places: Sequence[npt.ArrayLike]) -> Floats:
     rows = [np.asarray(place, dtype=np.float64) for place in places]
-    if len({row.shape for row in rows} | {(2,)}) > 1 and {row.shape for row in rows} != {(3,)}:
-        raise ParameterError(f"{name}: shapes {sorted({row.shape for row in rows})}; expected all (2,) or all (3,)")
-    array = np.array(rows).reshape(len(rows), -1)
+    shapes = sorted({row.shape for row in rows})
+    if not rows:
+        return np.empty((0, 2))
+    if shapes not in ([(2,)], [(3,)]):
+        raise ParameterError(f"{name}: shapes {shapes}; expected all (2,) or all (3,)")
+    array = np.array(rows)
     if not np.isfinite(array).all():
         raise ParameterError(f"{name}: a number that is not finite; expected finite numbers")
     return array

@@ -1,7 +1,7 @@
 """Pictures of AprilTags of the family 36h11, drawn from the codes that the detector itself goes by.
 
-A tag is 8 x 8 cells, black around 6 x 6 cells of code; a white margin, one cell wide, belongs to it. The size of a tag is
-the side of its black square, 0.8 of the side of the picture. The tag's frame has its origin in the middle, x to the
+A tag is 8 x 8 cells, black around 6 x 6 cells of code; a white margin, one cell wide, belongs to it. The size of a tag
+is the side of its black square, 0.8 of the side of the picture. The tag's frame has its origin in the middle, x to the
 right of the picture, y down and z into it, as the image frame of a camera before which it hangs upright.
 
 OpenCV's dictionary `DICT_APRILTAG_36h11` has the same tags half a turn about: their corners come out in another order.
