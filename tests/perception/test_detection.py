@@ -11,6 +11,7 @@ from muster.mission.errors import ParameterError
 
 pytest.importorskip("pupil_apriltags")
 pytest.importorskip("cv2")
+from muster.perception.camera import mount_of
 from muster.perception.detection import DetectorParameters, TagDetector
 from muster.perception.localisation import by_size, on_ground
 from muster.perception.tags import tag_image
@@ -123,3 +124,14 @@ def test_parameters_out_of_range_are_refused(wrong):
     (name,) = wrong
     with pytest.raises(ParameterError, match=rf"{name}: .*; expected"):
         DetectorParameters(**wrong)
+
+
+@pytest.mark.parametrize(("decimate", "least_px"), [(1.0, 16), (2.0, 24)])
+def test_how_small_a_tag_may_be(decimate, least_px):
+    """As docs/perception.md says; straight below, so that a tag is as wide everywhere."""
+    detector = TagDetector(DetectorParameters(decimate=decimate))
+    view = over(0, 0, 3, mount=mount_of([0, 0, 0, 0, math.pi / 2, 0]))
+    size = least_px * 3 / VGA.fx
+    tags = [(k, lying((k % 3 - 1) * 0.7, (k // 3 - 1) * 0.9, k)) for k in range(9)]
+    found = detector.detect(drawn(view, tags, size, noise=3, blur=0.7))
+    assert [s.tag for s in found.all] == list(range(9))
