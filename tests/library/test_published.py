@@ -21,7 +21,7 @@ TABLES = {
     "tcf-avoidance": ["A.17", "A.18", "A.22"],
     "tcf-experiments": ["6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11"],
     "tcf-objectives": ["3.21", "3.22"],
-    "tcf-points-of-interest": ["6.4", "6.5"],
+    "tcf-points-of-interest": ["6.4", "6.5", "A.10"],
     "tcf-prerequisites": ["3.8", "3.9", "3.10", "3.11", "3.12"],
     "tcf-salesmen": ["3.2", "3.3", "3.4", "A.15", "A.16"],
     "tcf-suitability": ["3.13", "3.14", "3.15"],
