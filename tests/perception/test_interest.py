@@ -21,7 +21,9 @@ def ellipses(count, seed, size=2):
 
 def raw_of(places, covariances):
     n = len(places)
-    return RawEstimates(np.asarray(places, dtype=float), covariances, np.zeros(n, dtype=np.int64), ("r",) * n)
+    return RawEstimates(
+        np.asarray(places, dtype=float), covariances, np.zeros(n, dtype=np.int64), ("r",) * n, np.arange(n) * 0.1
+    )
 
 
 def one(raw):
@@ -57,6 +59,53 @@ def test_the_uncertainty_is_consistent():
         squares.append(point.position @ np.linalg.solve(point.covariance, point.position))
     # the scatter may make a covariance larger, never smaller: somewhat below 2 is right, above is not
     assert 1.4 < np.mean(squares) < 2 + 4 * math.sqrt(4 / trials)
+
+
+def hovering(seed, passes=6, sightings=20):
+    """Two robots take themselves to be beside where they are, in each pass of 2 s by the same all the time."""
+    random = np.random.default_rng(seed)
+    raw = []
+    for k, covariance in enumerate(ellipses(passes, seed)):
+        place = random.multivariate_normal([0, 0], covariance)
+        places = place + random.normal(0, 0.01, (sightings, 2))
+        times = 10.0 * k + np.linspace(0, 1.9, sightings)
+        covariances, tags = np.repeat(covariance[None], sightings, axis=0), np.zeros(sightings, dtype=np.int64)
+        raw.append(RawEstimates(places, covariances, tags, (f"r_{k % 2}",) * sightings, times))
+    return RawEstimates.joined(raw)
+
+
+def test_sightings_that_share_an_error_count_as_one():
+    def mean_square(independent_after_s):
+        squares = []
+        for seed in range(300):
+            raw = hovering(seed)
+            labels = np.zeros(len(raw), dtype=np.int64)
+            (point,) = points_of_interest(raw, labels, independent_after_s=independent_after_s)
+            squares.append(point.position @ np.linalg.solve(point.covariance, point.position))
+        return np.mean(squares)
+
+    assert mean_square(0.0) > 15
+    assert 1.4 < mean_square(5.0) < 2 + 4 * math.sqrt(4 / 300)
+
+
+def test_who_hovers_weighs_no_more_than_who_passes_by():
+    covariances = np.repeat(np.eye(2)[None], 11, axis=0)
+    places = np.array([[0.0, 0.0]] * 10 + [[1.0, 0.0]])
+    times = np.array([0.1 * k for k in range(10)] + [7.0])
+    raw = RawEstimates(places, covariances, np.zeros(11, dtype=np.int64), ("r_0",) * 11, times)
+    (together,) = points_of_interest(raw, raw.tags, independent_after_s=5.0)
+    (each,) = points_of_interest(raw, raw.tags)
+    np.testing.assert_allclose(together.position, [0.5, 0])
+    np.testing.assert_allclose(together.covariance, np.eye(2) / 2)
+    np.testing.assert_allclose(each.position, [1 / 11, 0])
+    by_two = RawEstimates(places, covariances, raw.tags, ("r_0",) * 9 + ("r_1", "r_1"), np.zeros(11))
+    (other,) = points_of_interest(by_two, by_two.tags, independent_after_s=5.0)
+    np.testing.assert_allclose(other.position, [0.25, 0])
+
+
+def test_a_time_below_zero_is_refused():
+    with pytest.raises(ParameterError, match="independent_after_s: -1; expected seconds of at least 0"):
+        points_of_interest(RawEstimates.joined([]), np.array([], dtype=np.int64), independent_after_s=-1)
 
 
 def test_estimates_that_scatter_too_much_give_a_larger_uncertainty():

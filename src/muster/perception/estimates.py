@@ -31,6 +31,8 @@ class RawEstimates:
         (n,) the decoded ids, `NO_TAG` where there is none.
     robots
         (n,) the ids of those who saw it.
+    times_s
+        (n,) when.
 
     Raises
     ------
@@ -42,6 +44,7 @@ class RawEstimates:
     covariances: Floats | None
     tags: Integers
     robots: tuple[str, ...]
+    times_s: Floats
 
     def __post_init__(self) -> None:
         shape = np.shape(self.positions)
@@ -49,8 +52,10 @@ class RawEstimates:
             raise ParameterError(f"positions: shape {shape}; expected (n, 2) or (n, 3)")
         _check("tags", np.shape(self.tags), shape[:1])
         _check("robots", (len(self.robots),), shape[:1])
-        if not np.isfinite(self.positions).all():
-            raise ParameterError("positions: a number that is not finite; expected finite numbers")
+        _check("times_s", np.shape(self.times_s), shape[:1])
+        for name in ("positions", "times_s"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ParameterError(f"{name}: a number that is not finite; expected finite numbers")
         if self.covariances is not None:
             _check("covariances", np.shape(self.covariances), (*shape, shape[1]))
             if not np.isfinite(self.covariances).all() or not (np.linalg.eigvalsh(self.covariances) > 0).all():
@@ -61,10 +66,10 @@ class RawEstimates:
 
     @classmethod
     def at(cls, positions: npt.ArrayLike, tags: npt.ArrayLike | None = None, robot: str = "") -> RawEstimates:
-        """Places (n, d) of which nothing else is known, but perhaps the tags; seen by one robot."""
+        """Places (n, d) of which nothing else is known, but perhaps the tags; seen by one robot, all at time 0."""
         places = np.asarray(positions, dtype=np.float64)
         ids = np.full(len(places), NO_TAG) if tags is None else np.asarray(tags)
-        return cls(places, None, ids.astype(np.int64), (robot,) * len(places))
+        return cls(places, None, ids.astype(np.int64), (robot,) * len(places), np.zeros(len(places)))
 
     @classmethod
     def joined(cls, parts: Sequence[RawEstimates], dimensions: int = 2) -> RawEstimates:
@@ -87,6 +92,7 @@ class RawEstimates:
             np.concatenate(known) if known else None,
             np.concatenate([part.tags for part in parts]),
             tuple(robot for part in parts for robot in part.robots),
+            np.concatenate([part.times_s for part in parts]),
         )
 
 

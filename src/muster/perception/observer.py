@@ -51,15 +51,17 @@ class Observer:
         except ParameterError as error:
             return Observation(Sightings((), ()), RawEstimates.joined([]), (f"{self._when(time_s)}: {error}",))
         said = tuple(f"{self._when(time_s)}: tag {tag} is twice in one image" for tag in sightings.repeated)
-        return Observation(sightings, self._estimates(view, sightings), said)
+        return Observation(sightings, self._estimates(view, sightings, time_s), said)
 
-    def _estimates(self, view: View, sightings: Sightings) -> RawEstimates:
+    def _estimates(self, view: View, sightings: Sightings, time_s: float) -> RawEstimates:
         centres = np.array([sighting.centre for sighting in sightings.all]).reshape(-1, 2)
         tags = np.array([sighting.tag for sighting in sightings.all], dtype=np.int64)
         places = on_ground(view, centres, self.ground_m)
         near = np.linalg.norm(places - view.position, axis=1) <= self.farthest_m  # False where NaN
         covariances = ground_covariance(view, centres[near], self.uncertainty, self.ground_m)
-        return RawEstimates(places[near, :2], covariances, tags[near], (self.robot,) * int(near.sum()))
+        return RawEstimates(
+            places[near, :2], covariances, tags[near], (self.robot,) * int(near.sum()), np.full(near.sum(), time_s)
+        )
 
     def _when(self, time_s: float) -> str:
         return f"{self.robot} at {time_s:.2f} s"
