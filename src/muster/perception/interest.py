@@ -1,0 +1,121 @@
+"""Points of interest: what the estimates of a cluster say together, with how sure that is (TCF thesis 4.3.3).
+
+The thesis takes the mean of a cluster. Where every estimate has its covariance, they are weighed by it, as a Kalman
+filter would that sees a thing at rest again and again: views from afar and aslant, which are stretched along the view,
+count less along it. Where they scatter more than their covariances say, the answer's covariance grows by as much.
+
+A robot that takes itself to be beside where it is does so for a while: sightings that follow on each other fast share
+that error. So those of one robot within one stretch of time (`independent_after_s`) count as one together, and a drone
+that hovers weighs no more than one that passes by. What is the same in all sightings (a camera mounted askew) does not
+average out, and no scatter shows it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.perception.clusters import LONE, Labels
+from muster.perception.estimates import NO_TAG, RawEstimates
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PointOfInterest:
+    """A thing that was found.
+
+    Attributes
+    ----------
+    position
+        (d,) metres in the map frame.
+    covariance
+        (d, d) m^2; NaN where there is but one sighting, of unknown covariance.
+    sightings
+        in how many estimates it was seen.
+    robots
+        who saw it, by id.
+    tag
+        the id decoded most often, None where none was.
+    """
+
+    position: Floats
+    covariance: Floats
+    sightings: int
+    robots: tuple[str, ...]
+    tag: int | None
+
+
+def points_of_interest(
+    raw: RawEstimates, labels: Labels, *, least: int = 1, independent_after_s: float = 0.0
+) -> tuple[PointOfInterest, ...]:
+    """Filter each cluster of `labels` (n,) that has at least `least` estimates, in the order of the labels.
+
+    With `independent_after_s` 0 all estimates are independent. It bears on those alone that have covariances.
+
+    Raises
+    ------
+    ParameterError
+        if `independent_after_s` is below 0.
+    """
+    if not 0 <= independent_after_s < math.inf:
+        raise ParameterError(f"independent_after_s: {independent_after_s}; expected seconds of at least 0")
+    clusters = [np.flatnonzero(labels == label) for label in np.unique(labels[labels != LONE])]
+    return tuple(_point(raw, members, independent_after_s) for members in clusters if len(members) >= least)
+
+
+def remarks(points: tuple[PointOfInterest, ...]) -> tuple[str, ...]:
+    """What a person should hear of: nothing found, or a tag at more than one place."""
+    if not points:
+        return ("no point of interest: no tag was seen",)
+    places = Counter(point.tag for point in points if point.tag is not None)
+    return tuple(f"tag {tag} is at {count} places" for tag, count in sorted(places.items()) if count > 1)
+
+
+def _point(raw: RawEstimates, members: npt.NDArray[np.intp], independent_after_s: float) -> PointOfInterest:
+    places = raw.positions[members]
+    if raw.covariances is None:
+        position, covariance = _mean(places)
+    else:
+        shares = _shares(raw, members, independent_after_s)
+        position, covariance = _weighed(places, raw.covariances[members], shares)
+    decoded = Counter(tag for tag in raw.tags[members].tolist() if tag != NO_TAG)
+    tag = min(decoded, key=lambda tag: (-decoded[tag], tag)) if decoded else None
+    robots = tuple(sorted({raw.robots[member] for member in members}))
+    return PointOfInterest(position, covariance, len(members), robots, tag)
+
+
+def _mean(places: Floats) -> tuple[Floats, Floats]:
+    """The mean (d,), and by their scatter its covariance (d, d)."""
+    count, size = places.shape
+    mean = places.mean(axis=0)
+    if count == 1:
+        return mean, np.full((size, size), np.nan)
+    apart = places - mean
+    return mean, apart.T @ apart / (count - 1) / count
+
+
+def _shares(raw: RawEstimates, members: npt.NDArray[np.intp], independent_after_s: float) -> Floats:
+    """(n,) as what part of an independent sighting each counts."""
+    if independent_after_s == 0:
+        return np.ones(len(members))
+    stretches = np.floor(raw.times_s[members] / independent_after_s).tolist()
+    groups = [(raw.robots[member], stretch) for member, stretch in zip(members, stretches, strict=True)]
+    sizes = Counter(groups)
+    return np.array([1 / sizes[group] for group in groups])
+
+
+def _weighed(places: Floats, covariances: Floats, shares: Floats) -> tuple[Floats, Floats]:
+    """The mean (d,) weighed by information, and its covariance (d, d), larger where they scatter too much."""
+    information = shares[:, None, None] * np.linalg.inv(covariances)
+    covariance = np.linalg.inv(information.sum(axis=0))
+    mean = covariance @ np.einsum("nij,nj->i", information, places)
+    apart = places - mean
+    squares = np.einsum("ni,nij,nj->", apart, information, apart)
+    freedom = places.shape[1] * (round(shares.sum()) - 1)  # shares add up to the number of independent sightings
+    return mean, covariance * max(1.0, squares / freedom if freedom else 1.0)

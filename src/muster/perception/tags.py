@@ -1,0 +1,71 @@
+"""Pictures of AprilTags of the family 36h11, drawn from the codes that the detector itself goes by.
+
+A tag is 8 x 8 cells, black around 6 x 6 cells of code; a white margin, one cell wide, belongs to it. The size of a tag
+is the side of its black square, 0.8 of the side of the picture. The tag's frame has its origin in the middle, x to the
+right of the picture, y down and z into it, as the image frame of a camera before which it hangs upright.
+
+OpenCV's dictionary `DICT_APRILTAG_36h11` has the same tags half a turn about: their corners come out in another order.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.perception.extra import require_physics
+
+FAMILY = "tag36h11"
+
+CELLS, CELLS_OF_PICTURE = 8, 10
+"""Across the black square; across the picture, with the margin."""
+
+CORNERS = np.array([[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]])
+"""(4, 3) of a tag of size 1 in its own frame: upper left, upper right, lower right, lower left."""
+
+
+def tag_count() -> int:
+    """How many tags the family has: ids are 0 to one less.
+
+    Raises
+    ------
+    MissingExtraError
+        if pupil-apriltags is not installed.
+    """
+    return len(_cells())
+
+
+def tag_image(tag: int, cell_px: int = 8) -> npt.NDArray[np.uint8]:
+    """Draw a tag with its margin: (10 cell_px, 10 cell_px) of 0 and 255.
+
+    Raises
+    ------
+    ParameterError
+        if the family has no such tag, or a cell has no pixel.
+    MissingExtraError
+        if pupil-apriltags is not installed.
+    """
+    if not 0 <= tag < tag_count():
+        raise ParameterError(f"tag: {tag}; expected 0 to {tag_count() - 1}, the ids of {FAMILY}")
+    if cell_px < 1:
+        raise ParameterError(f"cell_px: {cell_px}; expected a whole number of pixels of at least 1")
+    return np.kron(_cells()[tag], np.full((cell_px, cell_px), 255, dtype=np.uint8))
+
+
+@cache
+def _cells() -> npt.NDArray[np.uint8]:
+    """All tags (n, 10, 10): 1 where a cell is white. Bits are told from the highest one on."""
+    require_physics("a picture of a tag", "pupil_apriltags")
+    from pupil_apriltags import Detector
+
+    detector = Detector(families=FAMILY)  # frees the family when it goes
+    family = detector.tag_families[FAMILY].contents
+    codes = np.array(family.codes[: family.ncodes], dtype=np.uint64)
+    places = np.arange(family.nbits - 1, -1, -1, dtype=np.uint64)
+    cells = np.zeros((family.ncodes, CELLS_OF_PICTURE, CELLS_OF_PICTURE), dtype=np.uint8)
+    cells[:, [0, -1], :] = cells[:, :, [0, -1]] = 1
+    rows, columns = family.bit_y[: family.nbits], family.bit_x[: family.nbits]
+    cells[:, np.array(rows) + 1, np.array(columns) + 1] = (codes[:, None] >> places) & np.uint64(1)
+    return cells

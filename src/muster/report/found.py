@@ -1,0 +1,92 @@
+"""Points of interest: what was seen, what was found, what is there (TCF thesis, Figures 6.4 and 6.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.perception.estimates import RawEstimates
+from muster.perception.interest import PointOfInterest
+from muster.perception.matching import ErrorTable
+from muster.report.canvas import add_title, frame_of_map, limits, new_axes
+from muster.report.styles import ALARM, QUIET_TEXT, TEXT, robot_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_SIZE_IN = 6.4
+_MARGIN = 0.06
+_DEVIATIONS = 3.0
+"""How many standard deviations an ellipse is wide to each side."""
+
+
+def plot_found(
+    raw: RawEstimates,
+    points: Sequence[PointOfInterest],
+    table: ErrorTable,
+    truth: dict[str, tuple[float, float]],
+    title: str,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw on the ground raw estimates in their robots' colours, filtered ones with 3-sigma ellipses, and the truth.
+
+    What was missed, and what was found where nothing is, is red.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    ax = ax or new_axes(_SIZE_IN, _SIZE_IN)
+    for index, robot in enumerate(sorted(set(raw.robots))):
+        mine = raw.positions[[name == robot for name in raw.robots], :2]
+        ax.plot(
+            *mine.T, ".", color=robot_style(index).color, markersize=2, alpha=0.5, label=f"seen by {robot}", zorder=2
+        )
+    for point in points:
+        _ellipse(ax, point)
+    extra = set(table.extra)
+    for place in (tuple(point.position.tolist()) for point in points):
+        ax.plot(
+            *place[:2], "o", markersize=5, markerfacecolor="none", color=ALARM if place in extra else TEXT, zorder=4
+        )
+    for name, (x, y) in truth.items():
+        color = ALARM if name in table.missed else QUIET_TEXT
+        ax.plot(x, y, "+", color=color, markersize=7, zorder=5)
+        ax.annotate(name, (x, y), (5, 4), textcoords="offset points", fontsize=7, color=color, parse_math=False)
+    for match in table.matches:
+        ax.plot(*np.array([match.truth[:2], match.found[:2]]).T, color=TEXT, linewidth=0.8, zorder=3)
+    _frame(ax, raw, truth)
+    add_title(ax, title, _facts(table, len(truth)))
+    if raw.robots:
+        ax.legend(loc="upper right", fontsize=7, frameon=False, markerscale=4)
+    return ax
+
+
+def _facts(table: ErrorTable, there: int) -> list[str]:
+    facts = [f"{len(table.matches)} of {there} found"]
+    if table.matches:
+        worst = table.matches[0]
+        facts += [f"mean error {table.mean_error_m:.3f} m", f"greatest {worst.error_m:.3f} m ({worst.name})"]
+    return facts + ([f"{len(table.extra)} where nothing is"] if table.extra else [])
+
+
+def _ellipse(ax: Axes, point: PointOfInterest) -> None:
+    if not np.isfinite(point.covariance).all():
+        return
+    from matplotlib.patches import Ellipse
+
+    squares, axes = np.linalg.eigh(point.covariance[:2, :2])
+    width, height = 2 * _DEVIATIONS * np.sqrt(np.maximum(squares, 0.0))
+    turned = float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0])))
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": QUIET_TEXT, "linewidth": 0.7, "zorder": 3}
+    ax.add_patch(Ellipse(tuple(point.position[:2]), width, height, angle=turned, **look))
+
+
+def _frame(ax: Axes, raw: RawEstimates, truth: dict[str, tuple[float, float]]) -> None:
+    places: npt.NDArray[np.float64] = np.array([*truth.values(), *raw.positions[:, :2]]).reshape(-1, 2)
+    if len(places):
+        frame_of_map(ax, *limits(places, _MARGIN, on_ground=False))
