@@ -61,8 +61,9 @@ struct CrowdRobot {
   Vec<3> position;
   Vec<3> velocity;  // of the last step
   double heading = 0.0;
-  Vec<3> commanded;    // what it drove by: the velocity without noise
-  double ahead = 0.0;  // the same of one that faces its way: speed ahead
+  Vec<3> commanded;       // what it drove by: the velocity without noise
+  double ahead = 0.0;     // the same of one that faces its way: speed ahead
+  double yaw_rate = 0.0;  // and how fast it turns
 
   std::vector<Waypoint> way;
   std::size_t next = 0;  // of `way`; those before are passed
@@ -74,6 +75,7 @@ struct CrowdRobot {
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
+  double counts = 1.0;  // metres by which odometry goes on for a metre of way, in this step
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
