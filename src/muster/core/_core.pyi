@@ -539,9 +539,9 @@ class CrowdWorld:
         What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed ahead of one that faces its way, yaw rate.
         """
 
-    def carried_out(self, positions: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], headings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
+    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
         """
-        Where it brought them, (n, 3) and (n,); slower than `still` is standing. Returns events as `advance`.
+        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; slower than `still` is standing. Returns events as `advance`.
         """
 
     @property

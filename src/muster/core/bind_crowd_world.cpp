@@ -24,8 +24,7 @@ using Faces = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::devi
 using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
-using Places = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Angles = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 using Slabs = std::vector<std::tuple<std::vector<std::array<double, 2>>, double, double>>;
 
 Avoidance avoidance_named(const std::string& name) {
@@ -65,13 +64,13 @@ std::vector<Event> told(const std::vector<CrowdEvent>& found) {
   return events;
 }
 
-std::vector<Event> carried_out(CrowdWorld& world, const Places& positions, const Angles& headings, double still) {
-  if (positions.shape(0) != world.robots().size() || headings.shape(0) != world.robots().size())
+std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, double still) {
+  if (poses.shape(0) != world.robots().size() || lags.shape(0) != world.robots().size())
     throw std::invalid_argument("the arrays must have a row for each robot");
-  std::vector<Pose> after;
-  for (std::size_t i = 0; i < headings.shape(0); ++i) {
-    const double* p = positions.data() + 3 * i;
-    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, headings.data()[i]});
+  std::vector<Carried> after;
+  for (std::size_t i = 0; i < poses.shape(0); ++i) {
+    const double *p = poses.data() + 4 * i, *l = lags.data() + 4 * i;
+    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3]});
   }
   return told(world.carried_out(after, still));
 }
@@ -157,8 +156,9 @@ void bind_crowd_world(nb::module_& m) {
       .def("command", &command,
            "What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed "
            "ahead of one that faces its way, yaw rate.")
-      .def("carried_out", &carried_out, "positions"_a, "headings"_a, "still"_a,
-           "Where it brought them, (n, 3) and (n,); slower than `still` is standing. Returns events as `advance`.")
+      .def("carried_out", &carried_out, "poses"_a, "lags"_a, "still"_a,
+           "Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they "
+           "told to stand; slower than `still` is standing. Returns events as `advance`.")
       .def_prop_ro("time", &CrowdWorld::time)
       .def_prop_ro("steps", &CrowdWorld::steps)
       .def_prop_ro("least_distance", &CrowdWorld::least_distance)
@@ -175,7 +175,8 @@ void bind_crowd_world(nb::module_& m) {
           "report",
           [](const CrowdWorld& w, int robot) {
             const CrowdRobot& r = w.robots()[robot];
-            return std::tuple(w.time(), std::tuple(r.position[0], r.position[1], r.position[2]), r.heading,
+            const Vec<3> at = r.place();
+            return std::tuple(w.time(), std::tuple(at[0], at[1], at[2]), wrapped(r.heading - r.turn_lag),
                               std::tuple(r.velocity[0], r.velocity[1], r.velocity[2]), r.odometry, r.order, r.next);
           },
           "robot"_a, "Time, position, heading, velocity, odometry, order, way points passed.")
@@ -184,7 +185,8 @@ void bind_crowd_world(nb::module_& m) {
       .def("positions",
            [](const CrowdWorld& w) {
              return table(w, 3, [](const CrowdRobot& r, auto& to) {
-               to.insert(to.end(), r.position.at.begin(), r.position.at.end());
+               const Vec<3> at = r.place();
+               to.insert(to.end(), at.at.begin(), at.at.end());
              });
            })
       .def("velocities",
@@ -195,7 +197,7 @@ void bind_crowd_world(nb::module_& m) {
            })
       .def("headings",
            [](const CrowdWorld& w) {
-             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.heading); });
+             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(wrapped(r.heading - r.turn_lag)); });
            })
       .def("travelled", [](const CrowdWorld& w) {
         return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.travelled); });

@@ -17,8 +17,7 @@ double normal(Random& random) {
   return radius * std::cos(2.0 * std::acos(-1.0) * random.uniform());
 }
 
-void count(CrowdRobot& robot, double dt) {
-  const double metres = norm(robot.velocity) * dt;
+void count(CrowdRobot& robot, double metres) {
   robot.travelled += metres;
   robot.odometry += robot.counts * metres;
 }
@@ -92,14 +91,16 @@ std::vector<Command> CrowdWorld::command() {
   return commands;
 }
 
-std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Pose>& after, double still) {
+std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Carried>& after, double still) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     CrowdRobot& robot = robots_[i];
-    robot.position = after[i].position;
-    robot.heading = wrapped(after[i].heading);
-    robot.velocity = (1.0 / settings_.dt) * (robot.position - before_[i]);
+    robot.lag = after[i].lag;
+    robot.turn_lag = after[i].turn_lag;
+    robot.position = after[i].place + robot.lag;
+    robot.heading = wrapped(after[i].heading + robot.turn_lag);
+    robot.velocity = (1.0 / settings_.dt) * (robot.place() - places_before_[i]);
     if (norm(robot.velocity) < still) robot.velocity = {};
-    count(robot, settings_.dt);
+    count(robot, norm(robot.velocity) * settings_.dt);
   }
   events_.clear();
   conclude(AgentTree<3>(before_));
@@ -108,7 +109,11 @@ std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Pose>& after, 
 
 void CrowdWorld::look() {
   before_.resize(robots_.size());
-  for (std::size_t i = 0; i < robots_.size(); ++i) before_[i] = robots_[i].position;
+  places_before_.resize(robots_.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    before_[i] = robots_[i].position;
+    places_before_[i] = robots_[i].place();
+  }
 }
 
 void CrowdWorld::decide(const AgentTree<3>& tree) {
@@ -195,7 +200,7 @@ void CrowdWorld::disturb(CrowdRobot& robot) const {
 void CrowdWorld::move(CrowdRobot& robot) const {
   robot.position = robot.position + settings_.dt * robot.velocity;
   robot.heading = wrapped(robot.heading + settings_.dt * robot.yaw_rate);
-  count(robot, settings_.dt);
+  count(robot, norm(robot.velocity) * settings_.dt);
 }
 
 void CrowdWorld::take_note(int i) {

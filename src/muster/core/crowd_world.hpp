@@ -58,9 +58,10 @@ struct Command {
   double yaw_rate;
 };
 
-struct Pose {
-  Vec<3> position;
-  double heading;
+// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now.
+struct Carried {
+  Vec<3> place, lag;
+  double heading, turn_lag;
 };
 
 class CrowdWorld {
@@ -81,7 +82,7 @@ class CrowdWorld {
   // What robots that something else moves are to do in the next step, noise included; and what happened in it, from
   // where they are at its end. Slower than `still` (m/s) is standing.
   std::vector<Command> command();
-  std::vector<CrowdEvent> carried_out(const std::vector<Pose>& after, double still);
+  std::vector<CrowdEvent> carried_out(const std::vector<Carried>& after, double still);
 
   double time() const { return settings_.dt * static_cast<double>(steps_); }
   long steps() const { return steps_; }
@@ -113,7 +114,7 @@ class CrowdWorld {
   std::vector<CrowdRobot> robots_;
   std::vector<WallSet> walls_;
   long steps_ = 0;
-  std::vector<Vec<3>> before_;                    // places at the beginning of the step
+  std::vector<Vec<3>> before_, places_before_;    // positions at the beginning of the step, and the bodies' places
   std::vector<Vec<3>> course_, wanted_, chosen_;  // velocities: alone, with manners, with avoidance
   std::vector<Steering> steerings_;
   std::vector<Choice> choices_;

@@ -1,13 +1,37 @@
-"""The optional part of the installation that moves robots by physics: MuJoCo is large."""
+"""What the physics world needs of the installation: MuJoCo, and for pictures a library that draws without a screen."""
 
 from __future__ import annotations
 
+import ctypes
+import os
+import sys
 from importlib.util import find_spec
 
 from muster.mission.errors import MissingExtraError
+
+BACKENDS = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
+"""How MuJoCo may draw without a screen, and the library of each; the first is the faster."""
 
 
 def require_physics_extra() -> None:
     """Raise MissingExtraError where MuJoCo is not installed."""
     if find_spec("mujoco") is None:
         raise MissingExtraError("physics", "the physics world")
+
+
+def choose_backend() -> str | None:
+    """Say to MuJoCo how to draw, if nobody did; None where neither library is there.
+
+    MuJoCo reads `MUJOCO_GL` when it is imported: after that the choice is made.
+    """
+    said = os.environ.get("MUJOCO_GL")
+    if said or "mujoco" in sys.modules or not sys.platform.startswith("linux"):
+        return said
+    for backend, library in BACKENDS.items():
+        try:
+            ctypes.CDLL(library)
+        except OSError:
+            continue
+        os.environ["MUJOCO_GL"] = backend
+        return backend
+    return None

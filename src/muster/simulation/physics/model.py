@@ -224,7 +224,13 @@ def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> No
     for angle in (math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4):
         x, y = arm * math.cos(angle), arm * math.sin(angle)
         _add(
-            body, "geom", type="capsule", fromto=(0, 0, 0, x, y, 0), size=(height / 12,), rgba=(0.3, 0.3, 0.3, 1), **seen
+            body,
+            "geom",
+            type="capsule",
+            fromto=(0, 0, 0, x, y, 0),
+            size=(height / 12,),
+            rgba=(0.3, 0.3, 0.3, 1),
+            **seen,
         )
         front = (0.8, 0.2, 0.2, 0.6) if x > 0 else (0.2, 0.2, 0.2, 0.6)
         _add(

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.world import body_of
-from muster.mission.errors import ParameterError
 from muster.simulation.crowded_world import CrowdedWorld, Event
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
-from muster.simulation.physics.control import Commands, Control
+from muster.simulation.physics.control import Commands, Control, poses
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.stage import Stage
 from muster.simulation.port import SimulatedPort
@@ -62,8 +62,7 @@ class PhysicsWorld(CrowdedWorld):
     @property
     def stage(self) -> Stage:
         """MuJoCo's model and data, for pictures: of the robots that are in the world now."""
-        if self._stage is None or len(self._stage.robots) < len(self._robots):
-            self._set_stage()
+        self._set_stage()
         assert self._stage is not None
         return self._stage
 
@@ -86,19 +85,22 @@ class PhysicsWorld(CrowdedWorld):
 
     def _carry_out(self) -> list[Event]:
         """One step of the world."""
-        stage, before = self.stage, self.positions
+        self._set_stage()
         rows = np.array(self._crowd.command()).reshape(-1, 5)
-        commands = Commands(rows[:, :3] * self._climbing, rows[:, 3], rows[:, 4])
+        commands = Commands(rows[:, :3] * self._axes, rows[:, 3], rows[:, 4])
         motion = self._control.carry_out(commands, self._dt_s / self._count, self._count)
-        after = before + self._dt_s * rows[:, :3]  # the heights of those that do not fly in space
-        after[:, :2] = motion.frames[:, :2]
-        flies = self._climbing[:, 2] > 0
-        after[flies, 2] = motion.frames[flies, 2] - self._standing_m[flies]
-        del stage
-        return self._crowd.carried_out(np.ascontiguousarray(after), np.ascontiguousarray(motion.headings), STILL_MPS)
+        lags = self._control.lags(motion)
+        lags[:, :3] *= self._axes
+        after = poses(motion)
+        heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
+        after[:, 2] = np.where(self._axes[:, 2] > 0, after[:, 2] - self._standing_m, heights)
+        return self._crowd.carried_out(after, lags, STILL_MPS)
 
     def _set_stage(self) -> None:
+        """Make the stage, at first and where a robot joined."""
         before = self._stage
+        if before is not None and len(before.robots) == len(self._robots):
+            return
         places, headings = self.positions, self.headings
         robots = [
             self._standing(robot, place, heading)
@@ -109,9 +111,9 @@ class PhysicsWorld(CrowdedWorld):
             stage.take_over(before)
         self._stage = stage
         self._control = Control(stage, keeps_height=self._dimensions == 2)
-        self._standing_m = np.array([robot.body.standing_m for robot in robots]) + self._ground_m * 0
-        in_space = [float(robot.kind == "air" and self._dimensions == 3) for robot in self._robots]
-        self._climbing = np.array([[1.0, 1.0, up] for up in in_space])
+        self._standing_m = np.array([robot.body.standing_m for robot in robots])
+        in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
+        self._axes = np.array([[1.0, 1.0, float(climbs)] for climbs in in_space]).reshape(-1, 3)
 
     def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
         body = robot_body(robot)

@@ -17,13 +17,23 @@ from muster.simulation.physics.model import Standing, mjcf
 
 @dataclass(frozen=True)
 class Motion:
-    """Of all robots at one moment, in the map frame: frames (n, 3), axes of the bodies as columns (n, 3, 3), velocities
-    (n, 3), and rates of turning (n, 3)."""
+    """How some robots are and move at one moment, in the map frame.
+
+    Parameters
+    ----------
+    frames, axes
+        of the bodies: (n, 3) metres, and their axes as the columns of (n, 3, 3).
+    velocities, rates
+        of the frames: (n, 3) m/s, and of turning (n, 3) rad/s.
+    """
 
     frames: Floats
     axes: Floats
     velocities: Floats
     rates: Floats
+
+    def of(self, who: npt.NDArray[np.intp]) -> Motion:
+        return Motion(self.frames[who], self.axes[who], self.velocities[who], self.rates[who])
 
     @property
     def headings(self) -> Floats:
