@@ -1,4 +1,4 @@
-"""A world with masses, forces and contacts (MuJoCo). Importing it raises MissingExtraError without the extra `physics`."""
+"""A world with masses, forces and contacts (MuJoCo). Importing it without the extra `physics`: MissingExtraError."""
 
 from muster.simulation.physics.extra import choose_backend, require_physics_extra
 

@@ -15,12 +15,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build
-from muster.simulation.physics.stage import Motion, Stage
+from muster.simulation.physics.stage import Group, Indices, Motion, Stage
 
 GRAVITY_MPS2 = 9.81
 MOST_TILT = math.radians(35)
@@ -34,33 +32,30 @@ class Commands:
 
     Parameters
     ----------
-    velocities
-        (n, 3) in the map frame, m/s.
+    rates
+        (n, 4): velocities in the map frame, m/s, and yaw rates, rad/s.
     ahead
         (n,) speeds of those that face their way, m/s.
-    yaw_rates
-        (n,) rad/s.
     """
 
-    velocities: Floats
+    rates: Floats
     ahead: Floats
-    yaw_rates: Floats
 
-    def of(self, who: npt.NDArray[np.intp]) -> Commands:
-        return Commands(self.velocities[who], self.ahead[who], self.yaw_rates[who])
+    def of(self, who: Indices) -> Commands:
+        return Commands(self.rates[who], self.ahead[who])
 
 
 class Law(Protocol):
-    """Drives those robots of a stage that are built in one way; `who` are their numbers."""
+    """Drives the robots of a group, all built in one way."""
 
-    who: npt.NDArray[np.intp]
+    group: Group
 
     def lags(self, motion: Motion) -> Floats:
-        """By how much they would go on and turn on, were they told to stand: (k, 4), metres and radians."""
+        """By how much they would go on and turn on, were they told to stand: (n, 4), metres and radians."""
         ...
 
     def drive(self, commands: Commands, motion: Motion) -> None:
-        """Set motors for a step of physics. Both are of these robots alone."""
+        """Set their motors for a step of physics."""
         ...
 
 
@@ -70,17 +65,18 @@ class Wheels:
     LAG_S = 0.015
 
     def __init__(self, stage: Stage) -> None:
-        self._stage = stage
-        self.who = stage.having(Build.WHEELS)
-        self._scale = np.array([stage.robots[k].body.scale for k in self.who])
+        self.group = stage.group(Build.WHEELS)
+        self._motors = stage.motors(self.group.who)
+        scale = np.array([body.scale for body in self.group.robots])
+        self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
 
     def lags(self, motion: Motion) -> Floats:
-        return self.LAG_S * np.column_stack([motion.velocities[:, :2], 0 * self._scale, motion.rates[:, 2]])
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self.LAG_S)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
-        rims = commands.yaw_rates * TRACK_M / 2 * self._scale
-        speeds = np.stack([commands.ahead - rims, commands.ahead + rims], axis=1)
-        self._stage.data.ctrl[self._stage.motors] = speeds / (WHEEL_RADIUS_M * self._scale[:, None])
+        rims = commands.rates[:, 3] * self._half_track
+        self.group.data.ctrl[self._motors[:, 0]] = (commands.ahead - rims) / self._radius
+        self.group.data.ctrl[self._motors[:, 1]] = (commands.ahead + rims) / self._radius
 
 
 class Pushes:
@@ -90,20 +86,18 @@ class Pushes:
     """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
 
     def __init__(self, stage: Stage) -> None:
-        self._stage = stage
-        self.who = stage.having(Build.SLIDER)
-        bodies = [stage.robots[k].body for k in self.who]
-        self._mass = np.array([body.mass_kg for body in bodies])
-        self._inertia = np.array([body.inertia_kgm2[2] for body in bodies])
+        self.group = stage.group(Build.SLIDER)
+        self._mass = np.array([body.mass_kg for body in self.group.robots])
+        self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
 
     def lags(self, motion: Motion) -> Floats:
-        return np.column_stack([motion.velocities[:, :2], 0 * self._mass, motion.rates[:, 2]]) / self.GAIN
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], 1 / self.GAIN)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
-        missing = (commands.velocities - motion.velocities)[:, :2]
-        forces, bodies = self._stage.data.xfrc_applied, self._stage.bodies[self.who]
+        missing = commands.rates[:, :2] - motion.velocities[:, :2]
+        forces, bodies = self.group.data.xfrc_applied, self.group.bodies
         forces[bodies, :2] = self.GAIN * self._mass[:, None] * missing
-        forces[bodies, 5] = self.GAIN * self._inertia * (commands.yaw_rates - motion.rates[:, 2])
+        forces[bodies, 5] = self.GAIN * self._inertia * (commands.rates[:, 3] - motion.rates[:, 2])
 
 
 class Rotors:
@@ -120,76 +114,107 @@ class Rotors:
     """1/s^2 and 1/s: angular acceleration for each radian off, and against each radian a second."""
 
     def __init__(self, stage: Stage) -> None:
-        self._stage = stage
-        self.who = stage.having(Build.ROTORS)
-        bodies = [stage.robots[k].body for k in self.who]
-        self._mass = np.array([body.mass_kg for body in bodies])
-        self._inertia = np.array([body.inertia_kgm2 for body in bodies]).reshape(-1, 3)
+        self.group = stage.group(Build.ROTORS)
+        self._mass = np.array([body.mass_kg for body in self.group.robots])
+        self._inertia = np.array([body.inertia_kgm2 for body in self.group.robots]).reshape(-1, 3)
 
     def lags(self, motion: Motion) -> Floats:
-        up = motion.axes[:, :, 2]
-        level = motion.velocities.copy()
-        level[:, :2] += self.DAMPING / self.ATTITUDE * GRAVITY_MPS2 * up[:, :2] / up[:, 2:]
-        level[:, 0] += GRAVITY_MPS2 / self.ATTITUDE * motion.rates[:, 1]
-        level[:, 1] -= GRAVITY_MPS2 / self.ATTITUDE * motion.rates[:, 0]
-        return np.column_stack([level / self.VELOCITY, motion.rates[:, 2] / self.YAW_RATE])
+        tilted, jerk = GRAVITY_MPS2 * self.DAMPING / self.ATTITUDE, GRAVITY_MPS2 / self.ATTITUDE
+        up, rates = motion.axes[:, :, 2], motion.rates
+        level = motion.velocities[:, :2] + tilted * up[:, :2] / up[:, 2:]
+        x, y = level[:, 0] + jerk * rates[:, 1], level[:, 1] - jerk * rates[:, 0]
+        turn = rates[:, 2] * (self.VELOCITY / self.YAW_RATE)
+        return _lags(x, y, motion.velocities[:, 2], turn, 1 / self.VELOCITY)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
-        wanted = self.VELOCITY * (commands.velocities - motion.velocities)
-        wanted[:, 2] = np.clip(wanted[:, 2], -0.5 * GRAVITY_MPS2, 0.5 * GRAVITY_MPS2) + GRAVITY_MPS2
-        level = np.linalg.norm(wanted[:, :2], axis=1)
-        wanted[:, :2] *= np.minimum(1.0, math.tan(MOST_TILT) * wanted[:, 2] / np.maximum(level, 1e-12))[:, None]
-        up = motion.axes[:, :, 2]
-        thrust = self._mass * wanted[:, 2] / up[:, 2]
-        off = np.cross(up, wanted / np.linalg.norm(wanted, axis=1, keepdims=True))
-        turn = self.ATTITUDE * off - self.DAMPING * motion.rates
-        turn[:, 2] = self.YAW_RATE * (commands.yaw_rates - motion.rates[:, 2])
-        forces, bodies = self._stage.data.xfrc_applied, self._stage.bodies[self.who]
-        forces[bodies, :3] = thrust[:, None] * up
+        wanted = self.VELOCITY * (commands.rates[:, :3] - motion.velocities)
+        climb = GRAVITY_MPS2 + np.clip(wanted[:, 2], -0.5 * GRAVITY_MPS2, 0.5 * GRAVITY_MPS2)
+        level = np.hypot(wanted[:, 0], wanted[:, 1])
+        tilt = np.minimum(level, math.tan(MOST_TILT) * climb) / np.maximum(level, 1e-12)
+        x, y = wanted[:, 0] * tilt, wanted[:, 1] * tilt
+        up, rates = motion.axes[:, :, 2], motion.rates
+        length = np.sqrt(x * x + y * y + climb * climb)
+        turn = -self.DAMPING * rates
+        turn[:, 0] += self.ATTITUDE * (up[:, 1] * climb - up[:, 2] * y) / length  # up x wanted
+        turn[:, 1] += self.ATTITUDE * (up[:, 2] * x - up[:, 0] * climb) / length
+        turn[:, 2] = self.YAW_RATE * (commands.rates[:, 3] - rates[:, 2])
+        forces, bodies = self.group.data.xfrc_applied, self.group.bodies
+        forces[bodies, :3] = (self._mass * climb / up[:, 2])[:, None] * up
         forces[bodies, 3:] = self._inertia * turn
 
 
+def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float) -> Floats:
+    lags = np.empty((len(x), 4))
+    lags[:, 0], lags[:, 1], lags[:, 2], lags[:, 3] = x, y, z, turn
+    lags *= seconds
+    return lags
+
+
+class Follower:
+    """The robots of one law, and where they should be at this moment.
+
+    Parameters
+    ----------
+    keeps_height
+        in the plane nobody climbs.
+    """
+
+    def __init__(self, law: Law, *, keeps_height: bool) -> None:
+        self.law = law
+        self._motion = law.group.motion()
+        self._reference = self._motion.poses
+        self._free = np.array([True, True, not keeps_height, True])
+
+    @property
+    def poses(self) -> Floats:
+        """Where they are (n, 4)."""
+        return self._motion.poses
+
+    @property
+    def lags(self) -> Floats:
+        """See `Law.lags`."""
+        return self.law.lags(self._motion)
+
+    def begin(self, commands: Commands) -> None:
+        """A step of the world begins: those that move go from where they are."""
+        self._commands = commands
+        anew = (commands.rates != 0).any(axis=1)[:, None] & self._free
+        self._reference = np.where(anew, self.poses + self.lags, self._reference)
+
+    def drive(self, step_s: float) -> None:
+        """Set motors for a step of physics, in which the reference goes on."""
+        commands, poses = self._commands, self.poses
+        self._reference += step_s * commands.rates
+        behind = self._reference - poses - self.lags
+        behind[:, 3] = np.remainder(behind[:, 3] + math.pi, 2 * math.pi) - math.pi
+        more = FOLLOWING * behind
+        along = more[:, 0] * np.cos(poses[:, 3]) + more[:, 1] * np.sin(poses[:, 3])
+        self.law.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
+
+    def look(self) -> None:
+        """See where the step has brought them."""
+        self._motion = self.law.group.motion()
+
+
 class Control:
-    """Of all robots of a stage. `keeps_height`: in the plane nobody climbs."""
+    """Of all robots of a stage."""
 
     def __init__(self, stage: Stage, *, keeps_height: bool) -> None:
         self._stage = stage
         laws: tuple[Law, ...] = (Wheels(stage), Pushes(stage), Rotors(stage))
-        self._laws = [law for law in laws if len(law.who)]
-        self._moving_axes = np.array([True, True, not keeps_height, True])
-        self._reference = poses(stage.motion())
+        self._followers = [Follower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
 
-    def carry_out(self, commands: Commands, step_s: float, count: int) -> Motion:
-        """So many steps of physics under these commands; returns the motion at the end."""
-        motion = self._stage.motion()
-        rates = np.column_stack([commands.velocities, commands.yaw_rates])
-        anew = (rates != 0).any(axis=1)[:, None] & self._moving_axes
-        self._reference = np.where(anew, poses(motion) + self.lags(motion), self._reference)
+    def carry_out(self, commands: Commands, count: int) -> tuple[Floats, Floats]:
+        """So many steps of physics; returns poses at the end, and lags: (n, 4) each."""
+        for follower in self._followers:
+            follower.begin(commands.of(follower.law.group.who))
         for _ in range(count):
-            self._reference += step_s * rates
-            self._drive(commands, motion)
+            for follower in self._followers:
+                follower.drive(self._stage.step_s)
             self._stage.go_on()
-            motion = self._stage.motion()
-        return motion
-
-    def lags(self, motion: Motion) -> Floats:
-        """See `Law.lags`; of all robots, (n, 4)."""
-        lags = np.zeros((len(motion.frames), 4))
-        for law in self._laws:
-            lags[law.who] = law.lags(motion.of(law.who))
-        return lags
-
-    def _drive(self, commands: Commands, motion: Motion) -> None:
-        behind = self._reference - poses(motion) - self.lags(motion)
-        behind[:, 3] = wrapped(behind[:, 3])
-        more = FOLLOWING * behind
-        headings = motion.headings
-        along = more[:, 0] * np.cos(headings) + more[:, 1] * np.sin(headings)
-        corrected = Commands(commands.velocities + more[:, :3], commands.ahead + along, commands.yaw_rates + more[:, 3])
-        for law in self._laws:
-            law.drive(corrected.of(law.who), motion.of(law.who))
-
-
-def poses(motion: Motion) -> Floats:
-    """Frames and headings (n, 4)."""
-    return np.column_stack([motion.frames, motion.headings])
+            for follower in self._followers:
+                follower.look()
+        poses, lags = np.empty((2, len(self._stage.robots), 4))
+        for follower in self._followers:
+            poses[follower.law.group.who], lags[follower.law.group.who] = follower.poses, follower.lags
+        return poses, lags

@@ -23,7 +23,7 @@ from muster.motion.limits import Limits
 from muster.motion.world import body_of
 from muster.simulation.crowded_world import CrowdedWorld, Event
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
-from muster.simulation.physics.control import Commands, Control, poses
+from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.stage import Stage
 from muster.simulation.port import SimulatedPort
@@ -87,11 +87,9 @@ class PhysicsWorld(CrowdedWorld):
         """One step of the world."""
         self._set_stage()
         rows = np.array(self._crowd.command()).reshape(-1, 5)
-        commands = Commands(rows[:, :3] * self._axes, rows[:, 3], rows[:, 4])
-        motion = self._control.carry_out(commands, self._dt_s / self._count, self._count)
-        lags = self._control.lags(motion)
-        lags[:, :3] *= self._axes
-        after = poses(motion)
+        rates = rows[:, [0, 1, 2, 4]] * self._axes
+        after, lags = self._control.carry_out(Commands(rates, rows[:, 3]), self._count)
+        lags *= self._axes
         heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
         after[:, 2] = np.where(self._axes[:, 2] > 0, after[:, 2] - self._standing_m, heights)
         return self._crowd.carried_out(after, lags, STILL_MPS)
@@ -113,7 +111,7 @@ class PhysicsWorld(CrowdedWorld):
         self._control = Control(stage, keeps_height=self._dimensions == 2)
         self._standing_m = np.array([robot.body.standing_m for robot in robots])
         in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
-        self._axes = np.array([[1.0, 1.0, float(climbs)] for climbs in in_space]).reshape(-1, 3)
+        self._axes = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
 
     def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
         body = robot_body(robot)

@@ -14,6 +14,8 @@ from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import Build
 from muster.simulation.physics.model import Standing, mjcf
 
+Indices = npt.NDArray[np.intp]
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -32,13 +34,31 @@ class Motion:
     velocities: Floats
     rates: Floats
 
-    def of(self, who: npt.NDArray[np.intp]) -> Motion:
-        return Motion(self.frames[who], self.axes[who], self.velocities[who], self.rates[who])
-
     @property
-    def headings(self) -> Floats:
-        """Radians (n,): where they look."""
-        return np.asarray(np.arctan2(self.axes[:, 1, 0], self.axes[:, 0, 0]))
+    def poses(self) -> Floats:
+        """Frames, and headings in radians: (n, 4)."""
+        poses = np.empty((len(self.frames), 4))
+        poses[:, :3] = self.frames
+        poses[:, 3] = np.arctan2(self.axes[:, 1, 0], self.axes[:, 0, 0])
+        return poses
+
+
+class Group:
+    """Some robots of a stage, by their numbers."""
+
+    def __init__(self, stage: Stage, who: Indices) -> None:
+        self.who = who
+        self.bodies = stage.bodies[who]
+        self.robots = tuple(stage.robots[k].body for k in who)
+        self.data = stage.data
+        self._places = stage.places[who][:, :3]
+        self._freedoms = stage.freedoms[who]
+
+    def motion(self) -> Motion:
+        """As it is now."""
+        axes = self.data.xmat[self.bodies].reshape(-1, 3, 3)
+        speeds = self.data.qvel[self._freedoms]
+        return Motion(self.data.qpos[self._places], axes, speeds[:, :3], (axes @ speeds[:, 3:, None])[:, :, 0])
 
 
 class Stage:
@@ -52,57 +72,45 @@ class Stage:
 
     def __init__(self, robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, step_s: float) -> None:
         self.robots = tuple(robots)
+        self.step_s = step_s
         self.model: Any = mujoco.MjModel.from_xml_string(mjcf(robots, walls, ground_m, step_s))
         self.data: Any = mujoco.MjData(self.model)
         model, numbers = self.model, range(len(self.robots))
-        self.bodies = np.array([model.body(f"robot{k}").id for k in numbers], dtype=np.intp)
+        self.bodies: Indices = np.array([model.body(f"robot{k}").id for k in numbers], dtype=np.intp)
         places = np.array([model.joint(f"free{k}").qposadr[0] for k in numbers], dtype=np.intp)
         freedoms = np.array([model.joint(f"free{k}").dofadr[0] for k in numbers], dtype=np.intp)
-        self._places = places[:, None] + np.arange(7)
-        self._freedoms = freedoms[:, None] + np.arange(6)
+        self.places: Indices = places[:, None] + np.arange(7)
+        self.freedoms: Indices = freedoms[:, None] + np.arange(6)
         self._wheels = [_wheels(model, k) for k in numbers]
-        self.motors = np.array(
-            [[model.actuator(f"{side}{k}").id for side in ("left", "right")] for k in numbers if self._wheels[k]],
-            dtype=np.intp,
-        ).reshape(-1, 2)
-
-    def motion(self) -> Motion:
-        """As it is now."""
-        places, speeds = self.data.qpos[self._places], self.data.qvel[self._freedoms]
-        axes = _axes(places[:, 3:])
-        return Motion(places[:, :3], axes, speeds[:, :3], np.einsum("nij,nj->ni", axes, speeds[:, 3:]))
+        mujoco.mj_step1(self.model, self.data)
 
     def go_on(self) -> None:
-        """One step of physics under `data.ctrl` and `data.xfrc_applied`."""
-        mujoco.mj_step(self.model, self.data)
+        """One step of physics under `data.ctrl` and `data.xfrc_applied`; places and axes are of its end."""
+        mujoco.mj_step2(self.model, self.data)
+        mujoco.mj_step1(self.model, self.data)
 
     def take_over(self, before: Stage) -> None:
         """Robots that stood on a stage before, which are the first of this one, go on as they were."""
         for k in range(len(before.robots)):
-            self.data.qpos[self._places[k]] = before.data.qpos[before._places[k]]
-            self.data.qvel[self._freedoms[k]] = before.data.qvel[before._freedoms[k]]
+            self.data.qpos[self.places[k]] = before.data.qpos[before.places[k]]
+            self.data.qvel[self.freedoms[k]] = before.data.qvel[before.freedoms[k]]
             for (place, freedom), (old_place, old_freedom) in zip(self._wheels[k], before._wheels[k], strict=True):
                 self.data.qpos[place] = before.data.qpos[old_place]
                 self.data.qvel[freedom] = before.data.qvel[old_freedom]
         self.data.time = before.data.time
+        mujoco.mj_step1(self.model, self.data)
 
-    def having(self, *builds: Build) -> npt.NDArray[np.intp]:
-        """The numbers of the robots that are so built."""
-        return np.array([k for k, robot in enumerate(self.robots) if robot.body.build in builds], dtype=np.intp)
+    def group(self, build: Build) -> Group:
+        """Those that are so built."""
+        return Group(self, np.array([k for k, one in enumerate(self.robots) if one.body.build is build], dtype=np.intp))
+
+    def motors(self, who: Indices) -> Indices:
+        """Of robots on wheels, left and right: (k, 2) numbers in `data.ctrl`."""
+        motors = [[self.model.actuator(f"{side}{k}").id for side in ("left", "right")] for k in who]
+        return np.array(motors, dtype=np.intp).reshape(-1, 2)
 
 
 def _wheels(model: Any, robot: int) -> list[tuple[int, int]]:
     """Where the angles and the speeds of its wheels are."""
     joints = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"{side}{robot}") for side in ("left", "right")]
     return [(model.jnt_qposadr[joint], model.jnt_dofadr[joint]) for joint in joints if joint >= 0]
-
-
-def _axes(quaternions: Floats) -> Floats:
-    """Turning matrices (n, 3, 3) of unit quaternions (n, 4), w first."""
-    w, x, y, z = quaternions.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
