@@ -87,11 +87,12 @@ class Pushes:
 
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.SLIDER)
+        self._lag_s = 1 / self.GAIN - stage.step_s  # the sum over steps, not the integral
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
 
     def lags(self, motion: Motion) -> Floats:
-        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], 1 / self.GAIN)
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         missing = commands.rates[:, :2] - motion.velocities[:, :2]
@@ -115,6 +116,7 @@ class Rotors:
 
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.ROTORS)
+        self._lag_s, self._yaw_lag_s = 1 / self.VELOCITY - stage.step_s, 1 / self.YAW_RATE - stage.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2 for body in self.group.robots]).reshape(-1, 3)
 
@@ -123,8 +125,8 @@ class Rotors:
         up, rates = motion.axes[:, :, 2], motion.rates
         level = motion.velocities[:, :2] + tilted * up[:, :2] / up[:, 2:]
         x, y = level[:, 0] + jerk * rates[:, 1], level[:, 1] - jerk * rates[:, 0]
-        turn = rates[:, 2] * (self.VELOCITY / self.YAW_RATE)
-        return _lags(x, y, motion.velocities[:, 2], turn, 1 / self.VELOCITY)
+        turn = rates[:, 2] * (self._yaw_lag_s / self._lag_s)
+        return _lags(x, y, motion.velocities[:, 2], turn, self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         wanted = self.VELOCITY * (commands.rates[:, :3] - motion.velocities)
@@ -181,18 +183,18 @@ class Follower:
         anew = (commands.rates != 0).any(axis=1)[:, None] & self._free
         self._reference = np.where(anew, self.poses + self.lags, self._reference)
 
-    def drive(self, step_s: float) -> None:
-        """Set motors for a step of physics, in which the reference goes on."""
+    def drive(self) -> None:
+        """Set motors for a step of physics."""
         commands, poses = self._commands, self.poses
-        self._reference += step_s * commands.rates
         behind = self._reference - poses - self.lags
         behind[:, 3] = np.remainder(behind[:, 3] + math.pi, 2 * math.pi) - math.pi
         more = FOLLOWING * behind
         along = more[:, 0] * np.cos(poses[:, 3]) + more[:, 1] * np.sin(poses[:, 3])
         self.law.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
 
-    def look(self) -> None:
-        """See where the step has brought them."""
+    def look(self, step_s: float) -> None:
+        """See where a step of physics has brought them."""
+        self._reference += step_s * self._commands.rates
         self._motion = self.law.group.motion()
 
 
@@ -210,10 +212,10 @@ class Control:
             follower.begin(commands.of(follower.law.group.who))
         for _ in range(count):
             for follower in self._followers:
-                follower.drive(self._stage.step_s)
+                follower.drive()
             self._stage.go_on()
             for follower in self._followers:
-                follower.look()
+                follower.look(self._stage.step_s)
         poses, lags = np.empty((2, len(self._stage.robots), 4))
         for follower in self._followers:
             poses[follower.law.group.who], lags[follower.law.group.who] = follower.poses, follower.lags
