@@ -34,6 +34,8 @@ SERVO_S = 0.01
 """In which a wheel's servo gets to its speed, were there no limit to its torque."""
 TORQUE_SHARE = 1.2
 """The most torque of a wheel, as a share of the weight upon it times its radius."""
+UNSEEN = 3
+"""A group of geoms that MuJoCo does not draw."""
 SHOW_WIDTH, SHOW_HEIGHT = 1920, 1440
 """The largest picture that may be rendered."""
 
@@ -71,7 +73,7 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
     _add(root, "size", memory="64M")
     _show(root)
     world = ET.SubElement(root, "worldbody")
-    _add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.6, 0.6, 0.6))
+    _add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.35, 0.35, 0.35))
     _add(
         world,
         "geom",
@@ -101,7 +103,7 @@ def _show(root: ET.Element) -> None:
     visual = ET.SubElement(root, "visual")
     _add(visual, "global", offwidth=SHOW_WIDTH, offheight=SHOW_HEIGHT)
     _add(visual, "quality", shadowsize=0, offsamples=0, numquads=1, numslices=16, numstacks=8)
-    _add(visual, "headlight", ambient=(0.5, 0.5, 0.5), diffuse=(0.3, 0.3, 0.3), specular=(0, 0, 0))
+    _add(visual, "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.15, 0.15, 0.15), specular=(0, 0, 0))
     _add(visual, "map", znear=0.002, zfar=50)
 
 
@@ -139,16 +141,14 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
     clear, radius = 0.3 * WHEEL_RADIUS_M * scale, WHEEL_RADIUS_M * scale
     chassis_kg = (WAFFLE_KG - 2 * WHEEL_KG) * scale**3
     _add(body, "inertial", pos=(0, 0, height * 0.35), mass=chassis_kg, diaginertia=robot.body.inertia_kgm2)
-    half = (length / 2, width / 2, (height - clear) / 2)
-    _add(
-        body,
-        "geom",
-        type="box",
-        pos=(0, 0, (height + clear) / 2),
-        size=half,
-        rgba=(0.2, 0.22, 0.25, 1),
-        **_touches(robot, ground=False),
-    )
+    middle, tall = (0, 0, (height + clear) / 2), (height - clear) / 2
+    hull = (length / 2, width / 2, tall)  # the wheels are within
+    _add(body, "geom", type="box", pos=middle, size=hull, group=UNSEEN, **_touches(robot, ground=False))
+    between = (length / 2, (TRACK_M - 1.5 * WHEEL_WIDTH_M) / 2 * scale, tall)
+    _add(body, "geom", type="box", pos=middle, size=between, rgba=(0.2, 0.22, 0.25, 1), contype=0, conaffinity=0)
+    nose = (length / 2, 0, height * 0.8)
+    mark = (0.01 * scale, width / 6, 0.02 * scale)
+    _add(body, "geom", type="box", pos=nose, size=mark, rgba=(0.9, 0.6, 0.1, 1), contype=0, conaffinity=0)
     ahead, ball = CASTER_AHEAD_M * scale, CASTER_RADIUS_M * scale
     for place in (ahead, -ahead):
         _foot(body, (place, 0.0), ball, CASTER_LIFT_M * scale)
@@ -216,7 +216,7 @@ def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> No
     span, _width, height = robot.body.size_m
     _add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
     _add(  # the hull is not to be seen: arms and rotors are
-        body, "geom", type="cylinder", size=(span / 2, height / 2), group=3, **_touches(robot, ground=True)
+        body, "geom", type="cylinder", size=(span / 2, height / 2), group=UNSEEN, **_touches(robot, ground=True)
     )
     seen = {"contype": 0, "conaffinity": 0}
     _add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
