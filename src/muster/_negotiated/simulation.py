@@ -1,4 +1,4 @@
-"""A mission carried out by robots that are processes, in the kinematic world, at the pace of real time."""
+"""A mission carried out by robots that are processes, in a simulated world, at the pace of real time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from muster.negotiation.messages import Stage
 from muster.negotiation.methods import method_named
 from muster.negotiation.team import Team, patience_here
 from muster.negotiation.watch import Order
-from muster.simulation import NO_NOISE, KinematicWorld, Noise
+from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 
 _LOOK_S = 0.05
 """Real seconds between two looks at bodies and robots."""
@@ -57,6 +57,7 @@ def negotiate_and_carry_out(
     problem: Problem,
     negotiation: Negotiation,
     *,
+    world: str = "kinematic",
     seed: int = 0,
     dt_s: float = 0.1,
     avoidance: str = "orca",
@@ -87,7 +88,7 @@ def negotiate_and_carry_out(
     """
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        world = KinematicWorld(
+        bodies = world_named(world)(
             problem.mission,
             seed=seed,
             dt_s=dt_s,
@@ -98,7 +99,7 @@ def negotiate_and_carry_out(
         )
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None))
-        theatre = Theatre(problem.mission, world, order, log)
+        theatre = Theatre(problem.mission, bodies, order, log)
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
         theatre.agree_first(negotiation.limit_s, halt)
@@ -106,7 +107,7 @@ def negotiate_and_carry_out(
             theatre.go_on(1.0 if speed is None else speed)
         if theatre.over:
             log.end()
-        report = report_of(log.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report
@@ -151,7 +152,7 @@ class Theatre:
 
     team: Team
 
-    def __init__(self, mission: Mission, world: KinematicWorld, order: Order, log: Log) -> None:
+    def __init__(self, mission: Mission, world: SimulatedWorld, order: Order, log: Log) -> None:
         self._world, self._order, self._log = world, order, log
         self._method = method_named(order.method)
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)

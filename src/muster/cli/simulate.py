@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
-_OF_A_PLAN = ("plan", "world", "time_limit", "iterations")
+_OF_A_PLAN = ("plan", "time_limit", "iterations")
 _OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
 _WORLDS = ("kinematic", "physics")
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")

@@ -56,7 +56,7 @@ class PhysicsWorld(CrowdedWorld):
         self._wall_sets: list[Floats] = []
         self._stage: Stage | None = None
         super().__init__(mission, **how)
-        self._ground_m = max(self._lowest_m, -1e6) if self._dimensions == 3 else 0.0
+        self._ground_m = self._lowest_m if self._dimensions == 3 else 0.0
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     @property
