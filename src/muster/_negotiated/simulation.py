@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import LOOK_S, Recorder
+from muster._carrying_out import LOOK_S, Recorder, world_named
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
