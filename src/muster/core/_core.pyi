@@ -508,7 +508,7 @@ def closest_approach_in_space(positions: Annotated[NDArray[numpy.float64], dict(
 class CrowdWorld:
     """A world of moving robots in fixed steps of virtual time."""
 
-    def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, margin: float, arrival: float, corner: float, heading: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
+    def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, clearance: float, margin: float, arrival: float, corner: float, heading: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
 
     def add_walls(self, faces: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], slabs: Sequence[tuple[Sequence[Sequence[float]], float, float]], ground: float) -> int:
         """

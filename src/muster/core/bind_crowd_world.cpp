@@ -131,14 +131,14 @@ void bind_crowd_world(nb::module_& m) {
   crowd.def(
       "__init__",
       [](CrowdWorld* self, double dt, const std::string& avoidance, bool space, double horizon, double wall_horizon,
-         int neighbours, double margin, double arrival, double corner, double heading, double velocity_noise,
-         double slip, double odometry_noise, std::uint64_t seed) {
+         int neighbours, double clearance, double margin, double arrival, double corner, double heading,
+         double velocity_noise, double slip, double odometry_noise, std::uint64_t seed) {
         new (self)
-            CrowdWorld({dt, avoidance_named(avoidance), space, horizon, wall_horizon, neighbours, margin,
+            CrowdWorld({dt, avoidance_named(avoidance), space, horizon, wall_horizon, neighbours, clearance, margin,
                         Tolerances{arrival, corner, heading}, CrowdNoise{velocity_noise, slip, odometry_noise}, seed});
       },
-      nb::kw_only(), "dt"_a, "avoidance"_a, "space"_a, "horizon"_a, "wall_horizon"_a, "neighbours"_a, "margin"_a,
-      "arrival"_a, "corner"_a, "heading"_a, "velocity_noise"_a, "slip"_a, "odometry_noise"_a, "seed"_a);
+      nb::kw_only(), "dt"_a, "avoidance"_a, "space"_a, "horizon"_a, "wall_horizon"_a, "neighbours"_a, "clearance"_a,
+      "margin"_a, "arrival"_a, "corner"_a, "heading"_a, "velocity_noise"_a, "slip"_a, "odometry_noise"_a, "seed"_a);
   bind_orders(crowd);
   crowd
       .def(

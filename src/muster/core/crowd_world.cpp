@@ -163,7 +163,7 @@ void CrowdWorld::steer() {
 }
 
 void CrowdWorld::yield(const AgentTree<3>& tree) {
-  RightOfWay right(before_, choices_, tree, settings_.dt);
+  RightOfWay right(before_, choices_, tree, settings_.dt, settings_.clearance);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     CrowdRobot& robot = robots_[i];
     const Steering& steering = steerings_[i];

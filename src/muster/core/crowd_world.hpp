@@ -33,7 +33,8 @@ struct CrowdSettings {
   bool space;  // whether those that fly avoid in space
   double horizon, wall_horizon;
   int neighbours;
-  double margin;  // by which those that face their way are taken for larger, as a share of the radius
+  double clearance;  // metres that the right of way leaves between robots that move less exactly than they are told
+  double margin;     // by which those that face their way are taken for larger, as a share of the radius
   Tolerances tolerances;
   CrowdNoise noise;
   std::uint64_t seed;

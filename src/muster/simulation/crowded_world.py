@@ -75,6 +75,8 @@ class CrowdedWorld(ABC):
 
     _turned_rad = 1e-9
     """From a heading, where a robot counts as turned to it."""
+    _clearance_m = 0.0
+    """What the right of way leaves between robots that move less exactly than they are told."""
 
     def __init__(
         self,
@@ -105,6 +107,7 @@ class CrowdedWorld(ABC):
             horizon=horizon_s,
             wall_horizon=max(WALL_HORIZON_S, dt_s),
             neighbours=NEIGHBOURS,
+            clearance=self._clearance_m,
             margin=MARGIN,
             arrival=arrival_m,
             corner=CORNER_M,

@@ -49,6 +49,7 @@ class PhysicsWorld(CrowdedWorld):
     """
 
     _turned_rad = 0.01
+    _clearance_m = 0.003
 
     def __init__(self, mission: Mission, **how: Any) -> None:
         self._robots: list[Robot] = []
