@@ -18,6 +18,7 @@ import numpy as np
 
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build
+from muster.simulation.physics.model import SERVO_S
 from muster.simulation.physics.stage import Group, Indices, Motion, Stage
 
 GRAVITY_MPS2 = 9.81
@@ -62,16 +63,15 @@ class Law(Protocol):
 class Wheels:
     """Differential drives: servos of the wheels."""
 
-    LAG_S = 0.015
-
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.WHEELS)
+        self._lag_s = SERVO_S - stage.step_s  # the sum over steps, not the integral
         self._motors = stage.motors(self.group.who)
         scale = np.array([body.scale for body in self.group.robots])
         self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
 
     def lags(self, motion: Motion) -> Floats:
-        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self.LAG_S)
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         rims = commands.rates[:, 3] * self._half_track
@@ -87,7 +87,7 @@ class Pushes:
 
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.SLIDER)
-        self._lag_s = 1 / self.GAIN - stage.step_s  # the sum over steps, not the integral
+        self._lag_s = 1 / self.GAIN - stage.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
 

@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import MusterError, ParameterError
+from muster.mission.errors import ParameterError, RenderingError
 from muster.motion.grid import Floats
 from muster.simulation.physics.extra import BACKENDS
 from muster.simulation.physics.model import SHOW_HEIGHT, SHOW_WIDTH
@@ -27,10 +27,6 @@ Picture = npt.NDArray[np.uint8]
 
 NEAR_M, FAR_M = 0.02, 300.0
 _COSTLY = (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION, mujoco.mjtRndFlag.mjRND_HAZE)
-
-
-class RenderingError(MusterError):
-    """Nothing here can draw; the message says what to install."""
 
 
 @dataclass(frozen=True)
