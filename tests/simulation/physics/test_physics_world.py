@@ -18,7 +18,7 @@ if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 from muster.simulation.physics import PhysicsWorld
-from muster.simulation.physics.bodies import Build, RobotBody
+from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build, RobotBody
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import Standing
 from muster.simulation.physics.stage import Stage
@@ -77,6 +77,30 @@ def test_wheels_cannot_slide_sideways():
     for _ in range(20):
         poses, _ = control.carry_out(Commands(np.array([[0.0, 0.2, 0.0, 0.0]]), np.zeros(1)), 20)
     assert abs(poses[0, 1]) < 0.005
+
+
+@pytest.mark.parametrize("scale", [1 / 3, 1.0, 3.0])
+def test_bodies_do_not_outrun_their_wheels(scale):
+    """With MuJoCo's implicit integrators they do, by half."""
+    stage = Stage([Standing(RobotBody(Build.WHEELS, scale), (0.0, 0.0, 0.0), 0.0, 0)], [np.empty((0, 6))], 0.0, 0.005)
+    group, rates = stage.group(Build.WHEELS), []
+    rim = WHEEL_RADIUS_M * scale
+    stage.data.ctrl[stage.motors(group.who)[0]] = np.array([-1.0, 1.0]) * TRACK_M / 2 * scale / rim
+    for _ in range(60):
+        stage.go_on()
+        rates.append(group.motion().rates[0, 2])
+    assert max(rates) < 1.02
+    assert rates[-1] == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("dt_s", [0.02, 0.05, 0.2, 0.5])
+@pytest.mark.parametrize("given", [WAFFLE, DRONE, WAFFLE | {"radius_m": 0.1, "speed_mps": 1.0}], ids=str)
+def test_robots_arrive_whatever_the_step(given, dt_s):
+    world = PhysicsWorld(mission(robot(**given)), dt_s=dt_s)
+    world.ports["r"].send([Waypoint((1.0, 0.0, 0.0)), Waypoint((1.0, 1.0, 0.0), heading=0.3, hold_s=1)])
+    assert until_idle(world, 40.0)
+    assert world.positions[0] == pytest.approx((1.0, 1.0, 0.0), abs=0.02)
+    assert world.headings[0] == pytest.approx(0.3, abs=0.02)
 
 
 def test_a_drone_tilts_to_go_and_hovers_level():

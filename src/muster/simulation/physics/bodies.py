@@ -32,7 +32,7 @@ class Build(Enum):
     ROTORS = "a thrust along its own axis, and torques"
 
 
-ACCELERATION_MPS2 = {Build.WHEELS: 3.0, Build.SLIDER: 3.0, Build.ROTORS: 2.5}
+ACCELERATION_MPS2 = {Build.WHEELS: 2.0, Build.SLIDER: 3.0, Build.ROTORS: 2.5}
 """The most that robots are told to use: wheels slip and drones tilt by more than 30 degrees not far above."""
 
 

@@ -23,8 +23,6 @@ from muster.simulation.physics.stage import Group, Indices, Motion, Stage
 
 GRAVITY_MPS2 = 9.81
 MOST_TILT = math.radians(35)
-FOLLOWING = 4.0
-"""1/s: by how much faster a robot goes for each metre that it is behind its reference, and turns for each radian."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +45,14 @@ class Commands:
 
 
 class Law(Protocol):
-    """Drives the robots of a group, all built in one way."""
+    """Drives the robots of a group, all built in one way.
+
+    `following`, in 1/s: how much faster they go for each metre that they are behind their references, and turn for each
+    radian.
+    """
 
     group: Group
+    following: float
 
     def lags(self, motion: Motion) -> Floats:
         """By how much they would go on and turn on, were they told to stand: (n, 4), metres and radians."""
@@ -62,6 +65,8 @@ class Law(Protocol):
 
 class Wheels:
     """Differential drives: servos of the wheels."""
+
+    following = 15.0
 
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.WHEELS)
@@ -82,6 +87,7 @@ class Wheels:
 class Pushes:
     """Holonomic ground robots: a force in the plane and a torque about the upright axis."""
 
+    following = 10.0
     GAIN = 40.0
     """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
 
@@ -109,6 +115,7 @@ class Rotors:
     integral of the loops' equations, where V, A, D are the gains below.
     """
 
+    following = 4.0
     VELOCITY, YAW_RATE = 6.0, 20.0
     """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
     ATTITUDE, DAMPING = 900.0, 55.0
@@ -188,7 +195,7 @@ class Follower:
         commands, poses = self._commands, self.poses
         behind = self._reference - poses - self.lags
         behind[:, 3] = np.remainder(behind[:, 3] + math.pi, 2 * math.pi) - math.pi
-        more = FOLLOWING * behind
+        more = self.law.following * behind
         along = more[:, 0] * np.cos(poses[:, 3]) + more[:, 1] * np.sin(poses[:, 3])
         self.law.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
 
