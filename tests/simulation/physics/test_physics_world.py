@@ -109,11 +109,12 @@ def test_a_drone_tilts_to_go_and_hovers_level():
     tilts = []
     while not world.idle("r"):
         world.step()
-        tilts.append(math.acos(min(1.0, world.stage.data.xmat[world.stage.bodies[0]][8])))
+        tilts.append(math.acos(min(1.0, world.axes[0, 2, 2])))
     assert math.radians(1) < max(tilts) < math.radians(35)
     world.advance(world.time_s + 3)
     assert world.positions[0] == pytest.approx((4.0, 0.0, 3.0), abs=0.02)
-    assert math.acos(min(1.0, world.stage.data.xmat[world.stage.bodies[0]][8])) < 0.005
+    assert math.acos(min(1.0, world.axes[0, 2, 2])) < 0.005
+    assert world.frames[0] == pytest.approx((4.0, 0.0, 3.0 + world.stage.robots[0].body.standing_m), abs=0.02)
 
 
 def test_robots_without_a_radius_go_through_each_other():
@@ -128,9 +129,9 @@ def test_a_robot_that_joins_leaves_the_others_in_flight():
     world = PhysicsWorld(mission(robot("a", (0.0, 0.0, 2.0), **DRONE)))
     world.ports["a"].send([Waypoint((5.0, 0.0, 2.0))])
     world.advance(3.0)
-    tilt = world.stage.data.xmat[world.stage.bodies[0]].copy()
+    tilt = world.axes[0]
     world.join(robot("b", (0.0, 4.0, 2.0), **DRONE))
-    assert world.stage.data.xmat[world.stage.bodies[0]] == pytest.approx(tilt)
+    assert world.axes[0] == pytest.approx(tilt)
     world.step()
     assert world.velocities[0] == pytest.approx((0.5, 0.0, 0.0), abs=0.01)
 

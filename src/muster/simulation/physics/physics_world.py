@@ -67,6 +67,20 @@ class PhysicsWorld(CrowdedWorld):
         assert self._stage is not None
         return self._stage
 
+    @property
+    def frames(self) -> Floats:
+        """Where the bodies' frames truly are: (n, 3), metres, also in height; of a drone its centre of mass."""
+        stage = self.stage
+        found: Floats = stage.data.xpos[stage.bodies].copy()
+        return found
+
+    @property
+    def axes(self) -> Floats:
+        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        stage = self.stage
+        found: Floats = stage.data.xmat[stage.bodies].reshape(-1, 3, 3)
+        return found
+
     def join(self, robot: Robot) -> SimulatedPort:
         """See `CrowdedWorld`; the model is made anew, and all others go on as they were."""
         port = super().join(robot)
@@ -88,11 +102,11 @@ class PhysicsWorld(CrowdedWorld):
         """One step of the world."""
         self._set_stage()
         rows = np.array(self._crowd.command()).reshape(-1, 5)
-        rates = rows[:, [0, 1, 2, 4]] * self._axes
+        rates = rows[:, [0, 1, 2, 4]] * self._carried
         after, lags = self._control.carry_out(Commands(rates, rows[:, 3]), self._count)
-        lags *= self._axes
+        lags *= self._carried
         heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
-        after[:, 2] = np.where(self._axes[:, 2] > 0, after[:, 2] - self._standing_m, heights)
+        after[:, 2] = np.where(self._carried[:, 2] > 0, after[:, 2] - self._standing_m, heights)
         return self._crowd.carried_out(after, lags, STILL_MPS)
 
     def _set_stage(self) -> None:
@@ -112,7 +126,8 @@ class PhysicsWorld(CrowdedWorld):
         self._control = Control(stage, keeps_height=self._dimensions == 2)
         self._standing_m = np.array([robot.body.standing_m for robot in robots])
         in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
-        self._axes = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
+        # Of x, y, z and heading what physics moves: heights only of those that fly in space.
+        self._carried = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
 
     def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
         body = robot_body(robot)
