@@ -183,14 +183,14 @@ def simulate(
     record
         a file (.mcap) that is to hold what happened; needs the extra `record`.
     how
-        as `Simulation` takes it: `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
+        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
 
     Raises
     ------
     ParameterError
         if the plan names robots or tasks that the mission does not have.
     MissingExtraError
-        where an extra is not installed that is needed; a negotiation needs `net`.
+        where an extra is not installed that is needed; a negotiation needs `net`, the physics world `physics`.
     """
     _require_mission(mission)
     carry_out = _carrying_out(mission, plan)

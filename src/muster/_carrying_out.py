@@ -9,10 +9,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.roads import Roads
-from muster.simulation import NO_NOISE, KinematicWorld, Noise
+from muster.simulation import NO_NOISE, KinematicWorld, Noise, SimulatedWorld
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from muster.execution.report import Report
     from muster.motion.grid import Floats
 
+WORLDS = ("kinematic", "physics")
 LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
 
@@ -32,10 +35,12 @@ class Recorder(Observer, Protocol):
 
 
 class Simulation:
-    """A plan that is being carried out in the kinematic world, with the mission's events, as far as time is let go on.
+    """A plan that is being carried out in a world, with the mission's events, as far as time is let go on.
 
     Parameters
     ----------
+    world
+        `kinematic`, or `physics`, which needs the extra of that name.
     seed
         of the world and of planning anew.
     dt_s
@@ -51,6 +56,8 @@ class Simulation:
     ------
     ParameterError
         if the plan names what the mission does not have, or a parameter is out of range.
+    MissingExtraError
+        if the extra `physics` is needed and not installed.
     """
 
     def __init__(
@@ -58,6 +65,7 @@ class Simulation:
         mission: Mission,
         plan: Plan,
         *,
+        world: str = "kinematic",
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = "orca",
@@ -66,7 +74,7 @@ class Simulation:
     ) -> None:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
-        self._world = KinematicWorld(
+        self._world: SimulatedWorld = world_named(world)(
             mission,
             seed=seed,
             dt_s=dt_s,
@@ -161,6 +169,25 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+
+
+def world_named(name: str) -> Callable[..., SimulatedWorld]:
+    """What makes a world of that name for a mission.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    MissingExtraError
+        if it needs an extra that is not installed.
+    """
+    if name == "kinematic":
+        return KinematicWorld
+    if name != "physics":
+        raise ParameterError(f"world: {name}; expected {', '.join(WORLDS)}{did_you_mean(name, WORLDS)}")
+    from muster.simulation.physics import PhysicsWorld
+
+    return PhysicsWorld
 
 
 def _with_objective(mission: Mission, plan: Plan) -> Plan:

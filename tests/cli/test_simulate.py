@@ -120,7 +120,7 @@ def test_lost_tasks_can_be_an_error(muster, eventful):
     [
         (("--plan", "none.json"), "none.json"),
         (("--dt", "0"), "--dt"),
-        (("--world", "physics"), "--world"),
+        (("--world", "gazebo"), "--world"),
     ],
 )
 def test_bad_input(muster, arguments, message):
@@ -274,3 +274,22 @@ class TestNegotiate:
         code, out, err = muster("simulate", eventful, *options)
         assert (code, out) == (2, "")
         assert said in err
+
+
+def test_the_physics_world_without_its_extra_is_one_line():
+    program = "import sys; sys.modules['mujoco'] = None; from muster.cli.main import main; sys.exit(main())"
+    command = [sys.executable, "-c", program, "simulate", "6T-2R", "--world", "physics", "--iterations", "10"]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr.splitlines()[-1].endswith(
+        "the physics world needs an optional part: pip install 'muster-robotics[physics]'"
+    )
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_mission_is_carried_out_in_the_physics_world(muster):
+    pytest.importorskip("muster.simulation.physics", reason="needs the extra `physics`", exc_type=ImportError)
+    exact, physical = (answer(muster, "6T-2R", "--world", world) for world in ("kinematic", "physics"))
+    assert physical["contacts"] == 0
+    assert [task["robot"] for task in physical["tasks"]] == [task["robot"] for task in exact["tasks"]]
+    assert physical["mission_time_s"] != exact["mission_time_s"]

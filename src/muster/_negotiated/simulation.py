@@ -1,4 +1,4 @@
-"""A mission carried out by robots that are processes, in the kinematic world, at the pace of real time."""
+"""A mission carried out by robots that are processes, in a simulated world, at the pace of real time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import Recorder
+from muster._carrying_out import Recorder, world_named
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.theatre import MOST_SPEED, Theatre
@@ -23,7 +23,7 @@ from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
 from muster.negotiation.team import Team, patience_here
 from muster.negotiation.watch import Order
-from muster.simulation import NO_NOISE, KinematicWorld, Noise
+from muster.simulation import NO_NOISE, Noise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +50,7 @@ def negotiate_and_carry_out(
     problem: Problem,
     negotiation: Negotiation,
     *,
+    world: str = "kinematic",
     seed: int = 0,
     dt_s: float = 0.1,
     avoidance: str = "orca",
@@ -84,7 +85,7 @@ def negotiate_and_carry_out(
         raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        world = KinematicWorld(
+        bodies = world_named(world)(
             problem.mission,
             seed=seed,
             dt_s=dt_s,
@@ -95,7 +96,7 @@ def negotiate_and_carry_out(
         )
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
-        theatre = Theatre(problem.mission, world, order, log)
+        theatre = Theatre(problem.mission, bodies, order, log)
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
         theatre.agree_first(negotiation.limit_s, halt)
@@ -103,7 +104,7 @@ def negotiate_and_carry_out(
             theatre.go_on(1.0 if speed is None else speed)
         if theatre.over:
             log.end()
-        report = report_of(log.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report

@@ -15,7 +15,7 @@ from muster.negotiation.messages import Stage
 from muster.negotiation.methods import method_named
 from muster.negotiation.team import Team
 from muster.negotiation.watch import Order
-from muster.simulation import KinematicWorld
+from muster.simulation import SimulatedWorld
 
 _LOOK_S = 0.05
 """Real seconds between two looks at bodies and robots."""
@@ -32,7 +32,7 @@ class Theatre:
 
     team: Team
 
-    def __init__(self, mission: Mission, world: KinematicWorld, order: Order, log: Log) -> None:
+    def __init__(self, mission: Mission, world: SimulatedWorld, order: Order, log: Log) -> None:
         self._world, self._order, self._log = world, order, log
         self._method = method_named(order.method)
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 _FILE = click.Path(path_type=Path)
 _OF_A_PLAN = ("plan", "time_limit", "iterations")
 _OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
+_WORLDS = ("kinematic", "physics")
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 
 
@@ -47,7 +48,9 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
-@click.option("--world", type=click.Choice(["kinematic"]), default="kinematic", show_default=True, help="Where.")
+@click.option(
+    "--world", type=click.Choice(["kinematic", "physics"]), default="kinematic", show_default=True, help="Where."
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."
@@ -125,7 +128,14 @@ def command(
             say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
     with tempfile.TemporaryDirectory() if record is None and (html or plot or gantt) else nullcontext() as folder:
         file = record if folder is None else Path(folder) / "record.mcap"
-        how: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance, "noise": noise, "speed": speed}
+        how: dict[str, Any] = {
+            "seed": seed,
+            "world": world,
+            "dt_s": dt,
+            "avoidance": avoidance,
+            "noise": noise,
+            "speed": speed,
+        }
         tell = _tell if speed is not None and not quiet else None
         with ctrl_c_halts() as halt:
             report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)

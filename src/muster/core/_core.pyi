@@ -508,7 +508,7 @@ def closest_approach_in_space(positions: Annotated[NDArray[numpy.float64], dict(
 class CrowdWorld:
     """A world of moving robots in fixed steps of virtual time."""
 
-    def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, margin: float, arrival: float, corner: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
+    def __init__(self, *, dt: float, avoidance: str, space: bool, horizon: float, wall_horizon: float, neighbours: int, clearance: float, margin: float, arrival: float, corner: float, heading: float, velocity_noise: float, slip: float, odometry_noise: float, seed: int) -> None: ...
 
     def add_walls(self, faces: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], slabs: Sequence[tuple[Sequence[Sequence[float]], float, float]], ground: float) -> int:
         """
@@ -532,6 +532,16 @@ class CrowdWorld:
     def advance(self, until: float) -> list[tuple[float, int, int, int, bool]]:
         """
         Steps until a time, or until something happened: time, robot, order, way points passed, whether all.
+        """
+
+    def command(self) -> list[list[float]]:
+        """
+        What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed ahead of one that faces its way, yaw rate.
+        """
+
+    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
+        """
+        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; slower than `still` is standing. Returns events as `advance`.
         """
 
     @property

@@ -24,6 +24,7 @@ using Faces = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::devi
 using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
+using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 using Slabs = std::vector<std::tuple<std::vector<std::array<double, 2>>, double, double>>;
 
 Avoidance avoidance_named(const std::string& name) {
@@ -55,6 +56,30 @@ std::vector<Waypoint> way_of(const Stops& stops, const std::vector<bool>& labell
     way.push_back({Vec<3>{{s[0], s[1], s[2]}}, s[3], s[4], labelled[k]});
   }
   return way;
+}
+
+std::vector<Event> told(const std::vector<CrowdEvent>& found) {
+  std::vector<Event> events;
+  for (const CrowdEvent& e : found) events.emplace_back(e.time, e.robot, e.order, e.passed, e.idle);
+  return events;
+}
+
+std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, double still) {
+  if (poses.shape(0) != world.robots().size() || lags.shape(0) != world.robots().size())
+    throw std::invalid_argument("the arrays must have a row for each robot");
+  std::vector<Carried> after;
+  for (std::size_t i = 0; i < poses.shape(0); ++i) {
+    const double *p = poses.data() + 4 * i, *l = lags.data() + 4 * i;
+    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3]});
+  }
+  return told(world.carried_out(after, still));
+}
+
+std::vector<std::array<double, 5>> command(CrowdWorld& world) {
+  std::vector<std::array<double, 5>> rows;
+  for (const Command& c : world.command())
+    rows.push_back({c.velocity[0], c.velocity[1], c.velocity[2], c.ahead, c.yaw_rate});
+  return rows;
 }
 
 // One row a robot.
@@ -106,13 +131,14 @@ void bind_crowd_world(nb::module_& m) {
   crowd.def(
       "__init__",
       [](CrowdWorld* self, double dt, const std::string& avoidance, bool space, double horizon, double wall_horizon,
-         int neighbours, double margin, double arrival, double corner, double velocity_noise, double slip,
-         double odometry_noise, std::uint64_t seed) {
-        new (self) CrowdWorld({dt, avoidance_named(avoidance), space, horizon, wall_horizon, neighbours, margin,
-                               Tolerances{arrival, corner}, CrowdNoise{velocity_noise, slip, odometry_noise}, seed});
+         int neighbours, double clearance, double margin, double arrival, double corner, double heading,
+         double velocity_noise, double slip, double odometry_noise, std::uint64_t seed) {
+        new (self)
+            CrowdWorld({dt, avoidance_named(avoidance), space, horizon, wall_horizon, neighbours, clearance, margin,
+                        Tolerances{arrival, corner, heading}, CrowdNoise{velocity_noise, slip, odometry_noise}, seed});
       },
-      nb::kw_only(), "dt"_a, "avoidance"_a, "space"_a, "horizon"_a, "wall_horizon"_a, "neighbours"_a, "margin"_a,
-      "arrival"_a, "corner"_a, "velocity_noise"_a, "slip"_a, "odometry_noise"_a, "seed"_a);
+      nb::kw_only(), "dt"_a, "avoidance"_a, "space"_a, "horizon"_a, "wall_horizon"_a, "neighbours"_a, "clearance"_a,
+      "margin"_a, "arrival"_a, "corner"_a, "heading"_a, "velocity_noise"_a, "slip"_a, "odometry_noise"_a, "seed"_a);
   bind_orders(crowd);
   crowd
       .def(
@@ -123,12 +149,16 @@ void bind_crowd_world(nb::module_& m) {
               nb::gil_scoped_release release;
               found = w.advance(until);
             }
-            std::vector<Event> events;
-            for (const CrowdEvent& e : found) events.emplace_back(e.time, e.robot, e.order, e.passed, e.idle);
-            return events;
+            return told(found);
           },
           "until"_a,
           "Steps until a time, or until something happened: time, robot, order, way points passed, whether all.")
+      .def("command", &command,
+           "What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed "
+           "ahead of one that faces its way, yaw rate.")
+      .def("carried_out", &carried_out, "poses"_a, "lags"_a, "still"_a,
+           "Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they "
+           "told to stand; slower than `still` is standing. Returns events as `advance`.")
       .def_prop_ro("time", &CrowdWorld::time)
       .def_prop_ro("steps", &CrowdWorld::steps)
       .def_prop_ro("least_distance", &CrowdWorld::least_distance)
@@ -145,7 +175,8 @@ void bind_crowd_world(nb::module_& m) {
           "report",
           [](const CrowdWorld& w, int robot) {
             const CrowdRobot& r = w.robots()[robot];
-            return std::tuple(w.time(), std::tuple(r.position[0], r.position[1], r.position[2]), r.heading,
+            const Vec<3> at = r.place();
+            return std::tuple(w.time(), std::tuple(at[0], at[1], at[2]), wrapped(r.heading - r.turn_lag),
                               std::tuple(r.velocity[0], r.velocity[1], r.velocity[2]), r.odometry, r.order, r.next);
           },
           "robot"_a, "Time, position, heading, velocity, odometry, order, way points passed.")
@@ -154,7 +185,8 @@ void bind_crowd_world(nb::module_& m) {
       .def("positions",
            [](const CrowdWorld& w) {
              return table(w, 3, [](const CrowdRobot& r, auto& to) {
-               to.insert(to.end(), r.position.at.begin(), r.position.at.end());
+               const Vec<3> at = r.place();
+               to.insert(to.end(), at.at.begin(), at.at.end());
              });
            })
       .def("velocities",
@@ -165,7 +197,7 @@ void bind_crowd_world(nb::module_& m) {
            })
       .def("headings",
            [](const CrowdWorld& w) {
-             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.heading); });
+             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(wrapped(r.heading - r.turn_lag)); });
            })
       .def("travelled", [](const CrowdWorld& w) {
         return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.travelled); });

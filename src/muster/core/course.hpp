@@ -8,6 +8,7 @@ namespace muster {
 struct Tolerances {
   double arrival;  // metres from a way point at which a robot counts as there, though it could not get nearer
   double corner;   // metres by which a way point may be cut where the robot goes on
+  double heading;  // radians from a heading at which a robot counts as turned to it
 };
 
 // Straight to the next way point and on to those after it, as fast as lets it stop at those where it must: where it

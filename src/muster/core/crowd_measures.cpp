@@ -13,10 +13,11 @@ constexpr double kOverlap = 1e-9;  // metres: what is less is rounding
 }  // namespace
 
 void CrowdWorld::measure(const AgentTree<3>& tree) {
-  double fastest = 0.0, largest = 0.0;
+  double fastest = 0.0, largest = 0.0, farthest_behind = 0.0;
   for (const CrowdRobot& robot : robots_) {
     fastest = std::max(fastest, norm(robot.velocity));
     largest = std::max(largest, robot.body.radius);
+    farthest_behind = std::max(farthest_behind, norm(robot.lag));
   }
   std::vector<int> near;
   for (int i = 0; i < static_cast<int>(robots_.size()); ++i) {
@@ -26,7 +27,8 @@ void CrowdWorld::measure(const AgentTree<3>& tree) {
       tree.near(i, {1, least_distance_}, near);
       for (const int k : near) measure(i, k);
     }
-    const double reach = std::max(least_distance_, robot.body.radius + largest) + 2.0 * settings_.dt * fastest;
+    const double reach =
+        std::max(least_distance_, robot.body.radius + largest) + 2.0 * (settings_.dt * fastest + farthest_behind);
     tree.near(i, {std::numeric_limits<int>::max(), reach}, near);
     for (const int k : near)
       if (i < k || !robots_[k].under_way()) measure(i, k);
@@ -34,7 +36,7 @@ void CrowdWorld::measure(const AgentTree<3>& tree) {
 }
 
 void CrowdWorld::measure(int i, int k) {
-  const Vec<3> apart = before_[k] - before_[i], after = robots_[k].position - robots_[i].position;
+  const Vec<3> apart = places_before_[k] - places_before_[i], after = robots_[k].place() - robots_[i].place();
   const double distance = std::sqrt(squared_to_origin(apart, after));
   least_distance_ = std::min(least_distance_, distance);
   if (distance >= robots_[i].body.radius + robots_[k].body.radius - kOverlap) return;

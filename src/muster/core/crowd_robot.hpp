@@ -58,11 +58,14 @@ struct Trail {
 
 struct CrowdRobot {
   Body body;
-  Vec<3> position;
+  Vec<3> position;  // where it would come to a stand, were it told to now
   Vec<3> velocity;  // of the last step
   double heading = 0.0;
-  Vec<3> commanded;    // what it drove by: the velocity without noise
-  double ahead = 0.0;  // the same of one that faces its way: speed ahead
+  Vec<3> lag;             // by which its body is not there yet; 0 where it moves exactly as it is told
+  double turn_lag = 0.0;  // the same of its heading
+  Vec<3> commanded;       // what it drove by: the velocity without noise
+  double ahead = 0.0;     // the same of one that faces its way: speed ahead
+  double yaw_rate = 0.0;  // and how fast it turns
 
   std::vector<Waypoint> way;
   std::size_t next = 0;  // of `way`; those before are passed
@@ -74,6 +77,7 @@ struct CrowdRobot {
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
+  double counts = 1.0;  // metres by which odometry goes on for a metre of way, in this step
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
@@ -90,6 +94,7 @@ struct CrowdRobot {
   std::vector<Segment> near_walls;  // the same as avoidance in the plane knows them
   Vec<3> looked_at;                 // where it was when they were collected
 
+  Vec<3> place() const { return position - lag; }
   double top_speed() const { return body.speed * slowed; }
   bool under_way() const { return velocity != Vec<3>{}; }
   // It has nothing to do that could not be done elsewhere as well.

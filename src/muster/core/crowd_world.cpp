@@ -17,6 +17,11 @@ double normal(Random& random) {
   return radius * std::cos(2.0 * std::acos(-1.0) * random.uniform());
 }
 
+void count(CrowdRobot& robot, double metres) {
+  robot.travelled += metres;
+  robot.odometry += robot.counts * metres;
+}
+
 }  // namespace
 
 int CrowdWorld::add_walls(WallSet walls) {
@@ -68,18 +73,64 @@ std::vector<CrowdEvent> CrowdWorld::advance(double until) {
 }
 
 void CrowdWorld::step() {
-  const std::size_t n = robots_.size();
-  before_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) before_[i] = robots_[i].position;
+  look();
   const AgentTree<3> tree(before_);
+  decide(tree);
+  for (CrowdRobot& robot : robots_) move(robot);
+  conclude(tree);
+}
+
+std::vector<Command> CrowdWorld::command() {
+  look();
+  decide(AgentTree<3>(before_));
+  std::vector<Command> commands;
+  for (const CrowdRobot& robot : robots_) {
+    const double full = norm(robot.commanded), kept = full > 0.0 ? norm(robot.velocity) / full : 1.0;
+    commands.push_back({robot.velocity, kept * robot.ahead, robot.yaw_rate});
+  }
+  return commands;
+}
+
+std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Carried>& after, double still) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    CrowdRobot& robot = robots_[i];
+    robot.lag = after[i].lag;
+    robot.turn_lag = after[i].turn_lag;
+    robot.position = after[i].place + robot.lag;
+    robot.heading = wrapped(after[i].heading + robot.turn_lag);
+    robot.velocity = (1.0 / settings_.dt) * (robot.place() - places_before_[i]);
+    if (norm(robot.velocity) < still) robot.velocity = {};
+    count(robot, norm(robot.velocity) * settings_.dt);
+  }
+  events_.clear();
+  conclude(AgentTree<3>(before_));
+  return std::exchange(events_, {});
+}
+
+void CrowdWorld::look() {
+  before_.resize(robots_.size());
+  places_before_.resize(robots_.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    before_[i] = robots_[i].position;
+    places_before_[i] = robots_[i].place();
+  }
+}
+
+void CrowdWorld::decide(const AgentTree<3>& tree) {
   want(tree);
   chosen_ = wanted_;
   if (settings_.avoidance != Avoidance::none) avoid();
   steer();
-  move(tree);
+  yield(tree);
+  for (CrowdRobot& robot : robots_) disturb(robot);
+}
+
+void CrowdWorld::conclude(const AgentTree<3>& tree) {
+  for (CrowdRobot& robot : robots_)
+    if (norm(robot.position - robot.looked_at) > kWallsFor) collect_walls(robot);
   measure(tree);
   ++steps_;
-  for (std::size_t i = 0; i < n; ++i) take_note(static_cast<int>(i));
+  for (std::size_t i = 0; i < robots_.size(); ++i) take_note(static_cast<int>(i));
 }
 
 void CrowdWorld::want(const AgentTree<3>& tree) {
@@ -111,9 +162,8 @@ void CrowdWorld::steer() {
   }
 }
 
-void CrowdWorld::move(const AgentTree<3>& tree) {
-  const double dt = settings_.dt;
-  RightOfWay right(before_, choices_, tree, dt);
+void CrowdWorld::yield(const AgentTree<3>& tree) {
+  RightOfWay right(before_, choices_, tree, settings_.dt, settings_.clearance);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     CrowdRobot& robot = robots_[i];
     const Steering& steering = steerings_[i];
@@ -121,30 +171,36 @@ void CrowdWorld::move(const AgentTree<3>& tree) {
     if (share < 0.0) {
       robot.commanded = steering.straight;
       robot.ahead = steering.ahead_braked;
+      robot.yaw_rate = 0.0;
     } else {
       robot.commanded = choices_[i].at(share);
       robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
-      robot.heading = wrapped(robot.heading + steering.yaw_rate * dt);
+      robot.yaw_rate = steering.yaw_rate;
     }
     robot.turned_aside = share < 1.0 - kAside || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
-    drive(robot);
-    if (norm(robot.position - robot.looked_at) > kWallsFor) collect_walls(robot);
   }
 }
 
 // A robot never gets more than it drives by, so that noise cannot bring it into contact.
-void CrowdWorld::drive(CrowdRobot& robot) {
+void CrowdWorld::disturb(CrowdRobot& robot) const {
   const CrowdNoise& noise = settings_.noise;
   robot.velocity = robot.commanded;
+  robot.counts = 1.0;
   if (robot.commanded == Vec<3>{}) return;
   if (noise.velocity > 0.0)
     robot.velocity = std::max(0.0, 1.0 - std::abs(noise.velocity * normal(robot.noise))) * robot.velocity;
-  double counted = norm(robot.velocity) * settings_.dt;
-  if (noise.odometry > 0.0) counted *= std::max(0.0, 1.0 + noise.odometry * normal(robot.noise));
-  if (noise.slip > 0.0) robot.velocity = (1.0 - noise.slip * robot.noise.uniform()) * robot.velocity;
-  robot.odometry += counted;
-  robot.travelled += norm(robot.velocity) * settings_.dt;
+  if (noise.odometry > 0.0) robot.counts = std::max(0.0, 1.0 + noise.odometry * normal(robot.noise));
+  if (noise.slip > 0.0) {
+    const double kept = 1.0 - noise.slip * robot.noise.uniform();  // above 0
+    robot.velocity = kept * robot.velocity;
+    robot.counts /= kept;
+  }
+}
+
+void CrowdWorld::move(CrowdRobot& robot) const {
   robot.position = robot.position + settings_.dt * robot.velocity;
+  robot.heading = wrapped(robot.heading + settings_.dt * robot.yaw_rate);
+  count(robot, norm(robot.velocity) * settings_.dt);
 }
 
 void CrowdWorld::take_note(int i) {
@@ -167,7 +223,8 @@ void CrowdWorld::take_note(int i) {
   }
   if (robot.phase == Phase::turning) {
     const Waypoint& point = robot.way[robot.next];
-    if (!std::isnan(point.heading) && std::abs(wrapped(point.heading - robot.heading)) > 1e-9) return;
+    if (!std::isnan(point.heading) && std::abs(wrapped(point.heading - robot.heading)) > settings_.tolerances.heading)
+      return;
     robot.phase = Phase::holding;
     robot.hold_until = time() + point.hold;
   }

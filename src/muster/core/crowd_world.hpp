@@ -2,6 +2,9 @@
 //
 // In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO), its
 // kinematics bring it as near to that as they can, and the right of way cuts what could end in a contact.
+//
+// Either this world moves the robots too (`advance`), exactly as they drive; or something else does, a physics engine:
+// then it is told what they are to do (`command`), and tells where that brought them (`carried_out`).
 #pragma once
 
 #include <map>
@@ -30,7 +33,8 @@ struct CrowdSettings {
   bool space;  // whether those that fly avoid in space
   double horizon, wall_horizon;
   int neighbours;
-  double margin;  // by which those that face their way are taken for larger, as a share of the radius
+  double clearance;  // metres that the right of way leaves between robots that move less exactly than they are told
+  double margin;     // by which those that face their way are taken for larger, as a share of the radius
   Tolerances tolerances;
   CrowdNoise noise;
   std::uint64_t seed;
@@ -48,6 +52,19 @@ struct CrowdContact {
   double time, distance;  // when first, and the least distance of centres ever
 };
 
+// What a robot is to do in a step.
+struct Command {
+  Vec<3> velocity;
+  double ahead;  // of one that faces its way: its speed
+  double yaw_rate;
+};
+
+// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now.
+struct Carried {
+  Vec<3> place, lag;
+  double heading, turn_lag;
+};
+
 class CrowdWorld {
  public:
   explicit CrowdWorld(const CrowdSettings& settings) : settings_(settings) {}
@@ -63,6 +80,11 @@ class CrowdWorld {
   // Steps until a time, or until the end of the first step in which something happened.
   std::vector<CrowdEvent> advance(double until);
 
+  // What robots that something else moves are to do in the next step, noise included; and what happened in it, from
+  // where they are at its end. Slower than `still` (m/s) is standing.
+  std::vector<Command> command();
+  std::vector<CrowdEvent> carried_out(const std::vector<Carried>& after, double still);
+
   double time() const { return settings_.dt * static_cast<double>(steps_); }
   long steps() const { return steps_; }
   const std::vector<CrowdRobot>& robots() const { return robots_; }
@@ -71,13 +93,17 @@ class CrowdWorld {
 
  private:
   void step();
+  void look();
+  void decide(const AgentTree<3>& tree);
+  void conclude(const AgentTree<3>& tree);
   void want(const AgentTree<3>& tree);
   void avoid();
   template <int D>
   void avoid_among(const std::vector<int>& group);
   void steer();
-  void move(const AgentTree<3>& tree);
-  void drive(CrowdRobot& robot);
+  void yield(const AgentTree<3>& tree);
+  void disturb(CrowdRobot& robot) const;
+  void move(CrowdRobot& robot) const;
   void measure(const AgentTree<3>& tree);
   void measure(int i, int k);
   void take_note(int i);
@@ -89,7 +115,7 @@ class CrowdWorld {
   std::vector<CrowdRobot> robots_;
   std::vector<WallSet> walls_;
   long steps_ = 0;
-  std::vector<Vec<3>> before_;                    // places at the beginning of the step
+  std::vector<Vec<3>> before_, places_before_;    // positions at the beginning of the step, and the bodies' places
   std::vector<Vec<3>> course_, wanted_, chosen_;  // velocities: alone, with manners, with avoidance
   std::vector<Steering> steerings_;
   std::vector<Choice> choices_;

@@ -17,8 +17,8 @@ constexpr double kStraight = -1.0;
 }  // namespace
 
 RightOfWay::RightOfWay(const std::vector<Vec<3>>& positions, const std::vector<Choice>& choices,
-                       const AgentTree<3>& tree, double dt)
-    : positions_(positions), choices_(choices), tree_(tree), dt_(dt) {
+                       const AgentTree<3>& tree, double dt, double clearance)
+    : positions_(positions), choices_(choices), tree_(tree), dt_(dt), clearance_(clearance) {
   for (const Choice& choice : choices) {
     const double speed = std::max(norm(choice.wanted), norm(choice.braked));
     largest_radius_ = std::max(largest_radius_, choice.radius);
@@ -45,7 +45,8 @@ void RightOfWay::look_at_robots(int i) {
   const Choice& own = choices_[i];
   const Braking braking{dt_, own.acceleration};
   const double stop = braking.distance(std::max(norm(own.wanted), norm(own.braked)));
-  tree_.near(i, {std::numeric_limits<int>::max(), own.radius + largest_radius_ + stop + longest_stop_}, found_);
+  tree_.near(i, {std::numeric_limits<int>::max(), own.radius + largest_radius_ + clearance_ + stop + longest_stop_},
+             found_);
   for (const int k : found_) {
     const Choice& other = choices_[k];
     if (other.radius == 0.0) continue;
@@ -54,7 +55,8 @@ void RightOfWay::look_at_robots(int i) {
     if (distance == 0.0) continue;
     const Vec<3> towards = (1.0 / distance) * apart;
     const double braked = stopping(i, own.straight, {}, towards);
-    const double left = distance - own.radius - other.radius - braked - stopping(k, other.straight, {}, -1.0 * towards);
+    const double gap = distance - own.radius - other.radius - clearance_;
+    const double left = gap - braked - stopping(k, other.straight, {}, -1.0 * towards);
     limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left)});
   }
 }

@@ -30,8 +30,9 @@ struct Choice {
 // turn.
 class RightOfWay {
  public:
+  // `clearance`: metres that robots keep between them.
   RightOfWay(const std::vector<Vec<3>>& positions, const std::vector<Choice>& choices, const AgentTree<3>& tree,
-             double dt);
+             double dt, double clearance);
 
   double share(int i);
 
@@ -49,7 +50,7 @@ class RightOfWay {
   const std::vector<Vec<3>>& positions_;
   const std::vector<Choice>& choices_;
   const AgentTree<3>& tree_;
-  double dt_;
+  double dt_, clearance_;
   double largest_radius_ = 0.0, longest_stop_ = 0.0;
   std::vector<Limit> limits_;
   std::vector<int> found_;

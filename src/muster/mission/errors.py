@@ -11,6 +11,7 @@
     │   ├── ExtrapolationError   not at that time
     │   └── FrameTreeError       what was to be added would be no tree
     ├── NetworkError          the network cannot be used as asked: a port in use, a host that nobody knows
+    ├── RenderingError        nothing here can draw pictures of the physics world
     └── MissingExtraError     an optional part of the installation is absent
 
 Outcomes that are to be expected (nobody can do a task, no admissible plan) are values, not exceptions.
@@ -98,6 +99,10 @@ class FrameTreeError(TransformError):
 
 class NetworkError(MusterError):
     """The network cannot be used as asked; the message names the address, and what to do."""
+
+
+class RenderingError(MusterError):
+    """Nothing here can draw pictures of the physics world; the message says what to install."""
 
 
 class MissingExtraError(MusterError, ImportError):

@@ -1,6 +1,7 @@
-"""Worlds in which a plan is carried out."""
+"""Worlds in which a plan is carried out. The physics world is in `simulation.physics`, and needs an extra."""
 
-from muster.simulation.kinematic_world import Contact, KinematicWorld, Observer, Passing
+from muster.simulation.kinematic_world import KinematicWorld
 from muster.simulation.noise import NO_NOISE, Noise
+from muster.simulation.world import Contact, Observer, Passing, SimulatedWorld
 
-__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Noise", "Observer", "Passing"]
+__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Noise", "Observer", "Passing", "SimulatedWorld"]

@@ -1,0 +1,10 @@
+"""A world with masses, forces and contacts (MuJoCo). Importing it without the extra `physics`: MissingExtraError."""
+
+from muster.simulation.physics.extra import choose_backend, require_physics_extra
+
+require_physics_extra()
+choose_backend()
+
+from muster.simulation.physics.physics_world import PhysicsWorld  # noqa: E402 (MuJoCo comes with it)
+
+__all__ = ["PhysicsWorld"]

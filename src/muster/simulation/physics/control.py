@@ -1,0 +1,229 @@
+"""From velocities that robots are to have to what their motors do: closed loops over what is measured.
+
+Motors answer late. A body that lags goes on for a while after it is told to stand; where it would then stand is its
+position and its lag together, and that place moves at just the velocity that is asked for. So the crowd decides by that
+place as if robots answered at once, and nobody overshoots (a predictor as in Smith 1957). Each law knows its own lag.
+
+Within a step of the world a reference goes on at the velocity that the crowd chose, and the loops follow it. Whoever is
+to stand keeps the place where it was to come to a stand.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from muster.motion.grid import Floats
+from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build
+from muster.simulation.physics.model import SERVO_S
+from muster.simulation.physics.stage import Group, Indices, Motion, Stage
+
+GRAVITY_MPS2 = 9.81
+MOST_TILT = math.radians(35)
+
+
+@dataclass(frozen=True)
+class Commands:
+    """What some robots are to do.
+
+    Parameters
+    ----------
+    rates
+        (n, 4): velocities in the map frame, m/s, and yaw rates, rad/s.
+    ahead
+        (n,) speeds of those that face their way, m/s.
+    """
+
+    rates: Floats
+    ahead: Floats
+
+    def of(self, who: Indices) -> Commands:
+        return Commands(self.rates[who], self.ahead[who])
+
+
+class Law(Protocol):
+    """Drives the robots of a group, all built in one way.
+
+    `following`, in 1/s: how much faster they go for each metre that they are behind their references, and turn for each
+    radian.
+    """
+
+    group: Group
+    following: float
+
+    def lags(self, motion: Motion) -> Floats:
+        """By how much they would go on and turn on, were they told to stand: (n, 4), metres and radians."""
+        ...
+
+    def drive(self, commands: Commands, motion: Motion) -> None:
+        """Set their motors for a step of physics."""
+        ...
+
+
+class Wheels:
+    """Differential drives: servos of the wheels."""
+
+    following = 15.0
+
+    def __init__(self, stage: Stage) -> None:
+        self.group = stage.group(Build.WHEELS)
+        self._lag_s = SERVO_S - stage.step_s  # the sum over steps, not the integral
+        self._motors = stage.motors(self.group.who)
+        scale = np.array([body.scale for body in self.group.robots])
+        self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
+
+    def lags(self, motion: Motion) -> Floats:
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
+
+    def drive(self, commands: Commands, motion: Motion) -> None:
+        rims = commands.rates[:, 3] * self._half_track
+        self.group.data.ctrl[self._motors[:, 0]] = (commands.ahead - rims) / self._radius
+        self.group.data.ctrl[self._motors[:, 1]] = (commands.ahead + rims) / self._radius
+
+
+class Pushes:
+    """Holonomic ground robots: a force in the plane and a torque about the upright axis."""
+
+    following = 10.0
+    GAIN = 40.0
+    """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.group = stage.group(Build.SLIDER)
+        self._lag_s = 1 / self.GAIN - stage.step_s
+        self._mass = np.array([body.mass_kg for body in self.group.robots])
+        self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
+
+    def lags(self, motion: Motion) -> Floats:
+        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
+
+    def drive(self, commands: Commands, motion: Motion) -> None:
+        missing = commands.rates[:, :2] - motion.velocities[:, :2]
+        forces, bodies = self.group.data.xfrc_applied, self.group.bodies
+        forces[bodies, :2] = self.GAIN * self._mass[:, None] * missing
+        forces[bodies, 5] = self.GAIN * self._inertia * (commands.rates[:, 3] - motion.rates[:, 2])
+
+
+class Rotors:
+    """Quadcopters at the level of forces: four rotors give a thrust along the body's axis and torques.
+
+    The velocity loop asks for an acceleration; thrust and tilt follow from it; the attitude loop tilts the body, and
+    turns it meanwhile. With velocity v, acceleration a and jerk j the way until it stands is (v + D/A a + j/A) / V, the
+    integral of the loops' equations, where V, A, D are the gains below.
+    """
+
+    following = 4.0
+    VELOCITY, YAW_RATE = 6.0, 20.0
+    """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
+    ATTITUDE, DAMPING = 900.0, 55.0
+    """1/s^2 and 1/s: angular acceleration for each radian off, and against each radian a second."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.group = stage.group(Build.ROTORS)
+        self._lag_s, self._yaw_lag_s = 1 / self.VELOCITY - stage.step_s, 1 / self.YAW_RATE - stage.step_s
+        self._mass = np.array([body.mass_kg for body in self.group.robots])
+        self._inertia = np.array([body.inertia_kgm2 for body in self.group.robots]).reshape(-1, 3)
+
+    def lags(self, motion: Motion) -> Floats:
+        tilted, jerk = GRAVITY_MPS2 * self.DAMPING / self.ATTITUDE, GRAVITY_MPS2 / self.ATTITUDE
+        up, rates = motion.axes[:, :, 2], motion.rates
+        level = motion.velocities[:, :2] + tilted * up[:, :2] / up[:, 2:]
+        x, y = level[:, 0] + jerk * rates[:, 1], level[:, 1] - jerk * rates[:, 0]
+        turn = rates[:, 2] * (self._yaw_lag_s / self._lag_s)
+        return _lags(x, y, motion.velocities[:, 2], turn, self._lag_s)
+
+    def drive(self, commands: Commands, motion: Motion) -> None:
+        wanted = self.VELOCITY * (commands.rates[:, :3] - motion.velocities)
+        climb = GRAVITY_MPS2 + np.clip(wanted[:, 2], -0.5 * GRAVITY_MPS2, 0.5 * GRAVITY_MPS2)
+        level = np.hypot(wanted[:, 0], wanted[:, 1])
+        tilt = np.minimum(level, math.tan(MOST_TILT) * climb) / np.maximum(level, 1e-12)
+        x, y = wanted[:, 0] * tilt, wanted[:, 1] * tilt
+        up, rates = motion.axes[:, :, 2], motion.rates
+        length = np.sqrt(x * x + y * y + climb * climb)
+        turn = -self.DAMPING * rates
+        turn[:, 0] += self.ATTITUDE * (up[:, 1] * climb - up[:, 2] * y) / length  # up x wanted
+        turn[:, 1] += self.ATTITUDE * (up[:, 2] * x - up[:, 0] * climb) / length
+        turn[:, 2] = self.YAW_RATE * (commands.rates[:, 3] - rates[:, 2])
+        forces, bodies = self.group.data.xfrc_applied, self.group.bodies
+        forces[bodies, :3] = (self._mass * climb / up[:, 2])[:, None] * up
+        forces[bodies, 3:] = self._inertia * turn
+
+
+def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float) -> Floats:
+    lags = np.empty((len(x), 4))
+    lags[:, 0], lags[:, 1], lags[:, 2], lags[:, 3] = x, y, z, turn
+    lags *= seconds
+    return lags
+
+
+class Follower:
+    """The robots of one law, and where they should be at this moment.
+
+    Parameters
+    ----------
+    keeps_height
+        in the plane nobody climbs.
+    """
+
+    def __init__(self, law: Law, *, keeps_height: bool) -> None:
+        self.law = law
+        self._motion = law.group.motion()
+        self._reference = self._motion.poses
+        self._free = np.array([True, True, not keeps_height, True])
+
+    @property
+    def poses(self) -> Floats:
+        """Where they are (n, 4)."""
+        return self._motion.poses
+
+    @property
+    def lags(self) -> Floats:
+        """See `Law.lags`."""
+        return self.law.lags(self._motion)
+
+    def begin(self, commands: Commands) -> None:
+        """A step of the world begins: those that move go from where they are."""
+        self._commands = commands
+        anew = (commands.rates != 0).any(axis=1)[:, None] & self._free
+        self._reference = np.where(anew, self.poses + self.lags, self._reference)
+
+    def drive(self) -> None:
+        """Set motors for a step of physics."""
+        commands, poses = self._commands, self.poses
+        behind = self._reference - poses - self.lags
+        behind[:, 3] = np.remainder(behind[:, 3] + math.pi, 2 * math.pi) - math.pi
+        more = self.law.following * behind
+        along = more[:, 0] * np.cos(poses[:, 3]) + more[:, 1] * np.sin(poses[:, 3])
+        self.law.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
+
+    def look(self, step_s: float) -> None:
+        """See where a step of physics has brought them."""
+        self._reference += step_s * self._commands.rates
+        self._motion = self.law.group.motion()
+
+
+class Control:
+    """Of all robots of a stage."""
+
+    def __init__(self, stage: Stage, *, keeps_height: bool) -> None:
+        self._stage = stage
+        laws: tuple[Law, ...] = (Wheels(stage), Pushes(stage), Rotors(stage))
+        self._followers = [Follower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
+
+    def carry_out(self, commands: Commands, count: int) -> tuple[Floats, Floats]:
+        """So many steps of physics; returns poses at the end, and lags: (n, 4) each."""
+        for follower in self._followers:
+            follower.begin(commands.of(follower.law.group.who))
+        for _ in range(count):
+            for follower in self._followers:
+                follower.drive()
+            self._stage.go_on()
+            for follower in self._followers:
+                follower.look(self._stage.step_s)
+        poses, lags = np.empty((2, len(self._stage.robots), 4))
+        for follower in self._followers:
+            poses[follower.law.group.who], lags[follower.law.group.who] = follower.poses, follower.lags
+        return poses, lags

@@ -1,0 +1,150 @@
+"""The physics world: the crowd decides, as in the kinematic world, from where robots truly are; forces carry it out.
+
+Each step the core's crowd is told where the robots are, and says what velocity each is to have: way points, avoidance,
+right of way. `control` turns that into torques and forces, MuJoCo into motion.
+
+The ground is flat. A ground robot's height in the mission is that of its way, as in the kinematic world. In a mission
+in the plane drones fly at `FLIGHT_M`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot
+from muster.motion.grid import Floats
+from muster.motion.kinematics.registry import limits_of
+from muster.motion.limits import Limits
+from muster.motion.world import body_of
+from muster.simulation.crowded_world import CrowdedWorld, Event
+from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
+from muster.simulation.physics.control import Commands, Control
+from muster.simulation.physics.model import WALL_SETS, Standing
+from muster.simulation.physics.stage import Stage
+from muster.simulation.port import SimulatedPort
+from muster.simulation.walls import faces_and_slabs
+
+PHYSICS_S = 0.005
+"""The longest step of physics."""
+FLIGHT_M = 1.5
+STILL_MPS = 0.002
+"""Slower is standing: a drone that hovers is never quite still."""
+
+
+class PhysicsWorld(CrowdedWorld):
+    """Robots with masses, wheels and rotors; see `CrowdedWorld`, and `bodies` for what they are.
+
+    Robots without a radius, and all with `avoidance="none"`, touch nothing but the ground. No robot accelerates harder
+    than `ACCELERATION_MPS2`, whatever its mission allows.
+
+    Raises
+    ------
+    ParameterError
+        as `CrowdedWorld`; and if robots of more than 29 kinds are stopped by different walls.
+    """
+
+    _turned_rad = 0.01
+    _clearance_m = 0.003
+
+    def __init__(self, mission: Mission, **how: Any) -> None:
+        self._robots: list[Robot] = []
+        self._collide = how.get("avoidance", "orca") != "none"
+        self._wall_sets: list[Floats] = []
+        self._stage: Stage | None = None
+        super().__init__(mission, **how)
+        self._ground_m = self._lowest_m if self._dimensions == 3 else 0.0
+        self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
+
+    @property
+    def stage(self) -> Stage:
+        """MuJoCo's model and data, for pictures: of the robots that are in the world now."""
+        self._set_stage()
+        assert self._stage is not None
+        return self._stage
+
+    @property
+    def frames(self) -> Floats:
+        """Where the bodies' frames truly are: (n, 3), metres, also in height; of a drone its centre of mass."""
+        stage = self.stage
+        found: Floats = stage.data.xpos[stage.bodies].copy()
+        return found
+
+    @property
+    def axes(self) -> Floats:
+        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        stage = self.stage
+        found: Floats = stage.data.xmat[stage.bodies].reshape(-1, 3, 3)
+        return found
+
+    def join(self, robot: Robot) -> SimulatedPort:
+        """See `CrowdedWorld`; the model is made anew, and all others go on as they were."""
+        port = super().join(robot)
+        self._robots.append(robot)
+        return port
+
+    def _limits(self, robot: Robot) -> Limits:
+        limits = limits_of(robot)
+        most = ACCELERATION_MPS2[robot_body(robot).build]
+        return replace(limits, acceleration_mps2=min(limits.acceleration_mps2, most))
+
+    def _go_on(self, until_s: float) -> list[Event]:
+        while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
+            if events := self._carry_out():
+                return events
+        return []
+
+    def _carry_out(self) -> list[Event]:
+        """One step of the world."""
+        self._set_stage()
+        rows = np.array(self._crowd.command()).reshape(-1, 5)
+        rates = rows[:, [0, 1, 2, 4]] * self._carried
+        after, lags = self._control.carry_out(Commands(rates, rows[:, 3]), self._count)
+        lags *= self._carried
+        heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
+        after[:, 2] = np.where(self._carried[:, 2] > 0, after[:, 2] - self._standing_m, heights)
+        return self._crowd.carried_out(after, lags, STILL_MPS)
+
+    def _set_stage(self) -> None:
+        """Make the stage, at first and where a robot joined."""
+        before = self._stage
+        if before is not None and len(before.robots) == len(self._robots):
+            return
+        places, headings = self.positions, self.headings
+        robots = [
+            self._standing(robot, place, heading)
+            for robot, place, heading in zip(self._robots, places, headings, strict=True)
+        ]
+        stage = Stage(robots, self._wall_sets, self._ground_m, self._dt_s / self._count)
+        if before is not None:
+            stage.take_over(before)
+        self._stage = stage
+        self._control = Control(stage, keeps_height=self._dimensions == 2)
+        self._standing_m = np.array([robot.body.standing_m for robot in robots])
+        in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
+        # Of x, y, z and heading what physics moves: heights only of those that fly in space.
+        self._carried = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
+
+    def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
+        body = robot_body(robot)
+        height = self._ground_m
+        if robot.kind == "air":
+            height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
+        walls = self._walls_of(robot) if self._collide and robot.radius_m > 0 else None
+        return Standing(body, (float(place[0]), float(place[1]), height), float(heading), walls)
+
+    def _walls_of(self, robot: Robot) -> int:
+        """The number of the set of walls that stops it."""
+        none: Floats = np.empty((0, 6))
+        faces = none if self._map is None else faces_and_slabs(self._map, body_of(robot))[0]
+        for number, known in enumerate(self._wall_sets):
+            if np.array_equal(known, faces):
+                return number
+        if len(self._wall_sets) == WALL_SETS:
+            raise ParameterError(f"robots: more than {WALL_SETS} sets of walls that stop them; expected fewer")
+        self._wall_sets.append(faces)
+        return len(self._wall_sets) - 1

@@ -1,0 +1,116 @@
+"""A compiled model with its state: where robots are and how they move, and what drives them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from muster.motion.grid import Floats
+from muster.simulation.physics.bodies import Build
+from muster.simulation.physics.model import Standing, mjcf
+
+Indices = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How some robots are and move at one moment, in the map frame.
+
+    Parameters
+    ----------
+    frames, axes
+        of the bodies: (n, 3) metres, and their axes as the columns of (n, 3, 3).
+    velocities, rates
+        of the frames: (n, 3) m/s, and of turning (n, 3) rad/s.
+    """
+
+    frames: Floats
+    axes: Floats
+    velocities: Floats
+    rates: Floats
+
+    @property
+    def poses(self) -> Floats:
+        """Frames, and headings in radians: (n, 4)."""
+        poses = np.empty((len(self.frames), 4))
+        poses[:, :3] = self.frames
+        poses[:, 3] = np.arctan2(self.axes[:, 1, 0], self.axes[:, 0, 0])
+        return poses
+
+
+class Group:
+    """Some robots of a stage, by their numbers."""
+
+    def __init__(self, stage: Stage, who: Indices) -> None:
+        self.who = who
+        self.bodies = stage.bodies[who]
+        self.robots = tuple(stage.robots[k].body for k in who)
+        self.data = stage.data
+        self._places = stage.places[who][:, :3]
+        self._freedoms = stage.freedoms[who]
+
+    def motion(self) -> Motion:
+        """As it is now."""
+        axes = self.data.xmat[self.bodies].reshape(-1, 3, 3)
+        speeds = self.data.qvel[self._freedoms]
+        return Motion(self.data.qpos[self._places], axes, speeds[:, :3], (axes @ speeds[:, 3:, None])[:, :, 0])
+
+
+class Stage:
+    """MuJoCo's model and data of some robots.
+
+    Parameters
+    ----------
+    robots, walls, ground_m, step_s
+        as `mjcf` takes them.
+    """
+
+    def __init__(self, robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, step_s: float) -> None:
+        self.robots = tuple(robots)
+        self.step_s = step_s
+        self.model: Any = mujoco.MjModel.from_xml_string(mjcf(robots, walls, ground_m, step_s))
+        self.data: Any = mujoco.MjData(self.model)
+        model, numbers = self.model, range(len(self.robots))
+        self.bodies: Indices = np.array([model.body(f"robot{k}").id for k in numbers], dtype=np.intp)
+        places = np.array([model.joint(f"free{k}").qposadr[0] for k in numbers], dtype=np.intp)
+        freedoms = np.array([model.joint(f"free{k}").dofadr[0] for k in numbers], dtype=np.intp)
+        self.places: Indices = places[:, None] + np.arange(7)
+        self.freedoms: Indices = freedoms[:, None] + np.arange(6)
+        self._wheels = [_wheels(model, k) for k in numbers]
+        mujoco.mj_step1(self.model, self.data)
+
+    def go_on(self) -> None:
+        """One step of physics under `data.ctrl` and `data.xfrc_applied`; places and axes are of its end."""
+        mujoco.mj_step2(self.model, self.data)
+        mujoco.mj_step1(self.model, self.data)
+
+    def take_over(self, before: Stage) -> None:
+        """Robots that stood on a stage before, which are the first of this one, go on as they were."""
+        for k in range(len(before.robots)):
+            self.data.qpos[self.places[k]] = before.data.qpos[before.places[k]]
+            self.data.qvel[self.freedoms[k]] = before.data.qvel[before.freedoms[k]]
+            for (place, freedom), (old_place, old_freedom) in zip(self._wheels[k], before._wheels[k], strict=True):
+                self.data.qpos[place] = before.data.qpos[old_place]
+                self.data.qvel[freedom] = before.data.qvel[old_freedom]
+        self.data.time = before.data.time
+        mujoco.mj_step1(self.model, self.data)
+
+    def group(self, build: Build) -> Group:
+        """Those that are so built."""
+        return Group(self, np.array([k for k, one in enumerate(self.robots) if one.body.build is build], dtype=np.intp))
+
+    def motors(self, who: Indices) -> Indices:
+        """Of robots on wheels, left and right: (k, 2) numbers in `data.ctrl`."""
+        motors = [[self.model.actuator(f"{side}{k}").id for side in ("left", "right")] for k in who]
+        return np.array(motors, dtype=np.intp).reshape(-1, 2)
+
+
+def _wheels(model: Any, robot: int) -> list[tuple[int, int]]:
+    """Where the angles and the speeds of its wheels are."""
+    joints = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"{side}{robot}") for side in ("left", "right")]
+    return [(model.jnt_qposadr[joint], model.jnt_dofadr[joint]) for joint in joints if joint >= 0]
