@@ -25,6 +25,8 @@ MISSION = Mission(
 class Processes:
     """Robots' processes that do nothing; what is told to them is kept, and they have last words."""
 
+    lives = True
+
     def __init__(self, on_word, last_words=()):
         self.living, self.gone, self.news, self.told = ["a", "b"], {}, {}, []
         self._on_word, self._last_words, self._killed = on_word, last_words, []
@@ -42,6 +44,9 @@ class Processes:
             self.living.remove(robot)
             self.gone[robot] = "killed"
         self._killed.clear()
+
+    def may_start(self, robot):
+        return self.lives
 
     def start(self, robot):
         self.living.append(robot)
@@ -110,6 +115,16 @@ def test_the_radio_of_a_robot_works_that_was_cut_off_then_failed_and_returns(tmp
     while theatre.time_s < 0.3:
         theatre.go_on(1.0)
     assert sorted(theatre.team.asked_of) == ["a", "b"]
+
+
+def test_a_robot_that_has_no_process_left_does_not_return(tmp_path):
+    theatre, log = theatre_of([Event(at_s=0.2, robot_returns="a")], tmp_path)
+    theatre.team.gone["a"] = "killed by somebody"
+    theatre.team.living.remove("a")
+    theatre.team.lives = False
+    while theatre.time_s < 0.3:
+        theatre.go_on(1.0)
+    assert [happening.kind for happening in log.happenings] == ["without_effect"]
 
 
 def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):

@@ -160,7 +160,9 @@ class Theatre:
             return event.robot_silent in self._connected
         if event.robot_returns is not None:
             robot = event.robot_returns
-            return robot in self.team.gone or robot in self._cut_off or self._log.is_out(robot)
+            if robot in self.team.gone:
+                return self.team.may_start(robot)  # not if somebody else has killed it
+            return robot in self._cut_off or self._log.is_out(robot)
         return True
 
     def _fail(self, robot: str) -> None:

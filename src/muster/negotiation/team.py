@@ -22,6 +22,7 @@ from muster.negotiation.view import View
 from muster.negotiation.watch import GO, SHOW, Born, Failed, Gone, News, Order, Ready
 
 _ENDING_S = 3.0
+_BORN_S = 0.05
 
 
 class Team:
@@ -106,6 +107,10 @@ class Team:
         """Robots that have started, and whose processes have not ended."""
         return [robot for robot in self.robots if robot in self._life and robot not in self.gone]
 
+    def may_start(self, robot: str) -> bool:
+        """Whether the order has one more life for a robot."""
+        return (robot, self._life.get(robot, 0) + 1) in self._unborn
+
     def start(self, robot: str) -> None:
         """Start a robot that comes late, or one more time.
 
@@ -122,6 +127,8 @@ class Team:
 
     def kill(self, robot: str) -> None:
         """End a robot's process, in the middle of whatever it does."""
+        while robot not in self.pids:  # it has just been started
+            self.hear(_BORN_S)
         with suppress(ProcessLookupError):
             os.kill(self.pids[robot], signal.SIGKILL)
 

@@ -28,8 +28,8 @@ class Span:
 def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
     """The spans in a record's events, in the order of their ends; of those of no length only work is told.
 
-    A span ends when the robot begins something else, ends the task or fails, when the task is cancelled or lost, and at
-    the latest with the record.
+    A span ends when the robot begins something else, ends the task or fails, when the task is cancelled, lost, or given
+    to another or to none by a new plan, and at the latest with the record.
     """
     found: list[Span] = []
     doing: dict[str, tuple[str, str, float]] = {}
@@ -47,9 +47,18 @@ def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
             doing[str(robot)] = ("" if task is None else str(task), _BEGINS[event.kind], event.time_s)
         elif event.kind in _ENDS:
             close(str(robot), event.time_s)
-        elif event.kind in _BREAKS_OFF:
-            for one in [name for name, (of, *_) in doing.items() if name == robot or (robot is None and of == task)]:
-                close(one, event.time_s)
+        for one in [name for name, (of, kind, _) in doing.items() if _breaks_off(event, name, of, kind)]:
+            close(one, event.time_s)
     for one in list(doing):
         close(one, duration_s)
     return found
+
+
+def _breaks_off(event: Happening, robot: str, task: str, kind: str) -> bool:
+    """Whether a robot leaves what it does for a task because of this."""
+    if event.kind in _BREAKS_OFF:
+        who = event.data.get("robot")
+        return who == robot or (who is None and event.data.get("task") == task)
+    if event.kind == "replanned" and kind != WORK:
+        return task in event.data.get("dropped", {}) or event.data.get("moved", {}).get(task, [""])[0] == robot
+    return False

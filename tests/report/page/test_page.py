@@ -167,6 +167,22 @@ def test_spans():
     ]
 
 
+def test_a_way_to_a_task_that_another_has_now_ends_there_but_work_goes_on():
+    events = [
+        Happening(0, "sets_out", {"robot": "a", "task": "t"}),
+        Happening(0, "sets_out", {"robot": "b", "task": "u"}),
+        Happening(0, "starts", {"robot": "c", "task": "v"}),
+        Happening(1, "sets_out", {"robot": "d", "task": "x"}),
+        Happening(3, "replanned", {"moved": {"t": ["a", "b"], "v": ["c", "b"]}, "dropped": {"x": "no robot"}}),
+    ]
+    assert spans(events, 10) == [
+        Span("a", "t", "travel", 0, 3),
+        Span("d", "x", "travel", 1, 3),
+        Span("b", "u", "travel", 0, 10),
+        Span("c", "v", "work", 0, 10),
+    ]
+
+
 def test_nearest_is_the_pair_nearest_to_contact():
     radii = np.array([0.1, 0.1, 1.0])
     places = np.array([[[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 0, 0], [0.5, 0, 0], [9, 9, 9]], [[np.nan] * 3] * 3])
