@@ -66,15 +66,7 @@ class Simulation:
     ) -> None:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
-        self._world = KinematicWorld(
-            mission,
-            seed=seed,
-            dt_s=dt_s,
-            avoidance=avoidance,
-            noise=noise,
-            observer=None if recorder is None else recorder.on_step,
-            observe_s=0.0 if recorder is None else 0.1,
-        )
+        self._world = recorded_world(mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         self._executor = Executor(
             mission,
             _with_objective(mission, plan),
@@ -161,6 +153,13 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+
+
+def recorded_world(mission: Mission, recorder: Recorder | None, **how: Any) -> KinematicWorld:
+    """The world of a mission, which tells a recorder where bodies are."""
+    if recorder is None:
+        return KinematicWorld(mission, **how)
+    return KinematicWorld(mission, observer=recorder.on_step, observe_s=0.1, **how)
 
 
 def _with_objective(mission: Mission, plan: Plan) -> Plan:

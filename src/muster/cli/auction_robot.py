@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement
+from muster.cli.agreement import Agreement, by_kind
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.negotiation.joining import node_of
@@ -101,15 +101,13 @@ class _Watch:
         self._settled = status.settled
 
     def say_how_it_ended(self, status: NodeStatus, took_s: float) -> None:
-        kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))
         volume = sum(status.sent_bytes.values()) / 1000
         refused = "".join(
             f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
         )
         without = f" without {', '.join(status.silent)}" if status.silent else ""
-        self._say(
-            f"agreed{without} after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}"
-        )
+        sent = f"sent {by_kind(status.sent)}, {volume:.1f} kB"
+        self._say(f"agreed{without} after {took_s:.2f} s; {sent}; received {status.received}{refused}")
 
 
 def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Transport:
