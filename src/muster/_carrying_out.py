@@ -74,15 +74,7 @@ class Simulation:
     ) -> None:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
-        self._world: SimulatedWorld = world_named(world)(
-            mission,
-            seed=seed,
-            dt_s=dt_s,
-            avoidance=avoidance,
-            noise=noise,
-            observer=None if recorder is None else recorder.on_step,
-            observe_s=0.0 if recorder is None else 0.1,
-        )
+        self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         self._executor = Executor(
             mission,
             _with_objective(mission, plan),
@@ -188,6 +180,13 @@ def world_named(name: str) -> Callable[..., SimulatedWorld]:
     from muster.simulation.physics import PhysicsWorld
 
     return PhysicsWorld
+
+
+def recorded_world(name: str, mission: Mission, recorder: Recorder | None, **how: Any) -> SimulatedWorld:
+    """The world of that name for a mission, which tells a recorder where bodies are."""
+    if recorder is not None:
+        how |= {"observer": recorder.on_step, "observe_s": 0.1}
+    return world_named(name)(mission, **how)
 
 
 def _with_objective(mission: Mission, plan: Plan) -> Plan:

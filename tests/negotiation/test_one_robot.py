@@ -22,7 +22,7 @@ def test_what_all_have_agreed_on_holds_for_those_that_stay_when_others_have_left
     def be(robot, linger_s):
         with team.node(robot, made[robot]) as node:
             staying = Staying(wait_s=30.0, linger_s=linger_s, limit_s=30.0)
-            found[robot] = take_part(node, node.negotiator, staying, lambda status: None)[0]
+            found[robot] = take_part(node, staying, lambda status: None)[0]
             found[robot, "members"] = node.negotiator.epoch.own.members
 
     threads = [threading.Thread(target=be, args=(r, 0.3 if k else 3.0)) for k, r in enumerate(team.robots)]

@@ -8,6 +8,7 @@ from typing import Any
 from muster.allocation.problem import Problem
 from muster.execution import Happening, Observer
 from muster.execution.ledger import Ledger
+from muster.execution.reallocation import told
 from muster.execution.report import Account
 from muster.mission.model import Event
 from muster.mission.plan import Plan
@@ -135,16 +136,8 @@ class Log:
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why."""
-        lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
-        reasons = {item.task: item.reasons for item in self._plans[-1].unassigned} if self._plans else {}
-        gone = ", ".join(f"{robot} ({why})" for robot, why in self._out.items())
-        out = f"; no longer taking part: {gone}" if gone else ""
-        for task in self.ledger.open:
-            said = "; ".join(
-                f"{reason.reason}: {reason.detail} ({reason.robot})" for reason in reasons.get(task.id, ())
-            )
-            lost[task.id] = (said or "not done") + out
-        return {name: lost[name] for name in self.ledger.tasks if name in lost}
+        reasons = {item.task: told(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
+        return self.ledger.lost(lambda task: reasons.get(task) or "not done", self._out)
 
     @property
     def account(self) -> Account:

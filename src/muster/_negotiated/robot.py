@@ -12,7 +12,6 @@ from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
 from muster.negotiation.node import Node
 from muster.negotiation.seat import Orders, Seat, Teller
-from muster.negotiation.transport import Around, Transport
 from muster.negotiation.watch import Ready
 
 _STEP_S = 0.02
@@ -24,14 +23,8 @@ def decide_for_itself(seat: Seat) -> None:
     orders, teller = Orders(seat.pipe), Teller(seat.pipe)
     if seat.comes_late:
         orders.go.wait()
-    radios: list[RadioLink] = []
-
-    def by_radio(transport: Transport) -> Transport:
-        radios.append(RadioLink(transport))
-        return radios[0]
-
-    with seat.node(by_radio) as node:
-        robot = Being(seat, node, radios[0])
+    with seat.node() as node:
+        robot = Being(seat, node)
         if not seat.comes_late:
             seat.pipe.send(Ready())
             orders.go.wait()
@@ -40,22 +33,6 @@ def decide_for_itself(seat: Seat) -> None:
             robot.hear(_all_of(orders.words.get_nowait))
             robot.go_on()
             teller.tell(node, orders)
-
-
-class RadioLink(Around):
-    """A transport that can be out of reach."""
-
-    def __init__(self, transport: Transport) -> None:
-        super().__init__(transport)
-        self.on = True
-
-    def send(self, data: bytes, to: str | None = None) -> None:
-        if self.on:
-            super().send(data, to)
-
-    def receive(self, wait_s: float) -> list[bytes]:
-        came = super().receive(wait_s)
-        return came if self.on else []
 
 
 class PipePort:
@@ -84,8 +61,8 @@ class PipePort:
 class Being:
     """What the process does beside the auction."""
 
-    def __init__(self, seat: Seat, node: Node, radio: RadioLink) -> None:
-        self._seat, self._node, self._radio = seat, node, radio
+    def __init__(self, seat: Seat, node: Node) -> None:
+        self._seat, self._node = seat, node
         self._pilot: Pilot | None = None
         self._now_s = 0.0
         self._heard = 0
@@ -98,7 +75,7 @@ class Being:
             if isinstance(word, Sense):
                 self._sense(word)
             elif isinstance(word, Radio):
-                self._radio.on = word.on
+                self._node.in_reach = word.on
             elif isinstance(word, Befalls):
                 self._befallen.append(word.event)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import Recorder, world_named
+from muster._carrying_out import Recorder, recorded_world
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.theatre import MOST_SPEED, Theatre
@@ -85,14 +85,8 @@ def negotiate_and_carry_out(
         raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        bodies = world_named(world)(
-            problem.mission,
-            seed=seed,
-            dt_s=dt_s,
-            avoidance=avoidance,
-            noise=noise,
-            observer=None if recorder is None else recorder.on_step,
-            observe_s=0.0 if recorder is None else 0.1,
+        bodies = recorded_world(
+            world, problem.mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
         )
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,3 +16,8 @@ class Agreement:
 
     views: dict[str, View]
     took_s: float
+
+
+def by_kind(sent: Mapping[str, int]) -> str:
+    """How many messages were sent, by kind."""
+    return ", ".join(f"{sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))

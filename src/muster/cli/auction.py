@@ -126,13 +126,13 @@ def command(
 def _replayed(others: Mapping[str, Any]) -> int:
     """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
     seed = others["network_seed"]
+    if seed is None:
+        raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
     for name in _OF_A_SIMULATED_NETWORK:
-        if seed is not None and others[name] is not None:
+        if others[name] is not None:
             raise ParameterError(
                 f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
             )
-    if seed is None:
-        raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
     from muster.studies.negotiation.trial import replay
 
     report = replay(seed)

@@ -10,18 +10,17 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement
+from muster.cli.agreement import Agreement, by_kind
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.hints import did_you_mean
-from muster.negotiation.codec import Codec
+from muster.negotiation.joining import node_of
 from muster.negotiation.keys import read_key
-from muster.negotiation.memory_file import Kept, keeper, kept_in
+from muster.negotiation.memory_file import kept_of
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.node import Node, NodeStatus
+from muster.negotiation.node import NodeStatus
 from muster.negotiation.one_robot import Staying, new_incarnation, take_part
-from muster.negotiation.seal import Seal
 from muster.negotiation.transport import Transport
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
@@ -57,29 +56,22 @@ def agree_with_others(
     if options["key_file"] is None:
         raise ParameterError("--key-file missing; expected with --robot (`muster auction --new-key FILE` makes one)")
     key, digest = read_key(options["key_file"]), mission_digest(problem, terms)
-    kept = Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
+    kept = kept_of(file, digest, robot)
     kept = replace(kept, incarnation=new_incarnation(kept.incarnation))
     forgot = file is None  # for all it knows, it may have taken part before
-    negotiator = method.negotiator(
-        problem, terms, robot, incarnation=kept.incarnation, remembered=kept.memory, forgot=forgot
-    )
+    carrier = _transport(problem, transport, options)
+    node = node_of(problem, terms, method, kept, file=file, key=key, transport=carrier, forgot=forgot)
 
     def say(line: str) -> None:
         if not quiet:
             click.echo(line, err=True)
 
-    if forgot and negotiator.rules.once:
-        say(f"{len(negotiator.rules.once)} tasks are for at most one robot: without --memory they may find none")
-    carrier = _transport(problem, transport, options)
-    codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
-    seal = Seal(key, digest, robot, kept.incarnation)
+    if forgot and node.negotiator.once:
+        say(f"{len(node.negotiator.once)} tasks are for at most one robot: without --memory they may find none")
     staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
-    node = Node(negotiator, carrier, codec, seal)
-    if file is not None:
-        node.keep = keeper(file, kept, negotiator)
     with node:
-        watch = _Watch(negotiator, say)
-        view, took_s = take_part(node, negotiator, staying, watch)
+        watch = _Watch(node.negotiator, say)
+        view, took_s = take_part(node, staying, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
 
@@ -109,15 +101,13 @@ class _Watch:
         self._settled = status.settled
 
     def say_how_it_ended(self, status: NodeStatus, took_s: float) -> None:
-        kinds = ", ".join(f"{status.sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))
         volume = sum(status.sent_bytes.values()) / 1000
         refused = "".join(
             f", {count} {why.replace('_', ' ')} refused" for why, count in status.refused.items() if why != "own"
         )
         without = f" without {', '.join(status.silent)}" if status.silent else ""
-        self._say(
-            f"agreed{without} after {took_s:.2f} s; sent {kinds}, {volume:.1f} kB; received {status.received}{refused}"
-        )
+        sent = f"sent {by_kind(status.sent)}, {volume:.1f} kB"
+        self._say(f"agreed{without} after {took_s:.2f} s; {sent}; received {status.received}{refused}")
 
 
 def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Transport:

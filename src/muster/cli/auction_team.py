@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement
+from muster.cli.agreement import Agreement, by_kind
 from muster.cli.auction_table import auction_table
 from muster.cli.tables import counted
 from muster.mission.errors import MusterError
@@ -80,8 +80,7 @@ def _summary(team: Team, views: dict[str, View], took_s: float) -> str:
         sent.update(status.sent)
         volume += sum(status.sent_bytes.values())
     stage = next(iter(views.values())).stage
-    kinds = ", ".join(f"{sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))
     return (
         f"{counted(len(views), 'robot')} agreed after {took_s:.2f} s, in round {stage.round} of epoch {stage.epoch}; "
-        f"{sum(sent.values())} messages ({kinds}), {volume / 1000:.0f} kB"
+        f"{sum(sent.values())} messages ({by_kind(sent)}), {volume / 1000:.0f} kB"
     )

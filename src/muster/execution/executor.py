@@ -268,15 +268,16 @@ class Executor:
         self._observer.on_plan(self.now_s, self.plan)
 
     def _end_if_over(self) -> None:
-        if self._alone and not self.done and self.idle and not any(map(self._matters, self._script)):
+        if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
             self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
             for task, reason in self.lost().items():
                 self._tell("lost", {"task": task, "reason": reason})
             self._tell("mission_ended", {})
 
-    def _matters(self, event: Event) -> bool:
-        return may_bring_work(event, open_tasks=bool(self.ledger.open))
+    @property
+    def _may_bring_work(self) -> bool:
+        return any(may_bring_work(event, open_tasks=bool(self.ledger.open)) for event in self._script)
 
     @property
     def account(self) -> Account:
@@ -295,13 +296,8 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
-        gone = ", ".join(f"{h.robot.id} ({OUT[h.out]} at {h.out_s:g} s)" for h in self.crew.values() if h.out)
-        out = f"; no longer taking part: {gone}" if gone else ""
-        lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.ledger.cancelled.items()}
-        for task in self.ledger.open:
-            if task.id not in under_way:
-                lost[task.id] = self._left_out.get(task.id, "left out by the plan") + out
-        return {name: lost[name] for name in self.ledger.tasks if name in lost}
+        gone = {hand.robot.id: f"{OUT[hand.out]} at {hand.out_s:g} s" for hand in self.crew.values() if hand.out}
+        return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
 
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         self.happenings.append(Happening(self.now_s, kind, data))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from muster.mission.model import Point, Task
@@ -41,6 +41,24 @@ class Ledger:
     def open(self) -> list[Task]:
         """Tasks that are neither done nor cancelled, work under way included."""
         return [task for name, task in self.tasks.items() if name not in self.ends_s and name not in self.cancelled]
+
+    def lost(
+        self, why: Callable[[str], str], gone: Mapping[str, str], under_way: Collection[str] = ()
+    ) -> dict[str, str]:
+        """Every task that is not done, nor under way, and the reason.
+
+        Parameters
+        ----------
+        why
+            the reason of a task that is not cancelled.
+        gone
+            by robot that takes no part any more since when, and why.
+        """
+        who = ", ".join(f"{robot} ({since})" for robot, since in gone.items())
+        out = f"; no longer taking part: {who}" if gone else ""
+        lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.cancelled.items()}
+        lost |= {task.id: why(task.id) + out for task in self.open if task.id not in under_way}
+        return {name: lost[name] for name in self.tasks if name in lost}
 
     @property
     def waiting_s(self) -> float:

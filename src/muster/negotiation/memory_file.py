@@ -51,6 +51,11 @@ class Kept:
         beside.replace(file)
 
 
+def kept_of(file: Path | None, digest: bytes, robot: str) -> Kept:
+    """What was kept of a robot in the auction of this digest; raises as `kept_in`. None: it has no file."""
+    return Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
+
+
 def kept_in(file: Path, auction: str, robot: str) -> Kept:
     """What a file holds; where there is none, nothing was kept.
 

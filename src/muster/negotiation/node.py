@@ -79,6 +79,8 @@ class Node:
 
     Attributes
     ----------
+    in_reach
+        whether messages come through, both ways: not while the radio of a simulated robot is cut.
     keep
         keeps what the robot knows for its next life; by default it does not. The node calls it before it sends
         anything, who carries work out before that begins.
@@ -88,6 +90,7 @@ class Node:
         self, negotiator: Negotiator, transport: Transport, codec: Codec, seal: Seal | None, clock: Clock | None = None
     ) -> None:
         self.negotiator, self.transport = negotiator, transport
+        self.in_reach = True
         self.keep: Callable[[], None] = lambda: None
         self.sent: Counter[str] = Counter()
         self.sent_bytes: Counter[str] = Counter()
@@ -116,7 +119,8 @@ class Node:
         """
         if not self.negotiator.superseded:  # or it is never due again
             wait_s = max(0.0, min(wait_s, self.negotiator.due_s - self._clock.now()))
-        for data in self.transport.receive(wait_s):
+        came = self.transport.receive(wait_s)
+        for data in came if self.in_reach else ():
             for said in [data] if self._met is None else self._met.open(data):
                 self._take_in(said)
         self._greet()
@@ -183,5 +187,6 @@ class Node:
         self.sent[kind] += 1
         before = self.transport.bytes_sent
         for piece in pieces:
-            self.transport.send(piece, to)
+            if self.in_reach:
+                self.transport.send(piece, to)
         self.sent_bytes[kind] += self.transport.bytes_sent - before

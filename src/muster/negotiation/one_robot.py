@@ -39,7 +39,6 @@ class Staying:
 
 def take_part(
     node: Node,
-    negotiator: Negotiator,
     staying: Staying,
     on_look: Callable[[NodeStatus], None],
     clock: Clock | None = None,
@@ -56,7 +55,7 @@ def take_part(
         if another process runs under its name, nobody of the team is there, all that are have another mission or
         version, or there is no agreement in time.
     """
-    clock = clock or SystemClock()
+    clock, negotiator = clock or SystemClock(), node.negotiator
     began_s = clock.now()
     agreed: tuple[View, float] | None = None
     by_all = False

@@ -5,18 +5,18 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
 from muster.allocation.problem import Problem
-from muster.negotiation.codec import Codec
-from muster.negotiation.memory_file import Kept, keeper, kept_in
+from muster.negotiation.joining import node_of
+from muster.negotiation.memory_file import kept_of
 from muster.negotiation.methods import method_named
+from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.node import Node
-from muster.negotiation.seal import Seal, mission_digest
 from muster.negotiation.transport import Transport
 from muster.negotiation.view import view_of
 from muster.negotiation.watch import GO, SHOW, News, Order, Ready
@@ -91,29 +91,22 @@ class Seat:
         """Whether the team does not wait for it before it begins."""
         return self.life > 1 or self.robot in self.order.late
 
-    def node(self, around: Callable[[Transport], Transport] = lambda transport: transport) -> Node:
-        """The robot's part in the auction, not begun; `around` may lay something around what carries its messages."""
+    def node(self) -> Node:
+        """The robot's part in the auction, not begun."""
         order = self.order
-        digest = mission_digest(self.problem, order.terms)
-        kept = Kept(auction=digest.hex(), robot=self.robot)
         file = None if order.memory is None else order.memory / f"{self.robot}.json"
-        if file is not None:
-            kept = kept_in(file, kept.auction, self.robot)
-        negotiator = method_named(order.method).negotiator(
+        kept = kept_of(file, mission_digest(self.problem, order.terms), self.robot)
+        return node_of(
             self.problem,
             order.terms,
-            self.robot,
-            incarnation=self.life,
+            method_named(order.method),
+            replace(kept, incarnation=self.life),
+            file=file,
+            key=order.key,
+            transport=self._transport(),
             patience=order.patience,
-            remembered=kept.memory,
             absent=order.late,
         )
-        codec = Codec([robot.id for robot in self.problem.robots], [task.id for task in self.problem.tasks])
-        seal = Seal(order.key, digest, self.robot, self.life)
-        node = Node(negotiator, around(self._transport()), codec, seal)
-        if file is not None:
-            node.keep = keeper(file, replace(kept, incarnation=self.life), negotiator)
-        return node
 
     def _transport(self) -> Transport:
         here = self.ports[self.robot]

@@ -42,35 +42,3 @@ class Transport(Protocol):
     def close(self) -> None:
         """Send and receive no more. Closing again does nothing."""
         ...
-
-
-class Around:
-    """A transport around another, which does all: for those that change some of it."""
-
-    def __init__(self, transport: Transport) -> None:
-        self._transport = transport
-
-    @property
-    def room(self) -> int:
-        return self._transport.room
-
-    @property
-    def datagrams(self) -> int:
-        return self._transport.datagrams
-
-    @property
-    def bytes_sent(self) -> int:
-        return self._transport.bytes_sent
-
-    @property
-    def lost_here(self) -> int:
-        return self._transport.lost_here
-
-    def send(self, data: bytes, to: str | None = None) -> None:
-        self._transport.send(data, to)
-
-    def receive(self, wait_s: float) -> list[bytes]:
-        return self._transport.receive(wait_s)
-
-    def close(self) -> None:
-        self._transport.close()

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from muster.negotiation.base import Base
-from muster.negotiation.epoch import Epoch
-from muster.negotiation.epoch import opening_of as opening_of
+from muster.negotiation.epoch import Epoch, opening_of
 from muster.negotiation.messages import Claim, RoundBids, Sold, Stage
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.valuation import Opening

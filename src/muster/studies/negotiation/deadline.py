@@ -1,10 +1,11 @@
 """How long agreement may take once it is quiet.
 
-A robot that crashed at the last moment is missed after `suspect_s`, by those that it is far from after FAR times as
-long; half as long again is for those that heard of it last. Who was left out is back after at most eight times
-`mute_s`. Then all rounds are held, with declarations before and agreement behind. A word takes as long as its way, and
-where it is lost until it is asked for again; it is said 1 / (1 - loss) times on the average, and twice that is allowed
-for each round and hop. Loss has no upper bound, so agreement has none either: that runs keep to this was measured.
+A robot that crashed at the last moment is missed after `suspect_s`, by those that it is far from, or was while links
+were cut, after FAR times as long; half as long again is for those that heard of it last. Who was left out is back after
+at most eight times `mute_s`. Then all rounds are held, with declarations before and agreement behind. A word takes as
+long as its way, and where it is lost until it is asked for again; it is said 1 / (1 - loss) times on the average, and
+twice that is allowed for each round and hop. Loss has no upper bound, so agreement has none either: that runs keep to
+this was measured.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ def deadline_s(scene: Scene, group: Sequence[str], rounds: int, *, left_out: boo
     word_s = (patience.retry_s + TICK_S + weather.delay_s + weather.jitter_s) / (1 - weather.loss)
     alone_s = 8 * patience.mute_s if left_out else 0.0
     hops = _hops(scene.links, group)
-    missed_s = 1.5 * patience.suspect_s * (FAR if hops > 1 else 1.0)
+    far = hops > 1 or any(incident.kind in ("cut", "deafen") for incident in scene.incidents)
+    missed_s = 1.5 * patience.suspect_s * (FAR if far else 1.0)
     return missed_s + alone_s + 2 * (rounds + OTHER_WORDS) * hops * word_s
 
 
