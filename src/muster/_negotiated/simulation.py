@@ -6,7 +6,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -108,9 +108,7 @@ def order_of(problem: Problem, negotiation: Negotiation, memory: Path) -> Order:
     """What the robots' processes are to do: robots that join, or start again, have theirs from the beginning, too."""
     mission = problem.mission
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
-    whole = Problem.compile(
-        replace(mission, robots=(*mission.robots, *joining), events=()), problem.objective, problem.ignored
-    )
+    whole = Problem.compile(mission.at_once(robots=(*mission.robots, *joining)), problem.objective, problem.ignored)
     method = method_named(negotiation.method)
     return Order(
         problem=whole.ready(),

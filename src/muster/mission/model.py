@@ -6,7 +6,7 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS
@@ -369,6 +369,10 @@ class Mission(_Checked):
         faults = list(inconsistencies(self))
         if faults:
             raise MissionError(findings(faults, self.source))
+
+    def at_once(self, **changes: Any) -> Mission:
+        """The mission, changed, without what happens or is found while it is carried out."""
+        return replace(self, events=(), tags=(), found=(), **changes)
 
     @property
     def travel_rule(self) -> str:

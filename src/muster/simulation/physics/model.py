@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
+from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import (
     CASTER_AHEAD_M,
@@ -26,6 +27,8 @@ from muster.simulation.physics.bodies import (
     RobotBody,
     quaternion,
 )
+from muster.simulation.physics.tag_plates import add_plates
+from muster.simulation.physics.xml import add
 
 GROUND_BIT, ROBOTS_BIT, FIRST_WALLS_BIT, WALL_SETS = 1, 2, 2, 29
 WALL_THICKNESS_M, WALL_ABOVE_M = 0.02, 3.0
@@ -53,7 +56,9 @@ class Standing:
     walls: int | None
 
 
-def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, step_s: float) -> str:
+def mjcf(
+    robots: Sequence[Standing], walls: Sequence[Floats], tags: Sequence[Tag], ground_m: float, step_s: float
+) -> str:
     """The model as text.
 
     Parameters
@@ -62,6 +67,8 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
         in order; the names of their parts end in their number.
     walls
         sets of upright faces (k, 6) as `faces_and_slabs` gives them.
+    tags
+        that lie about; the model refers to their pictures by file, see `tag_plates.picture_files`.
     ground_m
         height of the ground.
     step_s
@@ -70,12 +77,12 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
     root = ET.Element("mujoco", model="muster")
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
     # The implicit integrators damp the wheels after the contacts are solved, so that the body outruns them by half.
-    _add(root, "option", timestep=step_s, integrator="Euler", cone="elliptic", impratio=10, iterations=20)
-    _add(root, "size", memory="64M")
+    add(root, "option", timestep=step_s, integrator="Euler", cone="elliptic", impratio=10, iterations=20)
+    add(root, "size", memory="64M")
     _show(root)
     world = ET.SubElement(root, "worldbody")
-    _add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.35, 0.35, 0.35))
-    _add(
+    add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.35, 0.35, 0.35))
+    add(
         world,
         "geom",
         name="ground",
@@ -90,22 +97,23 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
     for number, faces in enumerate(walls):
         for face in faces:
             _wall(world, face, number, ground_m, top)
+    add_plates(root, world, tags)
     actuators = ET.SubElement(root, "actuator")
     for number, robot in enumerate(robots):
-        body = _add(
+        body = add(
             world, "body", name=f"robot{number}", pos=robot.position, quat=quaternion(robot.heading)
         )  # its frame: x ahead, y left, z up
-        _add(body, "freejoint", name=f"free{number}")
+        add(body, "freejoint", name=f"free{number}")
         _MAKERS[robot.body.build](body, actuators, number, robot)
     return ET.tostring(root, encoding="unicode")
 
 
 def _show(root: ET.Element) -> None:
     visual = ET.SubElement(root, "visual")
-    _add(visual, "global", offwidth=SHOW_WIDTH, offheight=SHOW_HEIGHT)
-    _add(visual, "quality", shadowsize=0, offsamples=0, numquads=1, numslices=16, numstacks=8)
-    _add(visual, "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.15, 0.15, 0.15), specular=(0, 0, 0))
-    _add(visual, "map", znear=0.002, zfar=50)
+    add(visual, "global", offwidth=SHOW_WIDTH, offheight=SHOW_HEIGHT)
+    add(visual, "quality", shadowsize=0, offsamples=0, numquads=1, numslices=16, numstacks=8)
+    add(visual, "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.15, 0.15, 0.15), specular=(0, 0, 0))
+    add(visual, "map", znear=0.002, zfar=50)
 
 
 def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: float) -> None:
@@ -115,7 +123,7 @@ def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: fl
     length = math.hypot(x1 - x0, y1 - y0)
     if length == 0 or high <= low:
         return
-    _add(
+    add(
         world,
         "geom",
         type="box",
@@ -141,24 +149,24 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
     scale, (length, width, height) = robot.body.scale, robot.body.size_m
     clear, radius = 0.3 * WHEEL_RADIUS_M * scale, WHEEL_RADIUS_M * scale
     chassis_kg = (WAFFLE_KG - 2 * WHEEL_KG) * scale**3
-    _add(body, "inertial", pos=(0, 0, height * 0.35), mass=chassis_kg, diaginertia=robot.body.inertia_kgm2)
+    add(body, "inertial", pos=(0, 0, height * 0.35), mass=chassis_kg, diaginertia=robot.body.inertia_kgm2)
     middle, tall = (0, 0, (height + clear) / 2), (height - clear) / 2
     hull = (length / 2, width / 2, tall)  # the wheels are within
-    _add(body, "geom", type="box", pos=middle, size=hull, group=UNSEEN, **_touches(robot, ground=False))
+    add(body, "geom", type="box", pos=middle, size=hull, group=UNSEEN, **_touches(robot, ground=False))
     between = (length / 2, (TRACK_M - 1.5 * WHEEL_WIDTH_M) / 2 * scale, tall)
-    _add(body, "geom", type="box", pos=middle, size=between, rgba=(0.2, 0.22, 0.25, 1), contype=0, conaffinity=0)
+    add(body, "geom", type="box", pos=middle, size=between, rgba=(0.2, 0.22, 0.25, 1), contype=0, conaffinity=0)
     nose = (length / 2, 0, height * 0.8)
     mark = (0.01 * scale, width / 6, 0.02 * scale)
-    _add(body, "geom", type="box", pos=nose, size=mark, rgba=(0.9, 0.6, 0.1, 1), contype=0, conaffinity=0)
+    add(body, "geom", type="box", pos=nose, size=mark, rgba=(0.9, 0.6, 0.1, 1), contype=0, conaffinity=0)
     ahead, ball = CASTER_AHEAD_M * scale, CASTER_RADIUS_M * scale
     for place in (ahead, -ahead):
         _foot(body, (place, 0.0), ball, CASTER_LIFT_M * scale)
     spin = 0.5 * WHEEL_KG * scale**3 * radius**2
     for side, y in (("left", TRACK_M / 2 * scale), ("right", -TRACK_M / 2 * scale)):
-        wheel = _add(body, "body", pos=(0, y, radius))
-        _add(wheel, "joint", name=f"{side}{number}", type="hinge", axis=(0, 1, 0), armature=spin)
-        _add(wheel, "inertial", pos=(0, 0, 0), mass=WHEEL_KG * scale**3, diaginertia=(spin, 2 * spin, spin))
-        _add(  # an ellipsoid touches the ground at one point
+        wheel = add(body, "body", pos=(0, y, radius))
+        add(wheel, "joint", name=f"{side}{number}", type="hinge", axis=(0, 1, 0), armature=spin)
+        add(wheel, "inertial", pos=(0, 0, 0), mass=WHEEL_KG * scale**3, diaginertia=(spin, 2 * spin, spin))
+        add(  # an ellipsoid touches the ground at one point
             wheel,
             "geom",
             type="ellipsoid",
@@ -169,7 +177,7 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
             friction=(1.0, 0.0, 0.0),
             priority=1,
         )
-        _add(
+        add(
             actuators,
             "velocity",
             name=f"{side}{number}",
@@ -183,8 +191,8 @@ def _sliding(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> N
     """The frame lies on the ground, in the middle."""
     length, _width, height = robot.body.size_m
     clear = 0.1 * WAFFLE_HEIGHT_M * robot.body.scale
-    _add(body, "inertial", pos=(0, 0, height / 2), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
-    _add(
+    add(body, "inertial", pos=(0, 0, height / 2), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
+    add(
         body,
         "geom",
         type="cylinder",
@@ -199,7 +207,7 @@ def _sliding(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> N
 
 def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: float) -> None:
     """A ball on which a robot stands and that slides without friction."""
-    _add(
+    add(
         body,
         "geom",
         type="sphere",
@@ -215,16 +223,16 @@ def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: flo
 def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> None:
     """The frame lies in its centre of mass."""
     span, _width, height = robot.body.size_m
-    _add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
-    _add(  # the hull is not to be seen: arms and rotors are
+    add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
+    add(  # the hull is not to be seen: arms and rotors are
         body, "geom", type="cylinder", size=(span / 2, height / 2), group=UNSEEN, **_touches(robot, ground=True)
     )
     seen = {"contype": 0, "conaffinity": 0}
-    _add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
+    add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
     arm = 0.68 * span / 2
     for angle in (math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4):
         x, y = arm * math.cos(angle), arm * math.sin(angle)
-        _add(
+        add(
             body,
             "geom",
             type="capsule",
@@ -234,7 +242,7 @@ def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> No
             **seen,
         )
         front = (0.8, 0.2, 0.2, 0.6) if x > 0 else (0.2, 0.2, 0.2, 0.6)
-        _add(
+        add(
             body,
             "geom",
             type="cylinder",
@@ -250,13 +258,3 @@ _MAKERS = {Build.WHEELS: _wheeled, Build.SLIDER: _sliding, Build.ROTORS: _flying
 
 def _both_ways(most: float) -> tuple[float, float]:
     return -most, most
-
-
-def _add(parent: ET.Element, tag: str, **values: object) -> ET.Element:
-    return ET.SubElement(parent, tag, {name: _text(value) for name, value in values.items()})
-
-
-def _text(value: object) -> str:
-    if isinstance(value, tuple):
-        return " ".join(repr(float(number)) for number in value)
-    return str(value)

@@ -21,17 +21,15 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.world import body_of
-from muster.simulation.crowded_world import CrowdedWorld, Event
+from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.stage import Stage
-from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import faces_and_slabs
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
-FLIGHT_M = 1.5
 STILL_MPS = 0.002
 """Slower is standing: a drone that hovers is never quite still."""
 
@@ -52,12 +50,11 @@ class PhysicsWorld(CrowdedWorld):
     _clearance_m = 0.003
 
     def __init__(self, mission: Mission, **how: Any) -> None:
-        self._robots: list[Robot] = []
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
+        self._tags = mission.tags
         self._stage: Stage | None = None
         super().__init__(mission, **how)
-        self._ground_m = self._lowest_m if self._dimensions == 3 else 0.0
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     @property
@@ -80,12 +77,6 @@ class PhysicsWorld(CrowdedWorld):
         stage = self.stage
         found: Floats = stage.data.xmat[stage.bodies].reshape(-1, 3, 3)
         return found
-
-    def join(self, robot: Robot) -> SimulatedPort:
-        """See `CrowdedWorld`; the model is made anew, and all others go on as they were."""
-        port = super().join(robot)
-        self._robots.append(robot)
-        return port
 
     def _limits(self, robot: Robot) -> Limits:
         limits = limits_of(robot)
@@ -110,7 +101,7 @@ class PhysicsWorld(CrowdedWorld):
         return self._crowd.carried_out(after, lags, STILL_MPS)
 
     def _set_stage(self) -> None:
-        """Make the stage, at first and where a robot joined."""
+        """Make the stage, at first and where a robot joined: then all others go on as they were."""
         before = self._stage
         if before is not None and len(before.robots) == len(self._robots):
             return
@@ -119,7 +110,7 @@ class PhysicsWorld(CrowdedWorld):
             self._standing(robot, place, heading)
             for robot, place, heading in zip(self._robots, places, headings, strict=True)
         ]
-        stage = Stage(robots, self._wall_sets, self._ground_m, self._dt_s / self._count)
+        stage = Stage(robots, self._wall_sets, self._tags, self.ground_m, self._dt_s / self._count)
         if before is not None:
             stage.take_over(before)
         self._stage = stage
@@ -131,7 +122,7 @@ class PhysicsWorld(CrowdedWorld):
 
     def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
         body = robot_body(robot)
-        height = self._ground_m
+        height = self.ground_m
         if robot.kind == "air":
             height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
         walls = self._walls_of(robot) if self._collide and robot.radius_m > 0 else None
