@@ -26,7 +26,7 @@ from muster.perception.localisation import Uncertainty
 from muster.perception.observer import Observer
 from muster.perception.search import Find, Proof, Search
 from muster.simulation import KinematicWorld, Noise, SimulatedWorld
-from muster.simulation.sight import GeometricSight, Look, Sight, true_body
+from muster.simulation.cameras import GeometricSight, Look, Sight, true_body
 
 OnLook = Callable[[Look], None]
 
@@ -196,11 +196,11 @@ def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight
     require_physics("finding tags", "scipy")
     if isinstance(world, KinematicWorld):
         return GeometricSight(mission.tags, seed), None
+    from muster.simulation.physics.drawn_sight import DrawnSight
     from muster.simulation.physics.physics_world import PhysicsWorld
-    from muster.simulation.physics.sight import RenderedSight
 
     assert isinstance(world, PhysicsWorld)
-    return RenderedSight(world), TagDetector()
+    return DrawnSight(world), TagDetector()
 
 
 def intrinsics_of(camera: Camera) -> Intrinsics:

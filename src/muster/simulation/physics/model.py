@@ -7,11 +7,10 @@ are stopped by different walls.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
-from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import (
     CASTER_AHEAD_M,
@@ -27,9 +26,9 @@ from muster.simulation.physics.bodies import (
     RobotBody,
     quaternion,
 )
-from muster.simulation.physics.tag_plates import add_plates
 from muster.simulation.physics.xml import add
 
+Show = Callable[[ET.Element, ET.Element], None]
 GROUND_BIT, ROBOTS_BIT, FIRST_WALLS_BIT, WALL_SETS = 1, 2, 2, 29
 WALL_THICKNESS_M, WALL_ABOVE_M = 0.02, 3.0
 """Walls without a top end so far above all robots."""
@@ -37,8 +36,8 @@ SERVO_S = 0.01
 """In which a wheel's servo gets to its speed, were there no limit to its torque."""
 TORQUE_SHARE = 1.2
 """The most torque of a wheel, as a share of the weight upon it times its radius."""
-UNSEEN = 3
-"""A group of geoms that MuJoCo does not draw."""
+UNSEEN, STOPPING = 3, 4
+"""Groups of geoms that MuJoCo does not draw: hulls of robots; walls that stop them, of which `buildings` are drawn."""
 SHOW_WIDTH, SHOW_HEIGHT = 1920, 1440
 """The largest picture that may be rendered."""
 
@@ -57,7 +56,11 @@ class Standing:
 
 
 def mjcf(
-    robots: Sequence[Standing], walls: Sequence[Floats], tags: Sequence[Tag], ground_m: float, step_s: float
+    robots: Sequence[Standing],
+    walls: Sequence[Floats],
+    show: Show,
+    ground_m: float,
+    step_s: float,
 ) -> str:
     """The model as text.
 
@@ -67,8 +70,8 @@ def mjcf(
         in order; the names of their parts end in their number.
     walls
         sets of upright faces (k, 6) as `faces_and_slabs` gives them.
-    tags
-        that lie about; the model refers to their pictures by file, see `tag_plates.picture_files`.
+    show
+        puts into the model, of which it gets the root and the body of the world, what is only to be seen.
     ground_m
         height of the ground.
     step_s
@@ -97,7 +100,7 @@ def mjcf(
     for number, faces in enumerate(walls):
         for face in faces:
             _wall(world, face, number, ground_m, top)
-    add_plates(root, world, tags)
+    show(root, world)
     actuators = ET.SubElement(root, "actuator")
     for number, robot in enumerate(robots):
         body = add(
@@ -130,7 +133,7 @@ def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: fl
         pos=((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2),
         size=(length / 2, WALL_THICKNESS_M / 2, (high - low) / 2),
         quat=quaternion(math.atan2(y1 - y0, x1 - x0)),
-        rgba=(0.55, 0.5, 0.45, 1),
+        group=STOPPING,
         contype=1 << (FIRST_WALLS_BIT + number),
         conaffinity=0,
     )

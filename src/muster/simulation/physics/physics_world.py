@@ -25,6 +25,7 @@ from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
+from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.stage import Stage
 from muster.simulation.walls import faces_and_slabs
 
@@ -110,7 +111,8 @@ class PhysicsWorld(CrowdedWorld):
             self._standing(robot, place, heading)
             for robot, place, heading in zip(self._robots, places, headings, strict=True)
         ]
-        stage = Stage(robots, self._wall_sets, self._tags, self.ground_m, self._dt_s / self._count)
+        scenery = Scenery(self._map, self._tags, self.ground_m)
+        stage = Stage(robots, self._wall_sets, scenery, self.ground_m, self._dt_s / self._count)
         if before is not None:
             stage.take_over(before)
         self._stage = stage

@@ -10,11 +10,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import Build
 from muster.simulation.physics.model import Standing, mjcf
-from muster.simulation.physics.tag_plates import picture_files
+from muster.simulation.physics.scenery import Scenery
 
 Indices = npt.NDArray[np.intp]
 
@@ -68,22 +67,24 @@ class Stage:
 
     Parameters
     ----------
-    robots, walls, tags, ground_m, step_s
+    robots, walls, ground_m, step_s
         as `mjcf` takes them.
+    scenery
+        what is only to be seen.
     """
 
     def __init__(
         self,
         robots: Sequence[Standing],
         walls: Sequence[Floats],
-        tags: Sequence[Tag],
+        scenery: Scenery,
         ground_m: float,
         step_s: float,
     ) -> None:
         self.robots = tuple(robots)
         self.step_s = step_s
-        text = mjcf(robots, walls, tags, ground_m, step_s)
-        self.model: Any = mujoco.MjModel.from_xml_string(text, picture_files(tags))
+        text = mjcf(robots, walls, scenery.add, ground_m, step_s)
+        self.model: Any = mujoco.MjModel.from_xml_string(text, scenery.files)
         self.data: Any = mujoco.MjData(self.model)
         model, numbers = self.model, range(len(self.robots))
         self.bodies: Indices = np.array([model.body(f"robot{k}").id for k in numbers], dtype=np.intp)

@@ -6,12 +6,12 @@ import numpy.typing as npt
 
 from muster.perception.camera import Intrinsics, View
 from muster.perception.observer import Observer
+from muster.simulation.cameras import Look
 from muster.simulation.physics.physics_world import PhysicsWorld
 from muster.simulation.physics.rendering import Lens, Renderer
-from muster.simulation.sight import Look
 
 
-class RenderedSight:
+class DrawnSight:
     """Draws what a camera sees, one renderer for each size of picture.
 
     Raises
