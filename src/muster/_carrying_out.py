@@ -7,10 +7,10 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
-from muster._looking import Lookout, OnLook
+from muster._looking import Lookout, OnLook, lookout_for, with_found
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
@@ -91,9 +91,7 @@ class Simulation:
             observer=recorder,
             now=self._world.time_s,
         )
-        self._lookout: Lookout | None = None
-        if mission.tags:
-            self._lookout = Lookout(mission, self._world, self._world.ports, noise=noise, seed=seed, on_look=on_look)
+        self._lookout = lookout_for(mission, self._world, self._world.ports, noise=noise, seed=seed, on_look=on_look)
         self._recorder = recorder
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._executor.tick(self.time_s)
@@ -160,9 +158,7 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-        if self._lookout is None:
-            return report
-        return replace(report, found=self._lookout.found, remarks=self._lookout.remarks)
+        return with_found(report, self._lookout)
 
     @property
     def lookout(self) -> Lookout | None:
@@ -183,7 +179,7 @@ class Simulation:
         if self._lookout is None:
             return
         for found, event in self._lookout.look(self.time_s):
-            self._executor.tell("found", {k: v for k, v in asdict(found).items() if k != "found_s"})
+            self._executor.tell("found", found)
             if event is not None and (event.new_task or self._is_open(event)):
                 self._executor.report(event)
 

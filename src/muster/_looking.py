@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from muster.execution.report import FoundReport
+from muster.execution.report import FoundReport, Report
 from muster.mission.kinds import specified
 from muster.mission.model import Camera, Event, Found, Mission, MovedTask, Robot, Task, Work
 from muster.motion.frames import angles
@@ -119,12 +119,13 @@ class Lookout:
         number = list(self._world.ports).index(robot.id)
         self._eyes[robot.id] = _Eye(number, eye, 1 / robot.camera.rate_hz, self._world.time_s)
 
-    def look(self, now: float) -> Iterator[tuple[FoundReport, Event | None]]:
+    def look(self, now: float) -> Iterator[tuple[dict[str, Any], Event | None]]:
         """Let those look whose time has come.
 
         Yields
         ------
-        what was found, or found to lie elsewhere, and the event that follows from that, if any.
+        what was found, or found to lie elsewhere, as the data of a `found` event of a record, and the event of a
+        mission that follows from that, if any.
         """
         frames, positions, axes = self._world.frames, self._world.positions, self._world.axes
         for robot, eye in self._eyes.items():
@@ -143,7 +144,7 @@ class Lookout:
             self._remarks += look.observation.remarks
             for find in self.search.take(look.observation.estimates, now):
                 event = self._event(find, now)  # first: it names the task
-                yield self._told(find), event
+                yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
 
     def close(self) -> None:
         """Give back what cameras hold."""
@@ -201,6 +202,16 @@ def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight
 
     assert isinstance(world, PhysicsWorld)
     return DrawnSight(world), TagDetector()
+
+
+def lookout_for(mission: Mission, world: SimulatedWorld, ports: Mapping[str, RobotPort], **how: Any) -> Lookout | None:
+    """The cameras of a mission in which there is something to find; see `Lookout`."""
+    return Lookout(mission, world, ports, **how) if mission.tags else None
+
+
+def with_found(report: Report, lookout: Lookout | None) -> Report:
+    """A report with what cameras found."""
+    return report if lookout is None else replace(report, found=lookout.found, remarks=lookout.remarks)
 
 
 def intrinsics_of(camera: Camera) -> Intrinsics:

@@ -112,7 +112,7 @@ class PhysicsWorld(CrowdedWorld):
             for robot, place, heading in zip(self._robots, places, headings, strict=True)
         ]
         scenery = Scenery(self._map, self._tags, self.ground_m)
-        stage = Stage(robots, self._wall_sets, scenery, self.ground_m, self._dt_s / self._count)
+        stage = Stage(robots, self._wall_sets, scenery, self._dt_s / self._count)
         if before is not None:
             stage.take_over(before)
         self._stage = stage

@@ -67,10 +67,10 @@ class Stage:
 
     Parameters
     ----------
-    robots, walls, ground_m, step_s
+    robots, walls, step_s
         as `mjcf` takes them.
     scenery
-        what is only to be seen.
+        what is only to be seen, and how high the ground is.
     """
 
     def __init__(
@@ -78,12 +78,11 @@ class Stage:
         robots: Sequence[Standing],
         walls: Sequence[Floats],
         scenery: Scenery,
-        ground_m: float,
         step_s: float,
     ) -> None:
         self.robots = tuple(robots)
         self.step_s = step_s
-        text = mjcf(robots, walls, scenery.add, ground_m, step_s)
+        text = mjcf(robots, walls, scenery.add, scenery.ground_m, step_s)
         self.model: Any = mujoco.MjModel.from_xml_string(text, scenery.files)
         self.data: Any = mujoco.MjData(self.model)
         model, numbers = self.model, range(len(self.robots))
