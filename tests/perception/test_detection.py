@@ -1,6 +1,8 @@
 """Tags in pictures drawn here, in perspective, with noise and blur."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -135,3 +137,18 @@ def test_how_small_a_tag_may_be(decimate, least_px):
     tags = [(k, lying((k % 3 - 1) * 0.7, (k // 3 - 1) * 0.9, k)) for k in range(9)]
     found = detector.detect(drawn(view, tags, size, noise=3, blur=0.7))
     assert [s.tag for s in found.all] == list(range(9))
+
+
+def test_detectors_may_be_deleted():
+    """As the library comes, that corrupts memory; in a process of its own, as it would take this one with it."""
+    script = (
+        "import numpy as np\n"
+        "from muster.perception.detection import TagDetector\n"
+        "image = np.zeros((480, 640), dtype=np.uint8)\n"
+        "kept = [bytearray(k) for k in range(2000)]\n"
+        "for k in range(60):\n"
+        "    detector = TagDetector()\n"
+        "    detector.detect(image)\n"
+        "    kept[k] = bytearray(1000 * k)\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=60)

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
 from muster.perception.extra import require_physics
 from muster.perception.images import Image, grey
-from muster.perception.tags import FAMILY
 
 Floats = npt.NDArray[np.float64]
 
@@ -97,12 +97,10 @@ class TagDetector:
     """
 
     def __init__(self, parameters: DetectorParameters | None = None) -> None:
-        require_physics("detecting tags", "pupil_apriltags", "cv2")
-        from pupil_apriltags import Detector
-
+        require_physics("detecting tags", "cv2")
         self._parameters = parameters or DetectorParameters()
-        self._detector = Detector(
-            families=FAMILY,
+        self._detector = new_detector(
+            "detecting tags",
             quad_decimate=self._parameters.decimate,
             quad_sigma=self._parameters.blur_px,
         )

@@ -17,9 +17,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import pose_transform
-from muster.perception.extra import require_physics
-
-FAMILY = "tag36h11"
+from muster.perception.apriltag import FAMILY, new_detector
 
 CELLS, CELLS_OF_PICTURE = 8, 10
 """Across the black square; across the picture, with the margin."""
@@ -65,10 +63,7 @@ def lying(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]:
 @cache
 def _cells() -> npt.NDArray[np.uint8]:
     """All tags (n, 10, 10): 1 where a cell is white. Bits are told from the highest one on."""
-    require_physics("a picture of a tag", "pupil_apriltags")
-    from pupil_apriltags import Detector
-
-    detector = Detector(families=FAMILY)  # frees the family when it goes
+    detector = new_detector("a picture of a tag")  # frees the family when it goes
     family = detector.tag_families[FAMILY].contents
     codes = np.array(family.codes[: family.ncodes], dtype=np.uint64)
     places = np.arange(family.nbits - 1, -1, -1, dtype=np.uint64)
