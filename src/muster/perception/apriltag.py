@@ -32,6 +32,7 @@ def new_detector(purpose: str, **parameters: float) -> Any:
             library, detector, families = made["libc"], made.pop("tag_detector_ptr"), made["tag_families"]
             library.apriltag_detector_destroy.restype = library.tag36h11_destroy.restype = None
             library.apriltag_detector_destroy(detector)
-            library.tag36h11_destroy(families[FAMILY])
+            for family in families.values():
+                library.tag36h11_destroy(family)
 
     return DeletableDetector(families=FAMILY, **parameters)
