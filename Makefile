@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test campaign campaign-auction network-figures disturbances help check format stub sanitize study bench clean prerequisites browser
+.PHONY: demo test campaign campaign-auction network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -18,7 +18,7 @@ demo: $(VENV)/installed
 	@echo "Its time chart:          $(CURDIR)/demo/gantt.png"
 	@echo "Next: $(BIN)/muster --help"
 
-test: $(VENV)/developed browser
+test: $(VENV)/developed test-packages
 	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
 campaign: $(VENV)/developed
@@ -89,8 +89,8 @@ $(VENV)/made: | prerequisites
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'
 	@touch $@
 
-browser:
-	@tools/browser.sh || echo "Going on without; those tests are skipped." >&2
+test-packages:
+	@PYTHON=$(PYTHON) tools/test_packages.sh || echo "Going on without; those tests are skipped." >&2
 
 prerequisites:
 	@PYTHON=$(PYTHON) tools/prerequisites.sh

@@ -1,0 +1,30 @@
+#!/bin/sh
+# Looks for what tests need of the system besides what building needs, and as root on Debian installs what is absent:
+# a browser, in which the page of a record is opened (MUSTER_BROWSER names one that is elsewhere), and a library that
+# draws without a screen, for pictures of the physics world.
+set -u
+python=${PYTHON:-python3}
+packages=""
+has_browser() {
+    for browser in "${MUSTER_BROWSER:-}" chromium chromium-browser google-chrome; do
+        [ -n "$browser" ] && command -v "$browser" >/dev/null && return 0
+    done
+    return 1
+}
+draws() { # through EGL, for which Mesa has the driver, or through OSMesa
+    "$python" -c 'import ctypes; ctypes.CDLL("libEGL.so.1"); ctypes.CDLL("libEGL_mesa.so.0")' 2>/dev/null ||
+        "$python" -c 'import ctypes; ctypes.CDLL("libOSMesa.so.8")' 2>/dev/null
+}
+has_browser || packages="$packages chromium"
+draws || packages="$packages libegl1 libegl-mesa0"
+[ -z "$packages" ] && exit 0
+if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
+    echo "Installing for the tests:$packages ..."
+    apt-get update -q >/dev/null
+    # shellcheck disable=SC2086
+    DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $packages >/dev/null && exit 0
+fi
+echo "Some tests need more. Install it:" >&2
+echo "    sudo apt-get install$packages" >&2
+echo "or let MUSTER_BROWSER name a browser." >&2
+exit 1
