@@ -23,7 +23,7 @@ os.execv(sys.argv[3], sys.argv[3:])
 
 
 def browser_found():
-    """The path of a browser, None if there is none; `tools/browser.sh` installs one."""
+    """The path of a browser, None if there is none; `tools/test_packages.sh` installs one."""
     return next((path for name in NAMES if name and (path := shutil.which(name))), None)
 
 
