@@ -49,7 +49,8 @@ def plot_tracking(
 ) -> Figure:
     """Draw the reference (k, 2) and the flights on the map, beneath them how far aside each was over time.
 
-    `goals` are marked with their names, `points` (k, 2) by what they are, up to three kinds.
+    `goals` are marked with their names, `points` (k, 2) by what they are: up to four kinds, the first
+    with dots.
 
     Raises
     ------
@@ -75,8 +76,8 @@ def plot_tracking(
     for name, (x, y) in goals.items():
         above.plot(x, y, "o", color=ALARM, markersize=5, zorder=5)
         above.annotate(name, (x, y), (6, 4), textcoords="offset points", fontsize=7, color=QUIET_TEXT)
-    for (kind, places), marker in zip((points or {}).items(), _MARKERS, strict=False):
-        above.plot(*places.T, marker, color=TEXT, markersize=5, fillstyle="none", zorder=6, label=kind)
+    for (kind, places), (marker, size) in zip((points or {}).items(), _MARKERS.items(), strict=False):
+        above.plot(*places.T, marker, color=TEXT, markersize=size, fillstyle="none", zorder=6, label=kind)
     above.set_aspect("equal", adjustable="datalim")
     above.set_xlabel("x [m]")
     above.set_ylabel("y [m]")
@@ -88,7 +89,8 @@ def plot_tracking(
     return figure
 
 
-_MARKERS = ("^", "o", "x")
+_MARKERS = {".": 1.5, "^": 5.0, "o": 5.0, "x": 5.0}
+"""And their sizes."""
 
 
 @dataclass(frozen=True, kw_only=True)

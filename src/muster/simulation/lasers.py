@@ -22,7 +22,7 @@ MOUNT_RADII = 0.25
 """How high lasers are mounted on them: above the wheels, below the top, so that robots of one size see each other."""
 NOMINAL_RADIUS_M = 0.3
 """In place of a radius of 0."""
-_STREAM = 0x1A5E
+_STREAM = (0x1A5E,)
 """Of the errors of lasers, so that they are not those of anything else with the same seed."""
 
 
@@ -83,7 +83,8 @@ class Laser:
         """
         exact = self._world.scan(self._robot, self.scanner, cylinders, self._height_m)
         number, step = list(self._world.ports).index(self._robot), round(self._world.time_s / self._world.dt_s)
-        return self.scanner.measured(exact, np.random.default_rng((self._seed, number, step, _STREAM)))
+        errors = np.random.SeedSequence((self._seed, number, step), spawn_key=_STREAM)
+        return self.scanner.measured(exact, np.random.default_rng(errors))
 
 
 def mounted_m(robot: Robot, height_m: float | None) -> float:

@@ -17,6 +17,7 @@ from muster.motion.port import Telemetry
 from muster.perception import ground_fusion
 from muster.perception.estimates import NO_TAG, RawEstimates
 from muster.perception.kalman import Estimate, gated
+from muster.perception.laser import points_of
 from muster.perception.spikes import Landmark, landmarks
 from muster.perception.targets import Sighting
 from muster.simulation import Laser, SimulatedWorld
@@ -65,6 +66,8 @@ class Eyes:
         pose = (*world.positions[index, :2], world.headings[index])
         self.odometry = ground_fusion.standing_at(pose, (START_M, START_M, START_RAD), ERRORS)
         self.fused = self.odometry
+        self.hits: Floats = np.empty((0, 2))
+        """What the last scan hit, (k, 2) in the map, from where the robot took itself to be."""
 
     def move(self) -> None:
         """Take in what was counted since the last time."""
@@ -79,7 +82,9 @@ class Eyes:
 
     def look(self, others: Iterable[Floats]) -> list[Seen]:
         """Scan: landmarks go into the filter; what is none, and no other robot, is returned."""
-        marks = landmarks(self._laser.scan(CYLINDERS), self._laser.bearings, SEARCH)
+        ranges = self._laser.scan(CYLINDERS)
+        self.hits = self._in_map(points_of(ranges, self._laser.bearings))
+        marks = landmarks(ranges, self._laser.bearings, SEARCH)
         known = [(mark, beacon) for mark in marks if (beacon := _nearest(self._place(mark), BEACONS)) is not None]
         unknown = [mark for mark in marks if mark not in [mark for mark, _ in known]]
         for mark, beacon in known:
@@ -94,9 +99,14 @@ class Eyes:
         return Seen(self.robot, self._said.time_s, target)
 
     def _place(self, mark: Landmark) -> tuple[float, float]:
+        x, y = self._in_map(np.array(mark.position))
+        return float(x), float(y)
+
+    def _in_map(self, points: Floats) -> Floats:
+        """Points (..., 2) of the robot's frame, from where it takes itself to be."""
         x, y, heading = self.fused.mean[:3]
-        towards = heading + mark.bearing_rad
-        return x + mark.range_m * math.cos(towards), y + mark.range_m * math.sin(towards)
+        c, s = math.cos(heading), math.sin(heading)
+        return np.asarray(points @ np.array([[c, s], [-s, c]]) + [x, y])
 
     def _telemetry(self) -> Telemetry:
         said = self._port.telemetry()

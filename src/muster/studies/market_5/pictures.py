@@ -14,7 +14,7 @@ from muster.report import save_figure
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.studies.effort import Effort
 from muster.studies.market_5.arena import BEACONS, SURVIVORS
-from muster.studies.market_5.searches import PLACES, TRUE, Search, Searched, searches
+from muster.studies.market_5.searches import PLACES, TRUE, Search, Searched, performed, searches
 from muster.studies.market_5.tracks import SHOWN, measured, team
 from muster.studies.rescue.flights import repetitions
 from muster.studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
@@ -41,7 +41,7 @@ def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
 
 def _tracking(effort: Effort) -> Figure:
     first: Search = searches(effort, [_WORLD])[0]
-    found = first.perform()
+    found = performed(first)
     tasks = tuple(visit.task for visit in found.flown[TRUE].visits[SHOWN_ROBOT])
     reference = legs(ARENA, SHOWN_ROBOT, tasks)
     flights = []
@@ -50,6 +50,7 @@ def _tracking(effort: Effort) -> Figure:
         aside = deviations(reference, way)
         flights.append(Tracked(name=place, places=way, times=times[: len(way)], aside=aside))
     points = {
+        "its last scan": found.hits[SHOWN_ROBOT],
         "landmark": np.array(BEACONS),
         "survivor": np.array(list(SURVIVORS.values())),
         "found": np.array([point.position for point in found.points([SHOWN_ROBOT])]).reshape(-1, 2),
@@ -59,7 +60,7 @@ def _tracking(effort: Effort) -> Figure:
 
 
 def _metrics(effort: Effort) -> Figure:
-    found = [job.perform() for job in searches(effort, [_WORLD])]
+    found = [performed(job) for job in searches(effort, [_WORLD])]
     measures = [_measure(found, metric, place, team(effort)) for place in PLACES for metric in SHOWN]
     title = f"Metrics, mean and spread; searches: {repetitions(effort)} (as Figure 8)"
     return plot_measures(measures, title, columns=len(SHOWN))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -49,12 +50,15 @@ class Searched:
         its errors.
     seen
         all sightings of what is no landmark, in order of time.
+    hits
+        by robot what its last scan hit, (k, 2) in the map, from where it took itself to be.
     """
 
     flown: Mapping[str, Flown]
     off: Mapping[tuple[str, str], Floats]
     surprise: Mapping[tuple[str, str], Floats]
     seen: tuple[Seen, ...]
+    hits: Mapping[str, Floats]
 
     def tracking(self, robot: str, place: str) -> Tracking:
         return tracking(ARENA, self.flown[place], robot)
@@ -99,7 +103,14 @@ class Search:
                 for one in eyes:
                     seen += one.look([other.fused.mean[:2] for other in eyes if other is not one])
             states.append(_states(eyes))
-        return _searched(log.flown(simulation.result()), np.array(states), tuple(seen))
+        hits = {one.robot: one.hits for one in eyes}
+        return _searched(log.flown(simulation.result()), np.array(states), tuple(seen), hits)
+
+
+@cache
+def performed(search: Search) -> Searched:
+    """What it found; tables and pictures share it."""
+    return search.perform()
 
 
 def searches(effort: Effort, worlds: Sequence[str] = WORLDS) -> list[Search]:
@@ -117,7 +128,7 @@ def _states(eyes: Sequence[Eyes]) -> list[list[Floats]]:
     ]
 
 
-def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...]) -> Searched:
+def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...], hits: Mapping[str, Floats]) -> Searched:
     """`states` (t, n, 2, 6) as `_states` gives them, at the times of the flight."""
     places, off, surprise = {TRUE: flown}, {}, {}
     for k, place in enumerate((ODOMETRY, LASER)):
@@ -128,4 +139,4 @@ def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...]) -> Searched:
         for number, robot in enumerate(flown.visits):
             off[robot, place] = np.linalg.norm(apart[:, number], axis=1)
             surprise[robot, place] = squares[:, number]
-    return Searched(flown=places, off=off, surprise=surprise, seen=seen)
+    return Searched(flown=places, off=off, surprise=surprise, seen=seen, hits=hits)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from muster.studies.market_5.pictures import draw
-from muster.studies.market_5.searches import Search, Searched
+from muster.studies.market_5.searches import Search, Searched, performed
 from muster.studies.market_5.targets import Figure7, Targets
 from muster.studies.market_5.tracks import Figure8, Localisation
 from muster.studies.repetition import IllustratedRepetition, Reproduction, one_by_one
@@ -23,7 +23,7 @@ MARKET_5 = IllustratedRepetition(
     document="market paper, sections 4.2, 4.3 and 5",
     legend=_LEGEND,
     reproductions=_TABLES,
-    perform=one_by_one(lambda job: job.perform()),
+    perform=one_by_one(performed),
     seeds=repetitions,
     pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
 )

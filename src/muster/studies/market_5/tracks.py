@@ -25,7 +25,7 @@ from muster.studies.tables import Cell, Table, row
 SHOWN = tuple(
     metric for metric in METRICS if metric.name in ("goal_error", "mean_error", "greatest_error", "obstacle", "risk")
 )
-"""What the paper's figure shows: by its text errors at the goal and on the way, and the risk factor in both readings."""
+"""What the paper's figure shows by its text; the risk factor both as (8) and as least distance."""
 
 
 def measured(found: Sequence[Searched], metric: Metric, robot: str, place: str) -> list[float]:
@@ -79,14 +79,14 @@ def _cells(metric: Metric, values: Mapping[str, Sequence[float]]) -> dict[str, C
 
 
 _NOTES = (
-    "The paper's figure is a picture; in words it prints that no error at a goal was greater than 0.0065 m. ±: standard "
-    "deviation over the searches, as its bars over five. ✓: no true error at the goal greater than that; nothing "
-    "touched.",
+    "The paper's figure is a picture; in words it prints that no error at a goal was greater than 0.0065 m. ±: "
+    "standard deviation over the searches, as its bars over five. ✓: no true error at the goal greater than that; "
+    "nothing touched.",
     "true: where robots were. odometry, laser: where they took themselves to be by odometry alone, and with landmarks. "
-    "The paper's robots steer by odometry and are measured by it; ours steer by true places. So its errors compare with "
-    "our true ones, and what odometry is off is beside them, which the paper does not measure.",
-    f"(7): at the same shares of the way, every {SAMPLE_M} m. (8) is summed over these points too. Section 5 calls the "
-    f"least distance the risk factor: of centres; a body ({BODY_RADIUS_M} m) touches at {BODY_RADIUS_M} m.",
+    "The paper's robots steer by odometry and are measured by it; ours steer by true places. So its errors compare "
+    "with our true ones. By how much odometry is off, which it does not measure, shows in the columns beside them.",
+    f"(7): at the same shares of the way, every {SAMPLE_M} m. (8) is summed over these points too. Section 5 calls "
+    f"the least distance the risk factor: of centres; a body ({BODY_RADIUS_M} m) touches at {BODY_RADIUS_M} m.",
     f"Noise, ours, each step: a robot misses {NOISE.velocity} of its velocity (standard deviation), slips by up to "
     f"{NOISE.slip} of its way, its odometry errs by {NOISE.odometry} of it, its heading by {NOISE.heading_rad} rad.",
 )
@@ -116,8 +116,9 @@ class Localisation:
         rows = []
         for world in WORLDS:
             found = [results[job] for job in searches(effort, [world])]
-            for robot in team(effort):
-                rows.append(row(self.columns, {"world": world, "robot": robot, **_off(found, robot)}))
+            rows += [
+                row(self.columns, {"world": world, "robot": robot, **_off(found, robot)}) for robot in team(effort)
+            ]
         notes = (
             "Metres from where the robot was, over all steps of all searches. surprise: squared error in units of the "
             "filter's own covariance, by coordinate: 1 of a filter that knows its errors, less of one that is too "
