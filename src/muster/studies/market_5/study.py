@@ -19,7 +19,7 @@ _LEGEND = (
 
 MARKET_5 = IllustratedRepetition(
     name="market-5",
-    summary="search and tracking with lasers in both worlds, market paper, section 5",
+    summary="search and tracking with lasers, market paper, section 5 (needs the extra physics)",
     document="market paper, sections 4.2, 4.3 and 5",
     legend=_LEGEND,
     reproductions=_TABLES,
