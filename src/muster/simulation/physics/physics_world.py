@@ -27,7 +27,7 @@ from muster.simulation.lasers import mounted_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
-from muster.simulation.physics.sight import Sight
+from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.stage import Stage
 
 PHYSICS_S = 0.005
@@ -57,7 +57,7 @@ class PhysicsWorld(CrowdedWorld):
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
         self._stage: Stage | None = None
-        self._sight: Sight | None = None
+        self._rays: Rays | None = None
         super().__init__(mission, **how)
         self._ground_m = self._lowest_m if self._dimensions == 3 else 0.0
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
@@ -91,8 +91,8 @@ class PhysicsWorld(CrowdedWorld):
         beams = np.column_stack([np.cos(bearings), np.sin(bearings)]) @ axes[number, :, :2].T
         x, y = map(float, place[:2])
         heading = math.atan2(axes[number, 1, 0], axes[number, 0, 0])
-        assert self._sight is not None
-        met = self._sight.lengths(number, place, beams, scanner.reach_m)
+        assert self._rays is not None
+        met = self._rays.lengths(number, place, beams, scanner.reach_m)
         return np.minimum(met, scanner.ranges((x, y, heading), discs=cylinders))
 
     def _limits(self, robot: Robot) -> Limits:
@@ -128,7 +128,7 @@ class PhysicsWorld(CrowdedWorld):
         if before is not None:
             stage.take_over(before)
         self._stage = stage
-        self._sight = Sight(stage, walls)
+        self._rays = Rays(stage, walls)
         self._control = Control(stage, keeps_height=self._dimensions == 2)
         self._standing_m = np.array([robot.body.standing_m for robot in robots])
         in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]

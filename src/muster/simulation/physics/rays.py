@@ -16,8 +16,8 @@ _GROUPS = np.array([group != UNSEEN for group in range(6)], dtype=np.uint8)
 """Hulls are for contacts: seen is what is drawn."""
 
 
-class Sight:
-    """Rays from the robots of a stage. A robot looks through itself, and through walls that do not stop it.
+class Rays:
+    """Of a laser on a robot of a stage. It looks through itself, and through walls that do not stop it.
 
     Parameters
     ----------
