@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from muster._looking import Lookout, OnLook, lookout_for, with_found
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
@@ -51,6 +54,8 @@ class Simulation:
         of motion and telemetry.
     recorder
         is told all that happens.
+    on_look
+        is told each look of a camera; cameras look where the mission has tags.
 
     Raises
     ------
@@ -71,6 +76,7 @@ class Simulation:
         avoidance: str = "orca",
         noise: Noise = NO_NOISE,
         recorder: Recorder | None = None,
+        on_look: OnLook | None = None,
     ) -> None:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
@@ -85,6 +91,7 @@ class Simulation:
             observer=recorder,
             now=self._world.time_s,
         )
+        self._lookout = lookout_for(mission, self._world, self._world.ports, noise=noise, seed=seed, on_look=on_look)
         self._recorder = recorder
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._executor.tick(self.time_s)
@@ -127,10 +134,11 @@ class Simulation:
         """
         first = len(self._executor.happenings)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
-            due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s)
+            due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._world.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
+            self._look()
             self._executor.tick(self.time_s)
             if self.done and self._recorder is not None:
                 self._recorder.on_report(self.result().as_dict())
@@ -154,7 +162,34 @@ class Simulation:
     def result(self) -> Report:
         """What it took, so far or in all."""
         world = self._world
-        return report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        return with_found(report, self._lookout)
+
+    @property
+    def lookout(self) -> Lookout | None:
+        """What cameras see, where the mission has tags."""
+        return self._lookout
+
+    def close(self) -> None:
+        """Give back what pictures hold of the graphics library."""
+        if self._lookout is not None:
+            self._lookout.close()
+
+    @property
+    def _look_due_s(self) -> float:
+        return math.inf if self._lookout is None else self._lookout.due_s
+
+    def _look(self) -> None:
+        """Let cameras look; what they find becomes tasks, and what lies elsewhere moves those not yet done."""
+        if self._lookout is None:
+            return
+        for found, event in self._lookout.look(self.time_s):
+            self._executor.tell("found", found)
+            if event is not None and (event.new_task or self._is_open(event)):
+                self._executor.report(event)
+
+    def _is_open(self, event: Event) -> bool:
+        return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
 
     def _befalls(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""
@@ -166,6 +201,8 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+            if self._lookout is not None:
+                self._lookout.join(event.robot_joins)
 
 
 def world_named(name: str) -> Callable[..., SimulatedWorld]:
@@ -222,14 +259,15 @@ def carry_out(
     halt
         when it is set, carrying out stops, and the report is of what was done until then.
     """
-    simulation, halt = Simulation(mission, plan, **how), halt or threading.Event()
-    begin, told = time.monotonic(), 0
-    while not simulation.done and not halt.is_set():
-        simulation.advance(simulation.time_s + LOOK_S)
-        if speed is not None:
-            halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
-        if on_happening is not None:
-            for happening in simulation.happenings[told:]:
-                on_happening(happening)
-            told = len(simulation.happenings)
-    return simulation.result()
+    halt = halt or threading.Event()
+    with closing(Simulation(mission, plan, **how)) as simulation:
+        begin, told = time.monotonic(), 0
+        while not simulation.done and not halt.is_set():
+            simulation.advance(simulation.time_s + LOOK_S)
+            if speed is not None:
+                halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+            if on_happening is not None:
+                for happening in simulation.happenings[told:]:
+                    on_happening(happening)
+                told = len(simulation.happenings)
+        return simulation.result()

@@ -55,7 +55,7 @@ class Pilot:
     """
 
     def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
-        mission = replace(problem.mission, events=())
+        mission = problem.mission.at_once()
         roads = problem.roads if mission.travel_rule == "map" else None
         self._travel = travel_of(mission, roads)
         self._negotiator = negotiator

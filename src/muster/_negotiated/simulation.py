@@ -6,11 +6,12 @@ import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from muster._carrying_out import Recorder, recorded_world
+from muster._looking import OnLook, lookout_for, with_found
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.theatre import MOST_SPEED, Theatre
@@ -59,6 +60,7 @@ def negotiate_and_carry_out(
     recorder: Recorder | None = None,
     on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
+    on_look: OnLook | None = None,
 ) -> Report:
     """Let robots agree, and carry out what they agree on, each for itself; the mission's events happen meanwhile.
 
@@ -90,7 +92,10 @@ def negotiate_and_carry_out(
         )
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
-        theatre = Theatre(problem.mission, bodies, order, log)
+        lookout = lookout_for(problem.mission, bodies, bodies.ports, noise=noise, seed=seed, on_look=on_look)
+        if lookout is not None:
+            stack.callback(lookout.close)
+        theatre = Theatre(problem.mission, bodies, order, log, lookout)
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
         theatre.agree_first(negotiation.limit_s, halt)
@@ -99,6 +104,7 @@ def negotiate_and_carry_out(
         if theatre.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
+        report = with_found(report, lookout)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report
@@ -108,9 +114,7 @@ def order_of(problem: Problem, negotiation: Negotiation, memory: Path) -> Order:
     """What the robots' processes are to do: robots that join, or start again, have theirs from the beginning, too."""
     mission = problem.mission
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
-    whole = Problem.compile(
-        replace(mission, robots=(*mission.robots, *joining), events=()), problem.objective, problem.ignored
-    )
+    whole = Problem.compile(mission.at_once(robots=(*mission.robots, *joining)), problem.objective, problem.ignored)
     method = method_named(negotiation.method)
     return Order(
         problem=whole.ready(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
+from muster._looking import Lookout
 from muster._negotiated.log import Log
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
 from muster.execution.changes import may_bring_work
@@ -32,8 +33,10 @@ class Theatre:
 
     team: Team
 
-    def __init__(self, mission: Mission, world: SimulatedWorld, order: Order, log: Log) -> None:
-        self._world, self._order, self._log = world, order, log
+    def __init__(
+        self, mission: Mission, world: SimulatedWorld, order: Order, log: Log, lookout: Lookout | None = None
+    ) -> None:
+        self._world, self._order, self._log, self._lookout = world, order, log, lookout
         self._method = method_named(order.method)
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._did: dict[str, Did] = {}
@@ -90,6 +93,7 @@ class Theatre:
             pass
         while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
             self._befalls(self._ahead.pop(0))
+        self._look()
         for robot in self._said.keys() & self.team.gone.keys():
             self._unsaid += filter(self._holds, self._said.pop(robot))  # nobody else may know
         while self._unsaid and self._connected:
@@ -103,6 +107,15 @@ class Theatre:
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.hear(left_s)
         self._notice_agreement()
+
+    def _look(self) -> None:
+        """Let cameras look; of what becomes of what they find one robot is told, which tells the others."""
+        if self._lookout is None:
+            return
+        for found, event in self._lookout.look(self.time_s):
+            self._log.tell(self.time_s, "found", found)
+            if event is not None:
+                self._befalls(event)
 
     @property
     def _connected(self) -> list[str]:
@@ -143,6 +156,8 @@ class Theatre:
             self._return(event)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+            if self._lookout is not None:
+                self._lookout.join(event.robot_joins)
             self.team.start(event.robot_joins.id)
         elif event.delay_task is not None:
             for robot in self.team.living:  # who is at work notices by itself

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from muster.mission.model import Mission, Robot, Task, TravelTable
 from muster.mission.source import IN_PYTHON
@@ -17,11 +16,9 @@ def cut_down(mission: Mission, robots: Sequence[Robot], tasks: Sequence[Task]) -
     """
     kinds = {robot.type for robot in robots}
     names = [*(robot.id for robot in robots), *(task.id for task in tasks)]
-    return replace(
-        mission,
+    return mission.at_once(
         robots=tuple(robots),
         tasks=(),
-        events=(),
         travel=_of(kinds, mission.travel),
         travel_tables={kind: _cut(table, names) for kind, table in mission.travel_tables.items() if kind in kinds},
         source=IN_PYTHON,

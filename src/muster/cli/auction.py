@@ -104,7 +104,7 @@ def command(
     _check_together(others)
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
     require_csv(book)
-    require_folder(views)
+    require_folder(views, "--views")
     require_drawable(plot, gantt)
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)

@@ -13,9 +13,9 @@ def require_csv(book: Path | None) -> None:
         raise ParameterError(f"--book: {book}; expected a file that ends in .csv")
 
 
-def require_folder(views: Path | None) -> None:
-    if views is not None and views.exists() and not views.is_dir():
-        raise ParameterError(f"--views: {views} is a file; expected a folder, or a name for a new one")
+def require_folder(folder: Path | None, option: str) -> None:
+    if folder is not None and folder.exists() and not folder.is_dir():
+        raise ParameterError(f"{option}: {folder} is a file; expected a folder, or a name for a new one")
 
 
 def require_writable(

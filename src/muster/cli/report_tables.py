@@ -30,6 +30,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     lost = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
     if lost:
         print_table(("task lost", "reason"), lost)
+    _print_found(report, mission)
 
 
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
@@ -46,6 +47,32 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _print_found(report: Report, mission: Mission) -> None:
+    """What cameras found, and what they did not."""
+    found = report.get("found", ())
+    if found:
+        columns = ("tag", "x [m]", "y [m]", "sure to [m]", "off by [m]", "seen", "by", "found [s]", "became")
+        rows = [
+            (
+                str(row["tag"]),
+                *(number(value) for value in row["position"]),
+                f"{row['deviation_m']:.3f}",
+                "-" if row["error_m"] is None else f"{row['error_m']:.3f}",
+                counted(row["sightings"], "time"),
+                ", ".join(row["robots"]),
+                number(row["found_s"]),
+                row["task"] or "-",
+            )
+            for row in found
+        ]
+        print_table(columns, rows, title="found by cameras", right=columns[1:6])
+    missed = sorted({tag.id for tag in mission.tags} - {row["tag"] for row in found})
+    if found and missed:
+        click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(map(str, missed))}")
+    for remark in report.get("remarks", ()):
+        click.echo(f"{'cameras':<17} {remark}")
 
 
 def _objective(objective: Report | None, unit: str) -> str:

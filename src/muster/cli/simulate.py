@@ -24,7 +24,7 @@ from muster.cli.options import (
     require_complete_option,
     say_of_plan,
 )
-from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.outputs import require_drawable, require_folder, require_writable
 from muster.cli.replay import show_record
 from muster.cli.report_tables import print_report
 from muster.mission.errors import ParameterError
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from muster import Negotiation
     from muster.execution.executor import Happening
     from muster.execution.report import Report
+    from muster.report.looks import Looks
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
@@ -73,6 +74,10 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
+@click.option(
+    "--cameras", type=_FILE, metavar="DIR", help="Write what cameras saw of each tag, largest; with --world physics."
+)
 @method_options
 @terms_options
 @require_complete_option
@@ -98,6 +103,8 @@ def command(
     html: Path | None,
     plot: Path | None,
     gantt: Path | None,
+    found: Path | None,
+    cameras: Path | None,
     method: str,
     transport: str,
     settings: tuple[str, ...],
@@ -115,10 +122,11 @@ def command(
     each decides for itself what to do next. They talk in real time.
     """
     _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
-    require_drawable(plot, gantt)
+    require_writable(None, (record, html, plot, gantt, found), (mission, robots, suitability), (plan,))
+    require_drawable(plot, gantt, found)
     noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
     if negotiate:
         planned, speed = _negotiation(method, transport, others, settings), speed or 1.0
@@ -135,12 +143,15 @@ def command(
             "avoidance": avoidance,
             "noise": noise,
             "speed": speed,
+            "on_look": looks,
         }
         tell = _tell if speed is not None and not quiet else None
         with ctrl_c_halts() as halt:
             report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
         if file is not None:
             show_record(file, html, plot, gantt)
+    if found is not None and looks is not None:
+        looks.plot(loaded, found)
     if form == "json":
         click.echo(json_text(report.as_dict()), nl=False)
     else:
@@ -159,6 +170,23 @@ def _check_together(negotiate: bool) -> None:
     for name in sorted(wrong):
         option = "--set" if name == "settings" else f"--{name.replace('_', '-')}"
         raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
+
+
+def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> Looks | None:
+    """Who keeps what cameras see, where that is wanted."""
+    if found is None and cameras is None:
+        return None
+    from muster.report.looks import Looks
+
+    option = "--found" if cameras is None else "--cameras"
+    if not mission.tags:
+        raise ParameterError(
+            f"{option}: {mission.name} has no tags; expected a mission in which there is something to find"
+        )
+    if cameras is not None and world != "physics":
+        raise ParameterError(f"--cameras: no pictures in the {world} world; expected --world physics")
+    require_folder(cameras, "--cameras")
+    return Looks(cameras)
 
 
 def _negotiation(method: str, transport: str, others: Mapping[str, Any], settings: tuple[str, ...]) -> Negotiation:

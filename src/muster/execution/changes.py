@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from muster.execution.doing import place
@@ -118,7 +118,7 @@ class Changes:
         """A mission with this task, and those that there are, must be one."""
         robots = {robot.id: robot for robot in (*self.mission.robots, *(hand.robot for hand in self.crew.values()))}
         try:
-            replace(self.mission, robots=tuple(robots.values()), tasks=(*self.ledger.tasks.values(), task), events=())
+            self.mission.at_once(robots=tuple(robots.values()), tasks=(*self.ledger.tasks.values(), task))
         except MissionError as error:
             found = error.findings[0]
             raise ParameterError(f"new_task: {task.id}: {found.value}; expected {found.expected}") from None

@@ -112,9 +112,9 @@ class Executor:
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
         may_begin = None if peers is None else peers.may_begin
-        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self._tell, may_begin)
+        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self.tell, may_begin)
         self._overseer = Overseer(
-            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self._tell, now
+            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.tell, now
         )
         self._script = sorted(mission.events, key=lambda event: event.at_s)
         self._asked: list[Change] = []
@@ -166,7 +166,7 @@ class Executor:
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
-            self._tell("without_effect", plain(event))
+            self.tell("without_effect", plain(event))
 
     def plan_again(self, kind: str, data: Mapping[str, Any]) -> None:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
@@ -215,7 +215,7 @@ class Executor:
             try:
                 self.report(event)
             except ParameterError as error:
-                self._tell("event_refused", {"reason": str(error)})
+                self.tell("event_refused", {"reason": str(error)})
 
     def _capacity(self, hand: Hand) -> float | None:
         return None if "capacity" in self.planned.ignored else hand.robot.work_capacity
@@ -249,7 +249,7 @@ class Executor:
         """Have the rest planned again because of changes."""
         for change in changes:
             self._asked.append(change)
-            self._tell(change.kind, change.data)
+            self.tell(change.kind, change.data)
 
     def _rest(self) -> Rest:
         return rest_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
@@ -264,7 +264,7 @@ class Executor:
                 hand.route = []
         self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
         self.revisions.append(revision)
-        self._tell("replanned", {"causes": causes, **revision.difference()})
+        self.tell("replanned", {"causes": causes, **revision.difference()})
         self._observer.on_plan(self.now_s, self.plan)
 
     def _end_if_over(self) -> None:
@@ -272,8 +272,8 @@ class Executor:
             last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
             self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
             for task, reason in self.lost().items():
-                self._tell("lost", {"task": task, "reason": reason})
-            self._tell("mission_ended", {})
+                self.tell("lost", {"task": task, "reason": reason})
+            self.tell("mission_ended", {})
 
     @property
     def _may_bring_work(self) -> bool:
@@ -299,6 +299,7 @@ class Executor:
         gone = {hand.robot.id: f"{OUT[hand.out]} at {hand.out_s:g} s" for hand in self.crew.values() if hand.out}
         return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
 
-    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+    def tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Keep, and tell the observer, that something happened now."""
         self.happenings.append(Happening(self.now_s, kind, data))
         self._observer.on_event(self.now_s, kind, data)

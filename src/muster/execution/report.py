@@ -68,6 +68,36 @@ class ObjectiveReport:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FoundReport:
+    """A point of interest that cameras found.
+
+    Parameters
+    ----------
+    tag
+        the id that was decoded.
+    position, deviation_m
+        x and y in the map frame by all sightings, and the greatest standard deviation along any direction, metres.
+    error_m
+        how far that is from the nearest such tag of the mission; None where it has none.
+    sightings, robots
+        in how many images, and of whom.
+    found_s
+        when it counted as found.
+    task
+        what became of it, if anything.
+    """
+
+    tag: int
+    position: tuple[float, ...]
+    deviation_m: float
+    error_m: float | None
+    sightings: int
+    robots: tuple[str, ...]
+    found_s: float
+    task: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Report:
     """Figures of a mission that was carried out.
 
@@ -88,6 +118,10 @@ class Report:
         of the plan; `average` is of the usages with which robots came to tasks, `makespan` the mission time.
     tasks
         of tasks done, in order of completion.
+    found
+        what cameras found, in order of time.
+    remarks
+        what else a person should hear of.
     """
 
     mission_time_s: float
@@ -102,12 +136,15 @@ class Report:
     ends_s: dict[str, float]
     objective: ObjectiveReport
     tasks: tuple[TaskReport, ...]
+    found: tuple[FoundReport, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """What `muster simulate --format json` prints."""
         lost = [{"task": task, "reason": reason} for task, reason in self.tasks_lost]
-        rows = {name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks")}
-        return asdict(self) | {"tasks_done": list(self.tasks_done), "tasks_lost": lost, **rows}
+        rows = {name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks", "found")}
+        names = {"tasks_done": list(self.tasks_done), "remarks": list(self.remarks)}
+        return asdict(self) | names | {"tasks_lost": lost, **rows}
 
 
 def report_of(account: Account, *, contacts: int, min_distance_m: float | None) -> Report:

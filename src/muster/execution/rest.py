@@ -207,8 +207,7 @@ def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
     mission = rest.mission
     rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
-    return replace(
-        mission,
+    return mission.at_once(
         rules=rules,
         map=None,
         travel=None,
@@ -216,7 +215,6 @@ def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
         robots=tuple(_robot(rest, standing) for standing in rest.crew),
         tasks=tuple(tasks),
-        events=(),
     )
 
 

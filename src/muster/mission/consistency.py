@@ -9,7 +9,7 @@ from muster.mission.hints import did_you_mean
 from muster.mission.kinds import Fault, Path, shown
 
 if TYPE_CHECKING:
-    from muster.mission.model import Mission, Point, Robot, Task
+    from muster.mission.model import Mission, Point, Robot, Task, Work
 
 
 def inconsistencies(mission: Mission) -> Iterator[Fault]:
@@ -22,6 +22,7 @@ def inconsistencies(mission: Mission) -> Iterator[Fault]:
     yield from _dimensions(mission)
     yield from _travel(mission)
     yield from _events(mission)
+    yield from _found(mission)
 
 
 def _repeated_ids(mission: Mission) -> Iterator[Fault]:
@@ -46,8 +47,10 @@ def _robots_that_join(mission: Mission) -> list[tuple[Path, Robot]]:
     return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
 
 
-def _all_tasks(mission: Mission) -> list[tuple[Path, Task]]:
-    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission)]
+def _all_work(mission: Mission) -> list[tuple[Path, Work]]:
+    """Tasks, those that come later, and what becomes of tags."""
+    becomes = [(("found", k, "becomes"), found.becomes) for k, found in enumerate(mission.found)]
+    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission), *becomes]
 
 
 def _all_robots(mission: Mission) -> list[tuple[Path, Robot]]:
@@ -58,7 +61,7 @@ def _prerequisites(mission: Mission) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
     with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
-    for path, task in _all_tasks(mission):
+    for path, task in _all_work(mission):
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
         seen: set[str] = set()
         for p, name in enumerate(task.prerequisites):
@@ -106,7 +109,7 @@ def _cycle(tasks: Sequence[Task], knot: list[int]) -> Fault:
 def _locks(mission: Mission) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
     joining = [robot.id for _, robot in _robots_that_join(mission)]
-    for path, task in _all_tasks(mission):
+    for path, task in _all_work(mission):
         for r, name in enumerate(task.only_robots or ()):
             if name not in ids and name not in joining:
                 yield _unknown((*path, "only_robots", r), name, ids, "robot")
@@ -119,7 +122,7 @@ def _suitability(mission: Mission) -> Iterator[Fault]:
     columns = {kind for row in mission.suitability.values() for kind in row}
     groups = (
         ([(path, robot.type) for path, robot in _all_robots(mission)], rows, "a row"),
-        ([(path, task.type) for path, task in _all_tasks(mission)], sorted(columns), "a column"),
+        ([(path, task.type) for path, task in _all_work(mission)], sorted(columns), "a column"),
     )
     for types, known, what in groups:
         expected = f"a type that has {what} in suitability ({', '.join(known)})"
@@ -145,6 +148,11 @@ def positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
             yield from _places(("events", k, "new_task"), event.new_task)
         if event.move_task is not None:
             yield ("events", k, "move_task", "position"), event.move_task.position
+    for k, tag in enumerate(mission.tags):
+        yield ("tags", k, "position"), tag.position
+    for k, found in enumerate(mission.found):
+        if found.becomes.action is not None and found.becomes.action.pickup is not None:
+            yield ("found", k, "becomes", "action", "pickup"), found.becomes.action.pickup
 
 
 def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
@@ -246,3 +254,16 @@ def _events(mission: Mission) -> Iterator[Fault]:
         ):
             if name is not None and known.count(name) > 1:
                 yield Fault(("events", k, group, "id"), shown(name), "an id of its own")
+
+
+def _found(mission: Mission) -> Iterator[Fault]:
+    cameras = any(robot.camera is not None for _, robot in _all_robots(mission))
+    for k in range(len(mission.found)):
+        if not cameras:
+            yield Fault(
+                ("found", k), "no robot has a camera", "camera of at least one robot, where tags are to be found"
+            )
+        if mission.travel_rule == "matrix":
+            yield Fault(
+                ("found", k), "a task at any place", "another rules.travel: travel tables know robots and tasks alone"
+            )

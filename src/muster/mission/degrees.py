@@ -1,6 +1,6 @@
 """Places that a file gives in degrees become metres in the map frame, before the mission is read.
 
-A robot, a task and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
+A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
 `pickup` may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at
 the altitude of the origin, and its height over the plane of the map frame is dropped.
 """
@@ -75,7 +75,7 @@ def _places(data: object) -> Iterator[InDegrees]:
 
 
 def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
-    """Everything in a mission that has places: robots, tasks and their actions, and those of events."""
+    """Everything in a mission that has places: robots, tasks and their actions, those of events, and tags."""
     for at, record in _items(data, "robots"):
         yield at, record
     for at, record in _items(data, "tasks"):
@@ -84,6 +84,10 @@ def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
         for key in ("robot_joins", "new_task", "move_task"):
             if isinstance(event.get(key), dict):
                 yield from _of_task((*at, key), event[key])
+    yield from _items(data, "tags")
+    for at, found in _items(data, "found"):
+        if isinstance(found.get("becomes"), dict):
+            yield from _of_task((*at, "becomes"), found["becomes"])
 
 
 def _of_task(at: Path, record: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:

@@ -141,22 +141,26 @@ class Number:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number of at least `minimum`."""
+    """A whole number of at least `minimum`, and at most `maximum`."""
 
     filler: ClassVar[int] = 0
     minimum: int = 0
+    maximum: int | None = None
 
     @property
     def expected(self) -> str:
-        return f"a whole number of at least {self.minimum}"
+        return f"a whole number of at least {self.minimum}" + (f", at most {self.maximum}" if self.maximum else "")
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, bool) or not isinstance(value, int) or value < self.minimum:
             return _refuse(self, value, at, faults)
+        if self.maximum is not None and value > self.maximum:
+            return _refuse(self, value, at, faults)
         return value
 
     def schema(self) -> JsonSchema:
-        return {"type": "integer", "minimum": self.minimum}
+        most = {} if self.maximum is None else {"maximum": self.maximum}
+        return {"type": "integer", "minimum": self.minimum} | most
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS
@@ -142,6 +142,9 @@ class Camera(_Checked):
     fov_deg: float = spec(Number(above=0, below=180), "field of view, horizontal")
     tilt_deg: float = spec(Number(minimum=-90, maximum=90), "downward tilt", default=0.0)
     mount: Point = spec(Position(), "place on the body, body frame", default=(0.0, 0.0, 0.0))
+    width_px: int = spec(Whole(minimum=1, maximum=1920), "width of its picture", default=640)
+    height_px: int = spec(Whole(minimum=1, maximum=1440), "height of its picture", default=480)
+    rate_hz: float = spec(Number(above=0, maximum=100), "pictures a second", default=2.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,11 +211,9 @@ class Action(_Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task(_Checked):
-    """One piece of work at a place."""
+class Work(_Checked):
+    """What there is to do, wherever that is."""
 
-    id: str = spec(Text(), "unique among the tasks")
-    position: Point = spec(Position(), "where it is", instead=IN_DEGREES)
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it, in the unit of usage", default=0.0)
     prerequisites: tuple[str, ...] = spec(Many(Text()), "ids of tasks that must be done before", default=())
@@ -222,8 +223,6 @@ class Task(_Checked):
     only_robots: tuple[str, ...] | None = spec(
         Many(Text(), minimum=1), "ids of the only robots that may do it", default=None
     )
-    entry: Point | None = spec(Place(), "where a robot arrives; without it the position", default=None)
-    exit: Point | None = spec(Place(), "where a robot leaves; without it the position", default=None)
     action: Action | None = spec(Record(Action, "an action"), "what the robot does there", default=None)
     across_partition: str = spec(
         Choice(("at-least-once", "at-most-once")), "what a split network may do to it", default="at-least-once"
@@ -237,6 +236,42 @@ class Task(_Checked):
             yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Placed(_Checked):
+    """What comes first of a task."""
+
+    id: str = spec(Text(), "unique among the tasks")
+    position: Point = spec(Position(), "where it is", instead=IN_DEGREES)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task(Work, _Placed):
+    """One piece of work at a place."""
+
+    entry: Point | None = spec(Place(), "where a robot arrives; without it the position", default=None)
+    exit: Point | None = spec(Place(), "where a robot leaves; without it the position", default=None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tag(_Checked):
+    """A tag that lies there to be found: simulated worlds show it to cameras, and nobody else knows of it."""
+
+    id: int = spec(Whole(maximum=586), "which tag of the AprilTag family 36h11")
+    position: Point = spec(Position(), "where its middle is", instead=IN_DEGREES)
+    heading_deg: float = spec(Number(), "where its upper edge is, from east, anticlockwise", default=0.0)
+    size_m: float = spec(Number(above=0), "side of its black square", default=0.4)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found(_Checked):
+    """What becomes of tags that cameras find."""
+
+    becomes: Work = spec(Record(Work, "a task without id and position"), "the task that each becomes, at its place")
+    tags: tuple[int, ...] | None = spec(
+        Many(Whole(maximum=586), minimum=1), "of which tags; without it of all", default=None
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -318,6 +353,14 @@ class Mission(_Checked):
     events: tuple[Event, ...] = spec(
         Many(Record(Event, "an event")), "what happens while it is carried out", default=()
     )
+    tags: tuple[Tag, ...] = spec(
+        Many(Record(Tag, "a tag")), "what there is to be found, in simulated worlds", default=()
+    )
+    found: tuple[Found, ...] = spec(
+        Many(Record(Found, "what becomes of tags")),
+        "what becomes of tags that are found: the first that fits",
+        default=(),
+    )
     travel_tables: Mapping[str, TravelTable] = field(default_factory=dict)
     source: Source = field(default=IN_PYTHON, compare=False, repr=False)
 
@@ -326,6 +369,10 @@ class Mission(_Checked):
         faults = list(inconsistencies(self))
         if faults:
             raise MissionError(findings(faults, self.source))
+
+    def at_once(self, **changes: Any) -> Mission:
+        """The mission, changed, without what happens or is found while it is carried out."""
+        return replace(self, events=(), tags=(), found=(), **changes)
 
     @property
     def travel_rule(self) -> str:

@@ -31,25 +31,35 @@ class Observation:
 class Observer:
     """One robot's camera and what it knows of its errors.
 
-    `mount` is (4, 4) from body to image. Of what is farther away than `farthest_m` no estimate is made: near the
-    horizon a pixel is worth many metres.
+    `mount` is (4, 4) from body to image; images need a `detector`. Of what is farther away than `farthest_m` no
+    estimate is made: near the horizon a pixel is worth many metres.
     """
 
     robot: str
     intrinsics: Intrinsics
     mount: Floats
-    detector: TagDetector
+    detector: TagDetector | None = None
     uncertainty: Uncertainty = Uncertainty()
     ground_m: float = 0.0
     farthest_m: float = 20.0
 
     def look(self, image: Image, body: npt.ArrayLike, time_s: float) -> Observation:
         """Find tags in an image taken at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4)."""
+        assert self.detector is not None, "who looks at images needs a detector"
         try:
-            view = View.from_body(self.intrinsics, body, self.mount)
-            sightings = self.detector.detect(image, self.intrinsics)
+            return self.locate(self.detector.detect(image, self.intrinsics), body, time_s)
         except ParameterError as error:
             return Observation(Sightings((), ()), RawEstimates.joined([]), (f"{self._when(time_s)}: {error}",))
+
+    def locate(self, sightings: Sightings, body: npt.ArrayLike, time_s: float) -> Observation:
+        """Say where that is which was seen at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4).
+
+        Raises
+        ------
+        ParameterError
+            if the pose is none.
+        """
+        view = View.from_body(self.intrinsics, body, self.mount)
         said = tuple(f"{self._when(time_s)}: tag {tag} is twice in one image" for tag in sightings.repeated)
         return Observation(sightings, self._estimates(view, sightings, time_s), said)
 

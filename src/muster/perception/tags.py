@@ -9,12 +9,14 @@ OpenCV's dictionary `DICT_APRILTAG_36h11` has the same tags half a turn about: t
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.motion.frames import pose_transform
 from muster.perception.extra import require_physics
 
 FAMILY = "tag36h11"
@@ -52,6 +54,12 @@ def tag_image(tag: int, cell_px: int = 8) -> npt.NDArray[np.uint8]:
     if cell_px < 1:
         raise ParameterError(f"cell_px: {cell_px}; expected a whole number of pixels of at least 1")
     return np.kron(_cells()[tag], np.full((cell_px, cell_px), 255, dtype=np.uint8))
+
+
+def lying(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]:
+    """The pose (4, 4) of a tag that lies face up, of its middle (2,) or (3,) and the direction of its upper edge."""
+    x, y, z = (*np.asarray(position, dtype=np.float64), 0.0)[:3]
+    return pose_transform([x, y, z, math.pi, 0.0, heading - math.pi / 2])
 
 
 @cache

@@ -18,6 +18,7 @@ from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
+from muster.motion.frames import rotation
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.limits import Limits
@@ -30,6 +31,8 @@ from muster.simulation.world import Contact, Observer, Passing
 
 AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 NEIGHBOURS = 10
+FLIGHT_M = 1.5
+"""How high drones fly in a mission in the plane."""
 MARGIN = 0.05
 """By which avoidance takes robots that face their way for larger, as a share of the radius: they answer late."""
 WALL_HORIZON_S = 0.3
@@ -122,8 +125,8 @@ class CrowdedWorld(ABC):
         )
         self._walls: dict[Body, int] = {}
         self._faces: dict[Body, Faces] = {}
-        self._robots: list[Robot] = []
         self._numbers: dict[str, int] = {}
+        self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
         for robot in mission.robots:
             self.join(robot)
@@ -232,6 +235,23 @@ class CrowdedWorld(ABC):
         """True ones: (n,), radians."""
         found: Floats = self._crowd.headings()
         return found
+
+    @property
+    def frames(self) -> Floats:
+        """Where the bodies' frames truly are: (n, 3), metres, with the height of drones in the plane too."""
+        above = FLIGHT_M if self._dimensions == 2 else 0.0
+        flies = np.array([robot.kind == "air" for robot in self._robots], dtype=np.float64)
+        return np.asarray(self.positions + above * flies[:, None] * (0.0, 0.0, 1.0))
+
+    @property
+    def axes(self) -> Floats:
+        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        return rotation(0.0, 0.0, self.headings)
+
+    @property
+    def ground_m(self) -> float:
+        """How high the ground is: 0, or the lowest place of a mission in space."""
+        return self._lowest_m if self._dimensions == 3 else 0.0
 
     @property
     def velocities(self) -> Floats:

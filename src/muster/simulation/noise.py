@@ -23,6 +23,8 @@ class Noise:
         standard deviation of the share by which odometry errs in a step.
     position_m, heading_rad
         standard deviations of each coordinate and of the heading that telemetry gives.
+    attitude_rad
+        standard deviation of the roll and of the pitch that a robot takes itself to have.
 
     Raises
     ------
@@ -35,9 +37,10 @@ class Noise:
     odometry: float = 0.0
     position_m: float = 0.0
     heading_rad: float = 0.0
+    attitude_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "slip", "odometry", "position_m", "heading_rad"):
+        for name in ("velocity", "slip", "odometry", "position_m", "heading_rad", "attitude_rad"):
             value = getattr(self, name)
             if not 0 <= value < math.inf:
                 raise ParameterError(f"{name}: {value}; expected a number of at least 0")

@@ -128,6 +128,21 @@ class SimulatedWorld(Protocol):
         ...
 
     @property
+    def frames(self) -> Floats:
+        """Where the bodies' frames truly are: (n, 3), metres, with the height of drones in the plane too."""
+        ...
+
+    @property
+    def axes(self) -> Floats:
+        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        ...
+
+    @property
+    def ground_m(self) -> float:
+        """How high the ground is."""
+        ...
+
+    @property
     def velocities(self) -> Floats:
         """Of the last step, true ones: (n, 3), m/s."""
         ...

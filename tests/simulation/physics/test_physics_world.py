@@ -21,10 +21,12 @@ from muster.simulation.physics import PhysicsWorld
 from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build, RobotBody
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import Standing
+from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.stage import Stage
 
 WAFFLE = {"kinematics": "differential-drive", "radius_m": 0.3, "speed_mps": 0.26, "yaw_rate_radps": 1.82}
 DRONE = {"kind": "air", "kinematics": "quadcopter", "radius_m": 0.7, "speed_mps": 0.5, "yaw_rate_radps": 2.5}
+PLAIN = Scenery(None, (), 0.0)
 WALL_AHEAD = np.array([[1.0, -2.0, 1.0, 2.0, -math.inf, math.inf]])
 
 
@@ -61,7 +63,7 @@ def test_a_robot_of_half_the_radius_is_half_as_large():
 def test_walls_stop_bodies(build):
     at = (0.0, 0.0, 1.0 if build is Build.ROTORS else 0.0)
     for walls, far in (([WALL_AHEAD], False), ([np.empty((0, 6))], True)):
-        stage = Stage([standing(build, position=at)], walls, 0.0, 0.005)
+        stage = Stage([standing(build, position=at)], walls, PLAIN, 0.005)
         control = Control(stage, keeps_height=True)
         ahead = Commands(np.array([[0.3, 0.0, 0.0, 0.0]]), np.array([0.3]))
         for _ in range(60):
@@ -72,7 +74,7 @@ def test_walls_stop_bodies(build):
 
 
 def test_wheels_cannot_slide_sideways():
-    stage = Stage([standing(Build.WHEELS)], [np.empty((0, 6))], 0.0, 0.005)
+    stage = Stage([standing(Build.WHEELS)], [np.empty((0, 6))], PLAIN, 0.005)
     control = Control(stage, keeps_height=True)
     for _ in range(20):
         poses, _ = control.carry_out(Commands(np.array([[0.0, 0.2, 0.0, 0.0]]), np.zeros(1)), 20)
@@ -82,7 +84,7 @@ def test_wheels_cannot_slide_sideways():
 @pytest.mark.parametrize("scale", [1 / 3, 1.0, 3.0])
 def test_bodies_do_not_outrun_their_wheels(scale):
     """With MuJoCo's implicit integrators they do, by half."""
-    stage = Stage([Standing(RobotBody(Build.WHEELS, scale), (0.0, 0.0, 0.0), 0.0, 0)], [np.empty((0, 6))], 0.0, 0.005)
+    stage = Stage([Standing(RobotBody(Build.WHEELS, scale), (0.0, 0.0, 0.0), 0.0, 0)], [np.empty((0, 6))], PLAIN, 0.005)
     group, rates = stage.group(Build.WHEELS), []
     rim = WHEEL_RADIUS_M * scale
     stage.data.ctrl[stage.motors(group.who)[0]] = np.array([-1.0, 1.0]) * TRACK_M / 2 * scale / rim

@@ -104,20 +104,22 @@ class TaskAction(Protocol):
         ...
 
 
-def along(task: Task, robot: Robot, points: Sequence[Point], heading: float | None = None) -> Doing:
+def along(task: Task, robot: Robot, points: Sequence[Point], headings: Sequence[float | None] | None = None) -> Doing:
     """Pass points in order, and wait in the last for what is left of the task's duration.
 
-    Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `heading` is
-    that in which the robot waits, radians; None: as it arrives. An entry and an exit that the mission gives are passed
-    before and after. What is left is reckoned by straight legs; where a map makes them longer, less is left.
+    Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `headings` are
+    those at the points, radians; None: as it arrives. An entry and an exit that the mission gives are passed before and
+    after. What is left is reckoned by straight legs; where a map makes them longer, less is left.
     """
     dimensions = len(task.position)
     own = [point[:dimensions] for point in points]
     before = [task.entry] if task.entry is not None and task.entry != own[0] else []
     after = [task.exit] if task.exit is not None and task.exit != own[-1] else []
     rest = _rest_s(task, robot, _length([*before, *own, *after]))
-    last = Waypoint(_place(own[-1]), heading, rest)
-    return Doing((*_passed([*before, *own[:-1]]), last, *_passed(after)), dimensions)
+    turns = headings or [None] * len(own)
+    on_the_way = [Waypoint(_place(point), turn) for point, turn in zip(own[:-1], turns[:-1], strict=True)]
+    last = Waypoint(_place(own[-1]), turns[-1], rest)
+    return Doing((*_passed(before), *on_the_way, last, *_passed(after)), dimensions)
 
 
 def staying(task: Task, robot: Robot) -> Doing:

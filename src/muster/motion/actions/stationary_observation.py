@@ -45,7 +45,7 @@ class StationaryObservation:
         cos, sin = math.cos(heading), math.sin(heading)
         x -= (away + forward) * cos - left * sin
         y -= (away + forward) * sin + left * cos
-        return along(task, robot, [(x, y, z)], heading)
+        return along(task, robot, [(x, y, z)], [heading])
 
 
 def stand_off(camera: Camera, width_m: float) -> tuple[float, float] | Impossible:

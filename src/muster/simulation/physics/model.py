@@ -7,7 +7,7 @@ are stopped by different walls.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
@@ -26,7 +26,9 @@ from muster.simulation.physics.bodies import (
     RobotBody,
     quaternion,
 )
+from muster.simulation.physics.xml import add
 
+Show = Callable[[ET.Element, ET.Element], None]
 GROUND_BIT, ROBOTS_BIT, FIRST_WALLS_BIT, WALL_SETS = 1, 2, 2, 29
 WALL_THICKNESS_M, WALL_ABOVE_M = 0.02, 3.0
 """Walls without a top end so far above all robots."""
@@ -34,8 +36,8 @@ SERVO_S = 0.01
 """In which a wheel's servo gets to its speed, were there no limit to its torque."""
 TORQUE_SHARE = 1.2
 """The most torque of a wheel, as a share of the weight upon it times its radius."""
-UNSEEN = 3
-"""A group of geoms that MuJoCo does not draw."""
+UNSEEN, STOPPING = 3, 4
+"""Groups of geoms that MuJoCo does not draw: hulls of robots; walls that stop them, of which `buildings` are drawn."""
 SHOW_WIDTH, SHOW_HEIGHT = 1920, 1440
 """The largest picture that may be rendered."""
 
@@ -53,7 +55,13 @@ class Standing:
     walls: int | None
 
 
-def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, step_s: float) -> str:
+def mjcf(
+    robots: Sequence[Standing],
+    walls: Sequence[Floats],
+    show: Show,
+    ground_m: float,
+    step_s: float,
+) -> str:
     """The model as text.
 
     Parameters
@@ -62,6 +70,8 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
         in order; the names of their parts end in their number.
     walls
         sets of upright faces (k, 6) as `faces_and_slabs` gives them.
+    show
+        puts into the model, of which it gets the root and the body of the world, what is only to be seen.
     ground_m
         height of the ground.
     step_s
@@ -70,12 +80,12 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
     root = ET.Element("mujoco", model="muster")
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
     # The implicit integrators damp the wheels after the contacts are solved, so that the body outruns them by half.
-    _add(root, "option", timestep=step_s, integrator="Euler", cone="elliptic", impratio=10, iterations=20)
-    _add(root, "size", memory="64M")
+    add(root, "option", timestep=step_s, integrator="Euler", cone="elliptic", impratio=10, iterations=20)
+    add(root, "size", memory="64M")
     _show(root)
     world = ET.SubElement(root, "worldbody")
-    _add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.35, 0.35, 0.35))
-    _add(
+    add(world, "light", pos=(0, 0, 50), dir=(0.2, 0.3, -1), type="directional", diffuse=(0.35, 0.35, 0.35))
+    add(
         world,
         "geom",
         name="ground",
@@ -90,22 +100,23 @@ def mjcf(robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, s
     for number, faces in enumerate(walls):
         for face in faces:
             _wall(world, face, number, ground_m, top)
+    show(root, world)
     actuators = ET.SubElement(root, "actuator")
     for number, robot in enumerate(robots):
-        body = _add(
+        body = add(
             world, "body", name=f"robot{number}", pos=robot.position, quat=quaternion(robot.heading)
         )  # its frame: x ahead, y left, z up
-        _add(body, "freejoint", name=f"free{number}")
+        add(body, "freejoint", name=f"free{number}")
         _MAKERS[robot.body.build](body, actuators, number, robot)
     return ET.tostring(root, encoding="unicode")
 
 
 def _show(root: ET.Element) -> None:
     visual = ET.SubElement(root, "visual")
-    _add(visual, "global", offwidth=SHOW_WIDTH, offheight=SHOW_HEIGHT)
-    _add(visual, "quality", shadowsize=0, offsamples=0, numquads=1, numslices=16, numstacks=8)
-    _add(visual, "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.15, 0.15, 0.15), specular=(0, 0, 0))
-    _add(visual, "map", znear=0.002, zfar=50)
+    add(visual, "global", offwidth=SHOW_WIDTH, offheight=SHOW_HEIGHT)
+    add(visual, "quality", shadowsize=0, offsamples=0, numquads=1, numslices=16, numstacks=8)
+    add(visual, "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.15, 0.15, 0.15), specular=(0, 0, 0))
+    add(visual, "map", znear=0.002, zfar=50)
 
 
 def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: float) -> None:
@@ -115,14 +126,14 @@ def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: fl
     length = math.hypot(x1 - x0, y1 - y0)
     if length == 0 or high <= low:
         return
-    _add(
+    add(
         world,
         "geom",
         type="box",
         pos=((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2),
         size=(length / 2, WALL_THICKNESS_M / 2, (high - low) / 2),
         quat=quaternion(math.atan2(y1 - y0, x1 - x0)),
-        rgba=(0.55, 0.5, 0.45, 1),
+        group=STOPPING,
         contype=1 << (FIRST_WALLS_BIT + number),
         conaffinity=0,
     )
@@ -141,24 +152,24 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
     scale, (length, width, height) = robot.body.scale, robot.body.size_m
     clear, radius = 0.3 * WHEEL_RADIUS_M * scale, WHEEL_RADIUS_M * scale
     chassis_kg = (WAFFLE_KG - 2 * WHEEL_KG) * scale**3
-    _add(body, "inertial", pos=(0, 0, height * 0.35), mass=chassis_kg, diaginertia=robot.body.inertia_kgm2)
+    add(body, "inertial", pos=(0, 0, height * 0.35), mass=chassis_kg, diaginertia=robot.body.inertia_kgm2)
     middle, tall = (0, 0, (height + clear) / 2), (height - clear) / 2
     hull = (length / 2, width / 2, tall)  # the wheels are within
-    _add(body, "geom", type="box", pos=middle, size=hull, group=UNSEEN, **_touches(robot, ground=False))
+    add(body, "geom", type="box", pos=middle, size=hull, group=UNSEEN, **_touches(robot, ground=False))
     between = (length / 2, (TRACK_M - 1.5 * WHEEL_WIDTH_M) / 2 * scale, tall)
-    _add(body, "geom", type="box", pos=middle, size=between, rgba=(0.2, 0.22, 0.25, 1), contype=0, conaffinity=0)
+    add(body, "geom", type="box", pos=middle, size=between, rgba=(0.2, 0.22, 0.25, 1), contype=0, conaffinity=0)
     nose = (length / 2, 0, height * 0.8)
     mark = (0.01 * scale, width / 6, 0.02 * scale)
-    _add(body, "geom", type="box", pos=nose, size=mark, rgba=(0.9, 0.6, 0.1, 1), contype=0, conaffinity=0)
+    add(body, "geom", type="box", pos=nose, size=mark, rgba=(0.9, 0.6, 0.1, 1), contype=0, conaffinity=0)
     ahead, ball = CASTER_AHEAD_M * scale, CASTER_RADIUS_M * scale
     for place in (ahead, -ahead):
         _foot(body, (place, 0.0), ball, CASTER_LIFT_M * scale)
     spin = 0.5 * WHEEL_KG * scale**3 * radius**2
     for side, y in (("left", TRACK_M / 2 * scale), ("right", -TRACK_M / 2 * scale)):
-        wheel = _add(body, "body", pos=(0, y, radius))
-        _add(wheel, "joint", name=f"{side}{number}", type="hinge", axis=(0, 1, 0), armature=spin)
-        _add(wheel, "inertial", pos=(0, 0, 0), mass=WHEEL_KG * scale**3, diaginertia=(spin, 2 * spin, spin))
-        _add(  # an ellipsoid touches the ground at one point
+        wheel = add(body, "body", pos=(0, y, radius))
+        add(wheel, "joint", name=f"{side}{number}", type="hinge", axis=(0, 1, 0), armature=spin)
+        add(wheel, "inertial", pos=(0, 0, 0), mass=WHEEL_KG * scale**3, diaginertia=(spin, 2 * spin, spin))
+        add(  # an ellipsoid touches the ground at one point
             wheel,
             "geom",
             type="ellipsoid",
@@ -169,7 +180,7 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
             friction=(1.0, 0.0, 0.0),
             priority=1,
         )
-        _add(
+        add(
             actuators,
             "velocity",
             name=f"{side}{number}",
@@ -183,8 +194,8 @@ def _sliding(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> N
     """The frame lies on the ground, in the middle."""
     length, _width, height = robot.body.size_m
     clear = 0.1 * WAFFLE_HEIGHT_M * robot.body.scale
-    _add(body, "inertial", pos=(0, 0, height / 2), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
-    _add(
+    add(body, "inertial", pos=(0, 0, height / 2), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
+    add(
         body,
         "geom",
         type="cylinder",
@@ -199,7 +210,7 @@ def _sliding(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> N
 
 def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: float) -> None:
     """A ball on which a robot stands and that slides without friction."""
-    _add(
+    add(
         body,
         "geom",
         type="sphere",
@@ -215,16 +226,16 @@ def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: flo
 def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> None:
     """The frame lies in its centre of mass."""
     span, _width, height = robot.body.size_m
-    _add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
-    _add(  # the hull is not to be seen: arms and rotors are
+    add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
+    add(  # the hull is not to be seen: arms and rotors are
         body, "geom", type="cylinder", size=(span / 2, height / 2), group=UNSEEN, **_touches(robot, ground=True)
     )
     seen = {"contype": 0, "conaffinity": 0}
-    _add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
+    add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
     arm = 0.68 * span / 2
     for angle in (math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4):
         x, y = arm * math.cos(angle), arm * math.sin(angle)
-        _add(
+        add(
             body,
             "geom",
             type="capsule",
@@ -234,7 +245,7 @@ def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> No
             **seen,
         )
         front = (0.8, 0.2, 0.2, 0.6) if x > 0 else (0.2, 0.2, 0.2, 0.6)
-        _add(
+        add(
             body,
             "geom",
             type="cylinder",
@@ -250,13 +261,3 @@ _MAKERS = {Build.WHEELS: _wheeled, Build.SLIDER: _sliding, Build.ROTORS: _flying
 
 def _both_ways(most: float) -> tuple[float, float]:
     return -most, most
-
-
-def _add(parent: ET.Element, tag: str, **values: object) -> ET.Element:
-    return ET.SubElement(parent, tag, {name: _text(value) for name, value in values.items()})
-
-
-def _text(value: object) -> str:
-    if isinstance(value, tuple):
-        return " ".join(repr(float(number)) for number in value)
-    return str(value)

@@ -22,17 +22,17 @@ from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.world import body_of
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.simulation.crowded_world import CrowdedWorld, Event
+from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
 from muster.simulation.lasers import mounted_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.rays import Rays
+from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.stage import Stage
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
-FLIGHT_M = 1.5
 STILL_MPS = 0.002
 """Slower is standing: a drone that hovers is never quite still."""
 
@@ -56,10 +56,10 @@ class PhysicsWorld(CrowdedWorld):
     def __init__(self, mission: Mission, **how: Any) -> None:
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
+        self._tags = mission.tags
         self._stage: Stage | None = None
         self._rays: Rays | None = None
         super().__init__(mission, **how)
-        self._ground_m = self._lowest_m if self._dimensions == 3 else 0.0
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     @property
@@ -84,7 +84,7 @@ class PhysicsWorld(CrowdedWorld):
         return found
 
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
-        """See `SimulatedWorld`. Rays meet bodies as they are drawn; the laser tilts with the robot."""
+        """See `SimulatedWorld`. Rays meet bodies as they are drawn, and walls; the laser tilts with the robot."""
         number, frames, axes = self._number(robot), self.frames, self.axes
         place = frames[number] + mounted_m(self._robots[number], height_m) * axes[number, :, 2]
         bearings = scanner.bearings
@@ -118,13 +118,14 @@ class PhysicsWorld(CrowdedWorld):
         return self._crowd.carried_out(after, lags, STILL_MPS)
 
     def _set_stage(self) -> None:
-        """Make the stage, at first and where a robot joined."""
+        """Make the stage, at first and where a robot joined: then all others go on as they were."""
         before = self._stage
         if before is not None and len(before.robots) == len(self._robots):
             return
         walls = [self._walls_of(robot) for robot in self._robots]
         robots = [self._standing(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
-        stage = Stage(robots, self._wall_sets, self._ground_m, self._dt_s / self._count)
+        scenery = Scenery(self._map, self._tags, self.ground_m)
+        stage = Stage(robots, self._wall_sets, scenery, self._dt_s / self._count)
         if before is not None:
             stage.take_over(before)
         self._stage = stage
@@ -137,7 +138,7 @@ class PhysicsWorld(CrowdedWorld):
 
     def _standing(self, robot: Robot, place: Floats, heading: float, walls: int) -> Standing:
         body = robot_body(robot)
-        height = self._ground_m
+        height = self.ground_m
         if robot.kind == "air":
             height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
         collides = self._collide and robot.radius_m > 0

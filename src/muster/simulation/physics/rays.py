@@ -1,4 +1,4 @@
-"""What rays in the physics world meet: bodies as they are drawn, walls, the ground."""
+"""What rays in the physics world meet: bodies as they are drawn, walls that stop a robot, the ground."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from muster.simulation.physics.model import FIRST_WALLS_BIT, UNSEEN
 from muster.simulation.physics.stage import Stage
 
 _GROUPS = np.array([group != UNSEEN for group in range(6)], dtype=np.uint8)
-"""Hulls are for contacts: seen is what is drawn."""
+"""Hulls of robots are for contacts: their bodies are seen as they are drawn."""
 
 
 class Rays:
-    """Of a laser on a robot of a stage. It looks through itself, and through walls that do not stop it.
+    """Of lasers on the robots of a stage.
+
+    A robot looks through itself, through walls that do not stop it, and through what is there for pictures alone.
 
     Parameters
     ----------
@@ -30,8 +32,9 @@ class Rays:
         model = stage.model
         owner = model.body_rootid[model.geom_bodyid]
         wall_set = _wall_sets(model.geom_contype, owner)
+        scenery = (owner == 0) & (model.geom_contype == 0)
         self._unseen: list[Bools] = [
-            (owner == body) | ((wall_set >= 0) & (wall_set != number))
+            (owner == body) | scenery | ((wall_set >= 0) & (wall_set != number))
             for body, number in zip(stage.bodies, walls, strict=True)
         ]
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import Build
 from muster.simulation.physics.model import Standing, mjcf
+from muster.simulation.physics.scenery import Scenery
 
 Indices = npt.NDArray[np.intp]
 
@@ -66,14 +67,23 @@ class Stage:
 
     Parameters
     ----------
-    robots, walls, ground_m, step_s
+    robots, walls, step_s
         as `mjcf` takes them.
+    scenery
+        what is only to be seen, and how high the ground is.
     """
 
-    def __init__(self, robots: Sequence[Standing], walls: Sequence[Floats], ground_m: float, step_s: float) -> None:
+    def __init__(
+        self,
+        robots: Sequence[Standing],
+        walls: Sequence[Floats],
+        scenery: Scenery,
+        step_s: float,
+    ) -> None:
         self.robots = tuple(robots)
         self.step_s = step_s
-        self.model: Any = mujoco.MjModel.from_xml_string(mjcf(robots, walls, ground_m, step_s))
+        text = mjcf(robots, walls, scenery.add, scenery.ground_m, step_s)
+        self.model: Any = mujoco.MjModel.from_xml_string(text, scenery.files)
         self.data: Any = mujoco.MjData(self.model)
         model, numbers = self.model, range(len(self.robots))
         self.bodies: Indices = np.array([model.body(f"robot{k}").id for k in numbers], dtype=np.intp)

@@ -1,0 +1,65 @@
+"""What a robot's camera sees in a simulated world: by geometry, or in a picture that is drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.model import Tag
+from muster.motion.grid import Floats
+from muster.perception.camera import View
+from muster.perception.images import Image
+from muster.perception.observer import Observation, Observer
+from muster.perception.seen_by_geometry import LyingTag, sightings_of
+from muster.perception.tags import lying
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One look of one robot: when, what the world showed (None where it draws none), and what that told."""
+
+    robot: str
+    time_s: float
+    image: Image | None
+    observation: Observation
+
+
+class Sight(Protocol):
+    """How cameras of a world see."""
+
+    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
+        """Let a robot look from where its camera truly is; `body`, (6,) or (4, 4), is where it takes itself to be."""
+        ...
+
+    def close(self) -> None:
+        """Give back what it holds."""
+        ...
+
+
+class GeometricSight:
+    """Sees tags where geometry has them, `corner_px` off in the picture; draws nothing and needs no extra."""
+
+    def __init__(self, tags: Sequence[Tag], seed: int, corner_px: float = 0.2) -> None:
+        self._tags = [LyingTag(tag.id, lying(tag.position, math.radians(tag.heading_deg)), tag.size_m) for tag in tags]
+        self._random = np.random.default_rng((seed, 1))
+        self._corner_px = corner_px
+
+    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
+        """See `Sight`."""
+        sightings = sightings_of(self._tags, view, self._random, self._corner_px)
+        return Look(observer.robot, now, None, observer.locate(sightings, body, now))
+
+    def close(self) -> None:
+        """See `Sight`; it holds nothing."""
+
+
+def true_body(frame: Floats, axes: Floats) -> Floats:
+    """(4, 4) of a body's frame (3,) and its axes (3, 3), both in the map frame."""
+    body = np.eye(4)
+    body[:3, 3], body[:3, :3] = frame, axes
+    return body

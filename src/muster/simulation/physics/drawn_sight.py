@@ -1,0 +1,43 @@
+"""Cameras of the physics world: the picture is drawn, and tags are looked for in it."""
+
+from __future__ import annotations
+
+import numpy.typing as npt
+
+from muster.perception.camera import Intrinsics, View
+from muster.perception.observer import Observer
+from muster.simulation.cameras import Look
+from muster.simulation.physics.physics_world import PhysicsWorld
+from muster.simulation.physics.rendering import Lens, Renderer
+
+
+class DrawnSight:
+    """Draws what a camera sees, one renderer for each size of picture.
+
+    Raises
+    ------
+    RenderingError
+        when looking, if nothing draws here.
+    """
+
+    def __init__(self, world: PhysicsWorld) -> None:
+        self._world = world
+        self._renderers: dict[tuple[int, int], Renderer] = {}
+
+    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
+        """See `Sight`."""
+        i = view.intrinsics
+        image = self._renderer(i).seen_from(view.position, view.rotation, Lens(i.width, i.height, i.fx, (i.cx, i.cy)))
+        return Look(observer.robot, now, image, observer.look(image, body, now))
+
+    def close(self) -> None:
+        """Give back what the renderers hold of the graphics library."""
+        for renderer in self._renderers.values():
+            renderer.close()
+        self._renderers.clear()
+
+    def _renderer(self, intrinsics: Intrinsics) -> Renderer:
+        size = (intrinsics.width, intrinsics.height)
+        if size not in self._renderers:
+            self._renderers[size] = Renderer(self._world, *size)
+        return self._renderers[size]
