@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -91,18 +93,18 @@ class Search:
     def perform(self) -> Searched:
         mission = mission_of(ARENA)
         log = Log(mission)
-        plan = plan_of(ARENA, self.iterations)
-        simulation = Simulation(mission, plan, world=self.world, seed=self.seed, noise=NOISE, recorder=log)
-        eyes = [Eyes(simulation.world, robot.id, self.seed) for robot in mission.robots]
-        states, seen = [_states(eyes)], list[Seen]()
-        while not simulation.done:
-            simulation.advance(simulation.time_s + STEP_S)
-            for one in eyes:
-                one.move()
-            if len(states) % round(SCAN_S / STEP_S) == 0:
+        how: dict[str, Any] = {"world": self.world, "seed": self.seed, "noise": NOISE, "recorder": log}
+        with closing(Simulation(mission, plan_of(ARENA, self.iterations), **how)) as simulation:
+            eyes = [Eyes(simulation.world, robot.id, self.seed) for robot in mission.robots]
+            states, seen = [_states(eyes)], list[Seen]()
+            while not simulation.done:
+                simulation.advance(simulation.time_s + STEP_S)
                 for one in eyes:
-                    seen += one.look([other.fused.mean[:2] for other in eyes if other is not one])
-            states.append(_states(eyes))
+                    one.move()
+                if len(states) % round(SCAN_S / STEP_S) == 0:
+                    for one in eyes:
+                        seen += one.look([other.fused.mean[:2] for other in eyes if other is not one])
+                states.append(_states(eyes))
         hits = {one.robot: one.hits for one in eyes}
         return _searched(log.flown(simulation.result()), np.array(states), tuple(seen), hits)
 
