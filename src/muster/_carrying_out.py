@@ -97,6 +97,11 @@ class Simulation:
         self._executor.tick(self.time_s)
 
     @property
+    def world(self) -> SimulatedWorld:
+        """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
+        return self._world
+
+    @property
     def time_s(self) -> float:
         """The mission's clock."""
         return round(self._world.time_s, 9)  # of many steps, each of which rounds

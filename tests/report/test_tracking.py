@@ -28,6 +28,21 @@ def test_reference_and_flights():
     assert "goal" in [text.get_text() for text in above.texts]
 
 
+def test_points_are_marked_by_what_they_are():
+    seen = {"scan": np.array([[0.1, 0.2], [0.3, 0.4]]), "landmark": np.array([[0.5, 0.6]]), "none": np.empty((0, 2))}
+    figure = plot_tracking(None, np.array([[0.0, 0.0], [1.0, 0.0]]), [tracked("calm", 0.0)], {}, "title", seen)
+    drawn = {line.get_label(): line for line in figure.axes[0].lines}
+    assert {kind: drawn[kind].get_xydata().tolist() for kind in seen} == {k: v.tolist() for k, v in seen.items()}
+    assert len({drawn[kind].get_marker() for kind in seen}) == 3
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["reference", "calm", *seen]
+
+
+def test_so_many_measures_a_row():
+    measure = Measure(label="", means={"a": 1.0}, spreads={"a": 0.1})
+    axes = plot_measures([measure] * 6, "title", columns=3).axes
+    assert [ax.get_subplotspec().colspan.start for ax in axes] == [0, 1, 2] * 2
+
+
 @pytest.mark.parametrize("count", [1, 5])
 def test_measures(count):
     measure = Measure(label="error, m", means={"a": 1.0, "b": 2.0}, spreads={"a": 0.1, "b": 0.0}, printed=3.0)

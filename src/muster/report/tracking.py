@@ -45,10 +45,12 @@ def plot_tracking(
     flights: Sequence[Tracked],
     goals: Mapping[str, tuple[float, float]],
     title: str,
+    points: Mapping[str, Places] | None = None,
 ) -> Figure:
     """Draw the reference (k, 2) and the flights on the map, beneath them how far aside each was over time.
 
-    `goals` are marked with their names.
+    `goals` are marked with their names, `points` (k, 2) by what they are: up to four kinds, the first
+    with dots.
 
     Raises
     ------
@@ -74,6 +76,8 @@ def plot_tracking(
     for name, (x, y) in goals.items():
         above.plot(x, y, "o", color=ALARM, markersize=5, zorder=5)
         above.annotate(name, (x, y), (6, 4), textcoords="offset points", fontsize=7, color=QUIET_TEXT)
+    for (kind, places), (marker, size) in zip((points or {}).items(), _MARKERS.items(), strict=False):
+        above.plot(*places.T, marker, color=TEXT, markersize=size, fillstyle="none", zorder=6, label=kind)
     above.set_aspect("equal", adjustable="datalim")
     above.set_xlabel("x [m]")
     above.set_ylabel("y [m]")
@@ -83,6 +87,10 @@ def plot_tracking(
     below.set_ylim(bottom=0.0)
     _finish(figure, title)
     return figure
+
+
+_MARKERS = {".": 1.5, "^": 5.0, "o": 5.0, "x": 5.0}
+"""And their sizes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,15 +103,15 @@ class Measure:
     printed: float | None = None
 
 
-def plot_measures(measures: Sequence[Measure], title: str) -> Figure:
-    """Draw each measure in a panel of its own: a bar for each robot, the spread as error bar.
+def plot_measures(measures: Sequence[Measure], title: str, columns: int = 4) -> Figure:
+    """Draw each measure in a panel of its own, `columns` a row: a bar for each robot, the spread as error bar.
 
     Raises
     ------
     MissingExtraError
         if matplotlib is not installed.
     """
-    columns = min(4, len(measures))
+    columns = min(columns, len(measures))
     rows = -(-len(measures) // columns)
     figure = _figure(2.9 * columns, 2.6 * rows)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()

@@ -1,7 +1,8 @@
 """Worlds in which a plan is carried out. The physics world is in `simulation.physics`, and needs an extra."""
 
 from muster.simulation.kinematic_world import KinematicWorld
+from muster.simulation.lasers import Laser
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.world import Contact, Observer, Passing, SimulatedWorld
 
-__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Noise", "Observer", "Passing", "SimulatedWorld"]
+__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Laser", "Noise", "Observer", "Passing", "SimulatedWorld"]

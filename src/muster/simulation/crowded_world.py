@@ -23,9 +23,10 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.limits import Limits
 from muster.motion.world import Body, World, body_of
+from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort
-from muster.simulation.walls import faces_and_slabs
+from muster.simulation.walls import Slab, faces_and_slabs
 from muster.simulation.world import Contact, Observer, Passing
 
 AVOIDANCE = ("orca", "rvo", "hrvo", "none")
@@ -39,6 +40,8 @@ CORNER_M = 0.02
 """By how much a way point may be cut where a robot goes on past it."""
 Event = tuple[float, int, int, int, bool]
 """Time, robot, order, way points passed, whether all; as `core.CrowdWorld.advance` gives it."""
+Faces = tuple[Floats, list[Slab]]
+"""As `faces_and_slabs` gives them."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
 """Steps after which Ctrl-C is listened to."""
@@ -121,6 +124,7 @@ class CrowdedWorld(ABC):
             seed=seed,
         )
         self._walls: dict[Body, int] = {}
+        self._faces: dict[Body, Faces] = {}
         self._numbers: dict[str, int] = {}
         self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
@@ -277,6 +281,10 @@ class CrowdedWorld(ABC):
         return not self._crowd.busy(self._number(robot))
 
     @abstractmethod
+    def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
+        """See `SimulatedWorld`."""
+
+    @abstractmethod
     def _go_on(self, until_s: float) -> list[Event]:
         """Step until a time, or until something happened."""
 
@@ -306,10 +314,16 @@ class CrowdedWorld(ABC):
     def _walls_for(self, body: Body) -> int:
         """The number of the walls that stop this body; the same body has the same."""
         if body not in self._walls:
-            faces, slabs = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
+            faces, slabs = self._faces_for(body)
             ground = self._lowest_m if body.kind == "air" else -math.inf
             self._walls[body] = self._crowd.add_walls(faces, slabs, ground)
         return self._walls[body]
+
+    def _faces_for(self, body: Body) -> Faces:
+        """What stops this body: upright faces, and zones with a height."""
+        if body not in self._faces:
+            self._faces[body] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
+        return self._faces[body]
 
 
 def _lowest(mission: Mission) -> float:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from muster.mission.model import Robot
 from muster.motion.grid import Floats
+from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.port import SimulatedPort
 
 Observer = Callable[[float, Floats, Floats, Floats], None]
@@ -95,6 +96,25 @@ class SimulatedWorld(Protocol):
 
     def slow(self, robot: str, factor: float) -> None:
         """From now on its top speed is its own times `factor`, above 0 to 1."""
+        ...
+
+    def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
+        """What a laser on a robot would measure without error: (n,) metres, inf where a beam meets nothing in reach.
+
+        It sees the walls that stop this robot, other robots, and cylinders. `lasers.Laser` errs too.
+
+        Parameters
+        ----------
+        cylinders
+            (m, 3) of x, y, radius in the map frame: what stands there, at least as high as the laser.
+        height_m
+            of the laser above the robot's place; None: amid its body.
+
+        Raises
+        ------
+        ParameterError
+            if the robot is not in the world, or a number is not finite.
+        """
         ...
 
     @property

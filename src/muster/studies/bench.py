@@ -20,6 +20,7 @@ from muster.mission.model import Mission
 from muster.studies.bench_auction import AUCTION_BENCHES
 from muster.studies.bench_avoidance import compared
 from muster.studies.bench_execution import EXECUTION_BENCHES
+from muster.studies.bench_lasers import LASER_BENCHES
 from muster.studies.bench_motion import MOTION_BENCHES
 from muster.studies.bench_physics import PHYSICS_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
@@ -191,6 +192,7 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     **MOTION_BENCHES,
     **SIMULATION_BENCHES,
     **PHYSICS_BENCHES,
+    **LASER_BENCHES,
     **EXECUTION_BENCHES,
     **AUCTION_BENCHES,
 }

@@ -12,6 +12,7 @@ from muster.mission.hints import did_you_mean
 from muster.studies.allocators import Allocators
 from muster.studies.auction_5 import AUCTION_5
 from muster.studies.effort import Effort
+from muster.studies.market_5 import MARKET_5
 from muster.studies.market_rescue import MARKET_RESCUE
 from muster.studies.negotiation.study import NEGOTIATION
 from muster.studies.peers import Peers
@@ -54,6 +55,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     Peers(),
     RVO,
     RESCUE,
+    MARKET_5,
     NEGOTIATION,
 )
 

@@ -21,13 +21,15 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.world import body_of
+from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
+from muster.simulation.lasers import mounted_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
+from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.stage import Stage
-from muster.simulation.walls import faces_and_slabs
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
@@ -39,7 +41,8 @@ class PhysicsWorld(CrowdedWorld):
     """Robots with masses, wheels and rotors; see `CrowdedWorld`, and `bodies` for what they are.
 
     Robots without a radius, and all with `avoidance="none"`, touch nothing but the ground. No robot accelerates harder
-    than `ACCELERATION_MPS2`, whatever its mission allows.
+    than `ACCELERATION_MPS2`, whatever its mission allows. When a robot joins, the model is made anew, and all others go
+    on as they were.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class PhysicsWorld(CrowdedWorld):
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
         self._stage: Stage | None = None
+        self._rays: Rays | None = None
         super().__init__(mission, **how)
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
@@ -78,6 +82,18 @@ class PhysicsWorld(CrowdedWorld):
         stage = self.stage
         found: Floats = stage.data.xmat[stage.bodies].reshape(-1, 3, 3)
         return found
+
+    def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
+        """See `SimulatedWorld`. Rays meet bodies as they are drawn, and walls; the laser tilts with the robot."""
+        number, frames, axes = self._number(robot), self.frames, self.axes
+        place = frames[number] + mounted_m(self._robots[number], height_m) * axes[number, :, 2]
+        bearings = scanner.bearings
+        beams = np.column_stack([np.cos(bearings), np.sin(bearings)]) @ axes[number, :, :2].T
+        x, y = map(float, place[:2])
+        heading = math.atan2(axes[number, 1, 0], axes[number, 0, 0])
+        assert self._rays is not None
+        met = self._rays.lengths(number, place, beams, scanner.reach_m)
+        return np.minimum(met, scanner.ranges((x, y, heading), discs=cylinders))
 
     def _limits(self, robot: Robot) -> Limits:
         limits = limits_of(robot)
@@ -106,34 +122,32 @@ class PhysicsWorld(CrowdedWorld):
         before = self._stage
         if before is not None and len(before.robots) == len(self._robots):
             return
-        places, headings = self.positions, self.headings
-        robots = [
-            self._standing(robot, place, heading)
-            for robot, place, heading in zip(self._robots, places, headings, strict=True)
-        ]
+        walls = [self._walls_of(robot) for robot in self._robots]
+        robots = [self._standing(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
         scenery = Scenery(self._map, self._tags, self.ground_m)
         stage = Stage(robots, self._wall_sets, scenery, self._dt_s / self._count)
         if before is not None:
             stage.take_over(before)
         self._stage = stage
+        self._rays = Rays(stage, walls)
         self._control = Control(stage, keeps_height=self._dimensions == 2)
         self._standing_m = np.array([robot.body.standing_m for robot in robots])
         in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
         # Of x, y, z and heading what physics moves: heights only of those that fly in space.
         self._carried = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
 
-    def _standing(self, robot: Robot, place: Floats, heading: float) -> Standing:
+    def _standing(self, robot: Robot, place: Floats, heading: float, walls: int) -> Standing:
         body = robot_body(robot)
         height = self.ground_m
         if robot.kind == "air":
             height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
-        walls = self._walls_of(robot) if self._collide and robot.radius_m > 0 else None
-        return Standing(body, (float(place[0]), float(place[1]), height), float(heading), walls)
+        collides = self._collide and robot.radius_m > 0
+        position = (float(place[0]), float(place[1]), height)
+        return Standing(body, position, float(heading), walls if collides else None)
 
     def _walls_of(self, robot: Robot) -> int:
         """The number of the set of walls that stops it."""
-        none: Floats = np.empty((0, 6))
-        faces = none if self._map is None else faces_and_slabs(self._map, body_of(robot))[0]
+        faces = self._faces_for(body_of(robot))[0]
         for number, known in enumerate(self._wall_sets):
             if np.array_equal(known, faces):
                 return number

@@ -103,7 +103,7 @@ class Flight:
         return replace(mission, events=(Event(at_s=self.share * route.visits[-1].ends_s, robot_fails=self.fails),))
 
     def perform(self) -> Flown:
-        log = _Log(self.mission)
+        log = Log(self.mission)
         report = carry_out(
             self.mission,
             plan_of(self.team, self.iterations),
@@ -115,7 +115,7 @@ class Flight:
 
 
 @dataclass
-class _Log:
+class Log:
     """Keeps what happens: a `Recorder` of `_carrying_out`."""
 
     mission: Mission

@@ -1,0 +1,20 @@
+"""What docs/simulation.md shows runs."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+TEXT = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
+
+
+def test_its_examples_run(capsys):
+    pytest.importorskip("shapely")
+    names = {}
+    for example in re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL):
+        exec(compile(example, "simulation.md", "exec"), names)
+    *_, last = capsys.readouterr().out.strip().splitlines()
+    measured, exact = map(float, last.split())
+    assert 0 < abs(measured - exact) < 0.05
+    assert np.isfinite(exact)

@@ -1,0 +1,186 @@
+"""The study of section 5 of the market paper: what robots see, believe and find, and what its tables say of that."""
+
+import json
+import math
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from muster.cli.main import run as muster
+from muster.motion.metrics import risk_factor, trajectory_error
+from muster.motion.world import World
+from muster.studies import Effort, study_named
+from muster.studies.market_5.arena import BEACONS, CYLINDER_RADIUS_M, CYLINDERS, SURVIVORS
+from muster.studies.market_5.eyes import raw_estimates
+from muster.studies.market_5.searches import FARTHEST_M, LASER, ODOMETRY, PLACES, TRUE, performed, searches
+from muster.studies.market_5.tracks import SHOWN, measured
+from muster.studies.rescue.metrics import printed_goal_error_m
+from muster.studies.rescue.teams import ARENA, BODY_RADIUS_M, mission_of
+from muster.studies.rescue.tracking import at_same_shares, legs, tracks
+
+if find_spec("mujoco") is None or find_spec("scipy") is None:
+    pytest.skip("the extra `physics` is not installed", allow_module_level=True)
+
+EFFORT = Effort(seeds=2, iterations=100)
+TEAM = ("handBot", "eyeBot", "rangeBot")
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {search: performed(search) for search in searches(EFFORT)}
+
+
+@pytest.fixture(scope="module")
+def tables(found):
+    return {table.number: table for table in study_named("market-5").run(EFFORT).tables}
+
+
+def rows(table, **wanted):
+    return [record for record in table.records() if wanted.items() <= record.items()]
+
+
+def test_cylinders_stand_free():
+    """Of obstacles, of each other, and beside where robots work: the gripper reaches no farther than 0.15 m."""
+    world = World.of(mission_of(ARENA))
+    assert (world.clearance(CYLINDERS[:, :2], "ground") > 2 * CYLINDER_RADIUS_M).all()
+    apart = np.linalg.norm(CYLINDERS[:, None, :2] - CYLINDERS[None, :, :2], axis=2)
+    assert apart[~np.eye(len(apart), dtype=bool)].min() > 4 * CYLINDER_RADIUS_M
+    for task in mission_of(ARENA).tasks:
+        assert math.dist(task.position, SURVIVORS[task.id]) <= 0.15 + 1e-9
+
+
+def test_no_robot_drives_over_a_cylinder(found):
+    for one in found.values():
+        places = one.flown[TRUE].positions.reshape(-1, 1, 2)
+        assert np.linalg.norm(places - CYLINDERS[:, :2], axis=2).min() > BODY_RADIUS_M + CYLINDER_RADIUS_M
+
+
+def test_all_survivors_are_found_and_nothing_else(found):
+    for one in found.values():
+        table = one.found()
+        assert {match.name for match in table.matches} == set(SURVIVORS)
+        assert (table.missed, table.extra) == ((), ())
+        assert table.greatest_error_m < 0.01
+        assert not one.flown[TRUE].report.contacts
+
+
+def test_the_team_knows_better_than_one_sighting_tells(found):
+    for one in found.values():
+        for match in one.found().matches:
+            single = [math.dist(seen.place.mean, match.truth) for seen in one.sightings(match.name)]
+            assert match.error_m < np.mean(single)
+
+
+def test_what_landmarks_and_team_mates_are_is_no_target(found):
+    """Sightings are near survivors, but for a few in a hundred; of no landmark."""
+    for one in found.values():
+        places = raw_estimates(one.seen).positions
+        near = np.linalg.norm(places[:, None] - np.array(list(SURVIVORS.values())), axis=2).min(axis=1) <= FARTHEST_M
+        assert near.mean() > 0.9
+        assert np.linalg.norm(places[:, None] - np.array(BEACONS), axis=2).min() > 0.05
+
+
+def test_landmarks_mend_odometry(found):
+    for one in found.values():
+        for robot in TEAM:
+            assert one.off[robot, LASER].mean() < one.off[robot, ODOMETRY].mean()
+            assert one.off[robot, LASER].max() < 0.02
+            assert one.surprise[robot, LASER][1:].mean() / 2 < 4
+
+
+def test_at_the_beginning_all_places_are_the_same(found):
+    for one in found.values():
+        starts = [one.flown[place].positions[0] for place in PLACES]
+        assert starts[1] == pytest.approx(starts[0], abs=1e-9)
+        assert starts[2] == pytest.approx(starts[0], abs=1e-9)
+
+
+def test_the_same_seed_finds_the_same(found):
+    for first, second in (searches(EFFORT, [world]) for world in ("kinematic", "physics")):
+        again, before, other = first.perform(), found[first], found[second]
+        assert np.array_equal(again.flown[LASER].positions, before.flown[LASER].positions)
+        assert [one.place.mean.tolist() for one in again.seen] == [one.place.mean.tolist() for one in before.seen]
+        assert [one.place.mean.tolist() for one in other.seen] != [one.place.mean.tolist() for one in before.seen]
+
+
+def test_figure_8_is_of_equations_7_and_8(found, tables):
+    """The table's mean of one robot, by hand from the flights: (7) over the points of the reference, and (8)."""
+    world = World.of(mission_of(ARENA))
+    for place in PLACES:
+        errors, risks = [], []
+        for search, one in found.items():
+            if search.world != "physics":
+                continue
+            reference = legs(ARENA, "rangeBot", ("survivor4",))
+            (way,) = tracks(one.flown[place], "rangeBot")
+            matched = at_same_shares(reference[0], way)
+            errors.append(trajectory_error(reference[0], matched).mean)
+            risks.append(risk_factor(world.clearance(matched, "ground")))
+        of_robot = {"world": "physics", "robot": "rangeBot"}
+        (error,) = rows(tables["Figure 8"], metric="mean error on the way (7), m", **of_robot)
+        (risk,) = rows(tables["Figure 8"], metric="risk factor (8), 1/m", **of_robot)
+        assert error[place] == pytest.approx(np.mean(errors))
+        assert risk[place] == pytest.approx(np.mean(risks))
+
+
+def test_figure_8_beside_what_is_printed(found, tables):
+    table = tables["Figure 8"]
+    assert len(table.rows) == 2 * len(SHOWN) * len(TEAM)
+    for record in rows(table, metric="error at the goal, m"):
+        assert (record["paper"], record["mark"]) == (printed_goal_error_m(), "✓")
+        assert record["true"] < record["laser"] < record["odometry"]
+    assert all(record["mark"] == "✓" for record in rows(table, metric="least distance to an obstacle, m"))
+    (goal,) = (metric for metric in SHOWN if metric.name == "goal_error")
+    values = measured([found[search] for search in searches(EFFORT, ["kinematic"])], goal, "eyeBot", ODOMETRY)
+    (record,) = rows(table, world="kinematic", metric=goal.label, robot="eyeBot")
+    assert (record["odometry"], record["odometry ±"]) == pytest.approx((np.mean(values), np.std(values, ddof=1)))
+
+
+def test_figure_7(found, tables):
+    records = tables["Figure 7"].records()
+    assert [(record["world"], record["seed"]) for record in records] == [
+        ("kinematic", 0),
+        ("kinematic", 1),
+        ("physics", 0),
+        ("physics", 1),
+    ]
+    for record in records:
+        assert record["survivor"] == "survivor4"
+        assert record["sightings"] > 20
+        assert record["rangeBot m"] < record["each m"] < 0.01
+
+
+def test_targets(tables):
+    table = tables["Targets"]
+    for world in ("kinematic", "physics"):
+        own = [record for record in rows(table, world=world) if record["survivor"] in SURVIVORS]
+        assert [record["found"] for record in own] == ["2/2"] * 5
+        assert all(record["team m"] <= record["team most m"] < record["each m"] for record in own)
+        assert rows(table, world=world, survivor="none of them")[0]["found"] == "0"
+
+
+def test_localisation(tables):
+    for record in tables["Localisation"].records():
+        assert record["better"] == "2/2"
+        assert record["laser mean m"] < record["odometry mean m"] < record["odometry most m"]
+
+
+def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatch, tmp_path):
+    pytest.importorskip("matplotlib")
+    monkeypatch.setenv("COLUMNS", "120")
+    assert study_named("market-5").tables == ("Figure 7", "Figure 8", "Targets", "Localisation")
+    text, folder = tmp_path / "study.txt", tmp_path / "pictures"
+    assert muster(["study", "market-5", "--seeds", "1", "-o", str(text), "--plot", str(folder)]) == 0
+    words = " ".join(text.read_text(encoding="utf-8").split())
+    assert "it prints no number" in words
+    assert "steer by true places" in words
+    assert max(map(len, text.read_text(encoding="utf-8").splitlines())) <= 120
+    assert sorted(path.name for path in folder.iterdir()) == ["figure-7.png", "figure-8.png"]
+
+
+def test_json(capsys):
+    arguments = ["--tables", "Targets", "--seeds", "1", "--iterations", "100", "--format", "json"]
+    assert muster(["study", "market-5", *arguments]) == 0
+    (table,) = json.loads(capsys.readouterr().out)["tables"]
+    assert [row["survivor"] for row in table["rows"]] == [*SURVIVORS, "none of them"] * 2
