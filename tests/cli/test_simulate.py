@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -293,3 +294,44 @@ def test_a_mission_is_carried_out_in_the_physics_world(muster):
     assert physical["contacts"] == 0
     assert [task["robot"] for task in physical["tasks"]] == [task["robot"] for task in exact["tasks"]]
     assert physical["mission_time_s"] != exact["mission_time_s"]
+
+
+def test_what_cameras_found_is_told_and_drawn(muster, tmp_path):
+    file = tmp_path / "found.png"
+    code, out, _ = muster("simulate", "scout-and-deliver", "--iterations", "100", "--found", file)
+    assert code == 0
+    assert "found by cameras" in out
+    assert "found-37" in out
+    assert file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.skipif(not find_spec("mujoco"), reason="the extra `physics` is not installed")
+def test_what_cameras_saw_is_kept(muster, tmp_path):
+    mission, folder = tmp_path / "m.yaml", tmp_path / "new" / "seen"
+    mission.write_text(
+        "schema: muster/1\nrobots: [{id: d, position: [0, 0, 0], kind: air, kinematics: quadcopter,"
+        " camera: {fov_deg: 60, tilt_deg: 45}}]\ntasks: [{id: 1, position: [1, 0, 3]}, {id: 2, position: [2, 0, 3]}]\n"
+        "tags: [{id: 5, position: [4, 0, 0]}, {id: 6, position: [90, 0, 0]}]\n"
+    )
+    code, out, _ = muster("simulate", mission, "--world", "physics", "--iterations", "10", "--cameras", folder)
+    assert code == 0
+    assert [file.name for file in folder.iterdir()] == ["d-tag-5.png"]
+    assert "not found         1 tag: 6" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("6T-2R", "--found", "f.png"),
+            "--found: 6T-2R has no tags; expected a mission in which there is something to",
+        ),
+        (("scout-and-deliver", "--cameras", "d"), "--cameras: no pictures in the kinematic world; expected --world"),
+        (("scout-and-deliver", "--found", "f.bmp"), "suffix '.bmp'; expected one of"),
+        (("scout-and-deliver", "--world", "physics", "--cameras", "README.md"), "README.md is a file; expected a fol"),
+    ],
+)
+def test_options_of_cameras_that_make_no_sense(muster, arguments, message):
+    code, out, err = muster("simulate", *arguments)
+    assert (code, out) == (2, "")
+    assert message in err

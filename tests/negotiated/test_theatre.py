@@ -132,3 +132,24 @@ def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):
     theatre, log = theatre_of(events, tmp_path)
     theatre.go_on(1.0)
     assert set(log.account.used) == {"a", "b", "j"}
+
+
+class OneFind:
+    """Cameras that find something at 0.1 s."""
+
+    def __init__(self, event):
+        self._events = [event]
+
+    def look(self, now):
+        if now >= 0.1 and self._events:
+            yield {"tag": 4}, self._events.pop()
+
+
+def test_of_what_cameras_find_one_robot_is_told(tmp_path):
+    theatre, log = theatre_of([], tmp_path)
+    new = Event(at_s=0.1, new_task=Task(id="found-4", position=(1, 1)))
+    theatre._lookout = OneFind(new)
+    while theatre.time_s < 0.3:
+        theatre.go_on(1.0)
+    assert [(robot, word.event) for robot, word in theatre.team.told if isinstance(word, Befalls)] == [("a", new)]
+    assert [(h.kind, h.data) for h in log.happenings if h.kind == "found"] == [("found", {"tag": 4})]
