@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import Recorder, recorded_world
+from muster._carrying_out import OnWorld, Recorder, recorded_world
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.theatre import MOST_SPEED, Theatre
@@ -57,6 +57,7 @@ def negotiate_and_carry_out(
     noise: Noise = NO_NOISE,
     speed: float | None = None,
     recorder: Recorder | None = None,
+    on_world: OnWorld | None = None,
     on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
@@ -88,6 +89,8 @@ def negotiate_and_carry_out(
         bodies = recorded_world(
             world, problem.mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
         )
+        if on_world is not None:
+            on_world(bodies)
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
         theatre = Theatre(problem.mission, bodies, order, log)

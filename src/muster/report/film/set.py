@@ -1,0 +1,107 @@
+"""The set of a film: bodies, walls and marks at any moment of a run, drawn from one of its views."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import cv2
+import numpy as np
+
+from muster.mission.model import Mission
+from muster.motion.grid import Floats
+from muster.report.film.captions import Picture, Rgb, rgb, write_names
+from muster.report.film.footage import Footage
+from muster.report.film.moments import Moments
+from muster.report.film.stage_marks import TASK_PX, StageMarks, rgba
+from muster.report.film.view import Frame, View, view_of
+from muster.report.styles import QUIET_TEXT, robot_style
+from muster.simulation.physics.rendering import Lens, Renderer
+from muster.simulation.physics.tableau import Tableau
+
+OVERSAMPLED = 2
+"""Pictures are drawn so many times as large, and made smaller: edges are smooth, cheaper than by the graphics library."""
+WALL_M = 0.5
+"""Walls are shown to this height: one sees over them. In space to half the height that is flown."""
+_MOST_NAMED = 60
+_LEAST_REACH_M = 1.5
+_FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
+"""What is kept free for captions, pixels of the film."""
+
+
+class FilmSet:
+    """Goes through a run and draws it; use it in a `with`.
+
+    Parameters
+    ----------
+    footage
+        of the run.
+    width, height
+        of the pictures, in pixels.
+    """
+
+    def __init__(self, footage: Footage, width: int, height: int) -> None:
+        self.moments = Moments(footage)
+        stage, mission = footage.world.stage, footage.mission
+        places = places_of(mission, self.moments.poses)
+        wall_m = WALL_M if mission.dimensions == 2 else max(WALL_M, float(places[:, 2].max()) / 2)
+        colors = [rgba(robot_style(k).color) for k in range(self.moments.poses.shape[1])]
+        self._tableau = Tableau(stage, colors, wall_m)
+        self.size = (width, height)
+        frame = Frame(width, height, **_FREE)
+        self.view: View = view_of(places, frame)
+        self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
+        self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._renderer.close()
+
+    def picture(self, now: float) -> Picture:
+        """What is seen at a moment, not before one that was drawn; without captions."""
+        self.moments.go_on(now)
+        poses = self.moments.at(now)
+        self._tableau.put(poses[:, :3], poses[:, 3:])
+        (width, height), view = self.size, self.view
+        lens = Lens(OVERSAMPLED * width, OVERSAMPLED * height, OVERSAMPLED * view.focal_px)
+        marks = self._marks.at(now, poses)
+        large = self._renderer.seen_from(view.position, view.axes, lens, marks=marks, depth_m=view.depth_m)
+        picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA)
+        self._name(picture, poses)
+        return picture
+
+    def _name(self, picture: Picture, poses: Floats) -> None:
+        situation = self.moments.situation
+        tasks, robots = list(situation.tasks.values()), list(situation.robots)
+        if len(tasks) <= _MOST_NAMED:
+            places = np.array([(*task.position, self._tableau.ground_m)[:3] for task in tasks]).reshape(-1, 3)
+            at = self.view.pixels(places) + (0.0, TASK_PX + 13.0)
+            write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
+        at = self.view.pixels(poses[:, :3]) - (0.0, TASK_PX + 9.0)
+        names: list[tuple[str, Rgb]] = [(name, rgb(robot_style(k).color)) for k, name in enumerate(robots)]
+        write_names(picture, names[: len(poses)], at[: len(names)], 13, 600)
+
+
+def places_of(mission: Mission, poses: Floats) -> Floats:
+    """What has to be in a picture, (k, 3) metres: tasks, robots wherever they were, the map's boundary and zones."""
+    found = [place for task in mission.tasks for place in (task.position, task.entry, task.exit) if place is not None]
+    found += [robot.position for robot in mission.robots]
+    found += [event.new_task.position for event in mission.events if event.new_task is not None]
+    places = np.array([(*place, 0.0)[:3] for place in found]).reshape(-1, 3)
+    way = poses[:, :, :3].reshape(-1, 3)
+    whole = np.concatenate([places, way[np.isfinite(way).all(axis=1)], _corners(mission)])
+    missing = np.maximum(_LEAST_REACH_M - np.ptp(whole[:, :2], axis=0) / 2, 0.3)
+    around = np.array([(*(sign * missing), 0.0) for sign in (-1.0, 1.0)])
+    return np.concatenate([whole, whole.min(axis=0) + around[:1], whole.max(axis=0) + around[1:]])
+
+
+def _corners(mission: Mission) -> Floats:
+    if mission.map is None:
+        return np.empty((0, 3))
+    from muster.motion.world import World
+    from muster.report.floor import map_corners
+
+    corners = map_corners(mission.map, World.of(mission).image)
+    return np.array([(*corner, 0.0)[:3] for corner in corners]).reshape(-1, 3)
