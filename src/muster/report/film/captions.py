@@ -102,15 +102,16 @@ def write_names(picture: Picture, names: Iterable[tuple[str, Rgb]], places: Floa
             write(picture, shortened(name, 24), (x, y), size, color=color, weight=weight, align=0.5, halo=True)
 
 
-def write_events(picture: Picture, events: Sequence[tuple[str, Rgb, float]], left: int, bottom: int) -> None:
-    """Write the latest events, the newest lowest; each with a dot in its colour and how plain it is, 0 to 1."""
+def write_events(picture: Picture, events: Sequence[tuple[str, Rgb, float]], right: int, top: int) -> None:
+    """Write the latest events, the newest topmost; each with a dot in its colour and how plain it is, 0 to 1."""
     for k, (text, color, plain) in enumerate(reversed(events)):
-        y = bottom - 20 * k
-        before = picture.copy() if plain < 1 else picture
-        cv2.circle(picture, (left + 5, y - 5), 4, color, -1, cv2.LINE_AA)
-        write(picture, text, (left + 16, y), 14, halo=True)
-        if plain < 1:
-            np.copyto(picture, cv2.addWeighted(picture, plain, before, 1 - plain, 0.0))
+        y = top + 18 * k
+        before = picture[y - 16 : y + 8].copy()
+        wide = write(picture, text, (right - 14, y), 14, align=1.0, halo=True)
+        cv2.circle(picture, (right - 4, y - 5), 4, color, -1, cv2.LINE_AA)
+        if plain < 1 and wide:
+            now = picture[y - 16 : y + 8]
+            np.copyto(now, cv2.addWeighted(now, plain, before, 1 - plain, 0.0))
 
 
 def rgb(color: str) -> Rgb:

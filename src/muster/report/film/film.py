@@ -31,7 +31,7 @@ LONGEST_S = 24.0
 SPEEDS = (1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100)
 _REST_S = 1.5
 """For which the last picture stays."""
-_MOST_EVENTS, _SHOWN_S, _FADES_S = 4, 4.0, 0.6
+_MOST_EVENTS, _SHOWN_S, _FADES_S = 3, 4.0, 0.6
 _EDGE = 20
 
 
@@ -97,7 +97,7 @@ def _pictures(scene: FilmSet, footage: Footage, speed: float, rate_hz: float) ->
 
 
 def _write_upon(picture: Picture, scene: FilmSet, footage: Footage, now: float, speed: float) -> None:
-    moments, height = scene.moments, picture.shape[0]
+    moments, width = scene.moments, picture.shape[1]
     wide = write(picture, clock(now), (_EDGE, 40), 28, weight=600)
     states = list(moments.situation.states.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done"
@@ -105,7 +105,7 @@ def _write_upon(picture: Picture, scene: FilmSet, footage: Footage, now: float, 
     write(picture, f"{facts}  ·  {speed:g} x", (_EDGE + wide + 16, 48), 14, color=QUIET_INK)
     latest = [(told, now - told.time_s) for told in moments.told[-40:]]
     shown = [(words, _color(told, scene), _plain(age / speed)) for told, age in latest if (words := caption(told))]
-    write_events(picture, [one for one in shown if one[2] > 0][-_MOST_EVENTS:], _EDGE, height - 16)
+    write_events(picture, [one for one in shown if one[2] > 0][-_MOST_EVENTS:], width - _EDGE, 26)
 
 
 def _plain(age_s: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import TracebackType
 from typing import Self
 
@@ -12,9 +13,10 @@ from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, Rgb, rgb, write_names
 from muster.report.film.footage import Footage
+from muster.report.film.lids import lids_of
 from muster.report.film.moments import Moments
-from muster.report.film.stage_marks import TASK_PX, StageMarks, rgba
-from muster.report.film.view import Frame, View, view_of
+from muster.report.film.stage_marks import RING_PX, TASK_PX, StageMarks, rgba
+from muster.report.film.view import TILT, Frame, View, view_of
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.rendering import Lens, Renderer
 from muster.simulation.physics.tableau import Tableau
@@ -22,7 +24,7 @@ from muster.simulation.physics.tableau import Tableau
 OVERSAMPLED = 2
 """Pictures are drawn so many times as large, and made smaller: edges are smooth, cheaper than by the graphics library."""
 WALL_M = 0.5
-"""Walls are shown to this height: one sees over them. In space to half the height that is flown."""
+"""Walls without an end are shown to this height: one sees over them."""
 _MOST_NAMED = 60
 _LEAST_REACH_M = 1.5
 _FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
@@ -44,13 +46,13 @@ class FilmSet:
         self.moments = Moments(footage)
         stage, mission = footage.world.stage, footage.mission
         places = places_of(mission, self.moments.poses)
-        wall_m = WALL_M if mission.dimensions == 2 else max(WALL_M, float(places[:, 2].max()) / 2)
         colors = [rgba(robot_style(k).color) for k in range(self.moments.poses.shape[1])]
-        self._tableau = Tableau(stage, colors, wall_m)
+        self._tableau = Tableau(stage, colors, WALL_M)
         self.size = (width, height)
         frame = Frame(width, height, **_FREE)
         self.view: View = view_of(places, frame)
         self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
+        self._lids = lids_of(mission, self._tableau.ground_m, WALL_M)
         self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
 
     def __enter__(self) -> Self:
@@ -66,7 +68,7 @@ class FilmSet:
         self._tableau.put(poses[:, :3], poses[:, 3:])
         (width, height), view = self.size, self.view
         lens = Lens(OVERSAMPLED * width, OVERSAMPLED * height, OVERSAMPLED * view.focal_px)
-        marks = self._marks.at(now, poses)
+        marks = (*self._lids, *self._marks.at(now, poses))
         large = self._renderer.seen_from(view.position, view.axes, lens, marks=marks, depth_m=view.depth_m)
         picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA)
         self._name(picture, poses)
@@ -79,9 +81,11 @@ class FilmSet:
             places = np.array([(*task.position, self._tableau.ground_m)[:3] for task in tasks]).reshape(-1, 3)
             at = self.view.pixels(places) + (0.0, TASK_PX + 13.0)
             write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
-        at = self.view.pixels(poses[:, :3]) - (0.0, TASK_PX + 9.0)
-        names: list[tuple[str, Rgb]] = [(name, rgb(robot_style(k).color)) for k, name in enumerate(robots)]
-        write_names(picture, names[: len(poses)], at[: len(names)], 13, 600)
+        names: list[tuple[str, Rgb]] = [(name, rgb(robot_style(k).color)) for k, name in enumerate(robots)][: len(poses)]
+        at = self.view.pixels(poses[: len(names), :3])
+        rings = np.array([robot.radius_m for robot in situation.robots.values()])[: len(poses)] / self.view.pixel_m
+        at[:, 1] -= np.maximum(rings, RING_PX) * math.sin(TILT) + 6.0
+        write_names(picture, names, at, 13, 600)
 
 
 def places_of(mission: Mission, poses: Floats) -> Floats:

@@ -49,7 +49,8 @@ class StageMarks:
     def __init__(self, moments: Moments, ground_m: float, pixel_m: float) -> None:
         self._moments, self._ground_m, self._pixel_m = moments, ground_m, pixel_m
         self._level_m = max(_LEVEL_M, 0.03 * pixel_m)
-        self._trails = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m) for k in range(moments.poses.shape[1])]
+        self._trails: list[list[Mark | None]] = [[] for _ in range(moments.poses.shape[1])]
+        self._bends = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m) for k in range(moments.poses.shape[1])]
 
     def at(self, now: float, poses: Floats) -> Iterator[Mark]:
         """Marks from the lowest to the highest.
@@ -70,15 +71,18 @@ class StageMarks:
 
     def _trail(self, robot: int, now: float, pose: Floats) -> Iterator[Mark]:
         """The way so far; on the ground, or in the air."""
-        bends = self._trails[robot]
-        past = [place for row, place in bends if self._moments.times_s[row] < now]
-        color, width = rgba(robot_style(robot).color, faded=0.45), TRAIL_PX * self._pixel_m
-        lift = np.array([0.0, 0.0, self._level_m])
-        ends = [*past, pose[:3]] if np.isfinite(pose).all() else past
-        for start, end in zip(ends, ends[1:], strict=False):
-            piece = strip(start + lift, end + lift, width, self._level_m, color)
+        bends, drawn = self._bends[robot], self._trails[robot]
+        while len(drawn) + 1 < len(bends) and self._moments.times_s[bends[len(drawn) + 1][0]] <= now:
+            drawn.append(self._piece(robot, bends[len(drawn)][1], bends[len(drawn) + 1][1]))
+        yield from (piece for piece in drawn if piece is not None)
+        if bends and np.isfinite(pose).all():
+            piece = self._piece(robot, bends[len(drawn)][1], pose[:3])
             if piece is not None:
                 yield piece
+
+    def _piece(self, robot: int, start: Floats, end: Floats) -> Mark | None:
+        lift, color = (0.0, 0.0, self._level_m), rgba(robot_style(robot).color, faded=0.45)
+        return strip(start + lift, end + lift, TRAIL_PX * self._pixel_m, self._level_m, color)
 
     def _task(self, task: Task, state: str, who: str) -> Iterator[Mark]:
         rim, core = {
@@ -109,9 +113,10 @@ class StageMarks:
             if not np.isfinite(pose).all():
                 continue
             color = ALARM if name in self._moments.out else colors[name]
-            radius = max(robot.radius_m, RING_PX * self._pixel_m)
+            large = robot.radius_m > RING_PX * self._pixel_m
+            radius = robot.radius_m if large else RING_PX * self._pixel_m
             foot = np.array([pose[0], pose[1], self._ground_m + 6 * self._level_m])
-            yield disc(foot, radius, rgba(color, 0.28))
+            yield disc(foot, radius, rgba(color, 0.3 if large else 0.6))
             if robot.kind == "air":
                 pole = strip(foot, pose[:3], self._pixel_m, self._pixel_m, rgba(color, 0.5))
                 if pole is not None:

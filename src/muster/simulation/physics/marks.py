@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,8 +15,8 @@ Rgba = tuple[float, float, float, float]
 """Red, green, blue and how opaque: 0 to 1."""
 
 _UPRIGHT = np.eye(3)
-_GLOW = 0.55
-"""Of its colour a mark shines by itself, so that it looks alike whatever the light."""
+_GLOW = 0.1
+"""Of its colour a mark shines by itself, beside the light that falls on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,23 +61,28 @@ def ball(place: Floats, radius_m: float, color: Rgba) -> Mark:
     return Mark(mujoco.mjtGeom.mjGEOM_SPHERE, place, _UPRIGHT, np.full(3, radius_m), color)
 
 
-def block(place: Floats, sides_m: Floats, yaw: float, color: Rgba) -> Mark:
-    """A box turned about the upright axis; `place` (3,) is its middle, `sides_m` (3,) its whole sides."""
-    c, s = np.cos(yaw), np.sin(yaw)
+def plate(place: Floats, length_m: float, width_m: float, yaw: float, color: Rgba) -> Mark:
+    """A flat rectangle around `place` (3,), turned about the upright axis."""
+    c, s = math.cos(yaw), math.sin(yaw)
     axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return Mark(mujoco.mjtGeom.mjGEOM_BOX, place, axes, sides_m / 2, color)
+    return Mark(mujoco.mjtGeom.mjGEOM_BOX, place, axes, np.array([length_m / 2, width_m / 2, 0.0005]), color)
+
+
+def triangle(corners: Floats, color: Rgba) -> Mark:
+    """A flat one; `corners` (3, 3) metres, counter-clockwise as it is seen."""
+    first, second, third = corners
+    axes = np.column_stack([second - first, third - first, (0.0, 0.0, 1.0)])
+    return Mark(mujoco.mjtGeom.mjGEOM_TRIANGLE, first, axes, np.ones(3), color)
 
 
 def strip(start: Floats, end: Floats, width_m: float, thick_m: float, color: Rgba) -> Mark | None:
     """A straight band from (3,) to (3,), level across; None where both are the same place."""
-    along = end - start
-    length = float(np.linalg.norm(along))
+    x, y, z = (end - start).tolist()
+    length, level = math.hypot(x, y, z), math.hypot(x, y)
     if length < 1e-9:
         return None
-    ahead = along / length
-    left = np.cross((0.0, 0.0, 1.0), ahead)
-    left = left / np.linalg.norm(left) if np.linalg.norm(left) > 1e-9 else np.array([0.0, 1.0, 0.0])
-    axes = np.column_stack([ahead, left, np.cross(ahead, left)])
-    return Mark(
-        mujoco.mjtGeom.mjGEOM_BOX, (start + end) / 2, axes, np.array([length, width_m, thick_m]) / 2, color
-    )
+    c, s = (x / level, y / level) if level > 1e-9 else (1.0, 0.0)
+    along, up = level / length, z / length
+    axes = np.array([[c * along, -s, -c * up], [s * along, c, -s * up], [up, 0.0, along]])
+    size = np.array([length / 2, width_m / 2, thick_m / 2])
+    return Mark(mujoco.mjtGeom.mjGEOM_BOX, (start + end) / 2, axes, size, color)

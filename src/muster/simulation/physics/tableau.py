@@ -15,11 +15,15 @@ import numpy as np
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import Build
 from muster.simulation.physics.marks import Rgba
-from muster.simulation.physics.model import GROUND_BIT, ROBOTS_BIT, UNSEEN
+from muster.simulation.physics.model import FIRST_WALLS_BIT, GROUND_BIT, ROBOTS_BIT, UNSEEN
 from muster.simulation.physics.stage import Stage
 
-GROUND_RGBA: Rgba = (0.93, 0.94, 0.95, 1.0)
-WALL_RGBA: Rgba = (0.62, 0.64, 0.68, 1.0)
+GROUND_RGBA: Rgba = (0.97, 0.975, 0.98, 1.0)
+WALL_RGBA: Rgba = (0.74, 0.76, 0.8, 1.0)
+GLASS_RGBA: Rgba = (0.85, 0.3, 0.3, 0.12)
+_LIGHT = 0.55
+"""From everywhere: what lies level is as bright as its colour."""
+_SLICES = 40
 _AWAY_M = -1000.0
 """The height of a robot that is not there."""
 _SHADOW_PX, _SAMPLES = 4096, 4
@@ -35,7 +39,7 @@ class Tableau:
     colors
         of the robots, in order.
     wall_m
-        the height above the ground to which walls are shown, so that one sees over them.
+        the height above the ground to which walls without an end are shown, so that one sees over them.
     fine
         with shadows and smooth edges, which take ten times as long.
     """
@@ -46,9 +50,11 @@ class Tableau:
         self.data: Any = mujoco.MjData(self.model)
         self.ground_m = float(self.model.geom("ground").pos[2])
         self.model.geom("ground").rgba = GROUND_RGBA
-        self._cut_walls(wall_m)
+        self._show_walls(wall_m)
         for k, color in enumerate(colors):
             self._paint(k, color)
+        self.model.vis.headlight.ambient = (_LIGHT,) * 3
+        self.model.vis.quality.numslices = _SLICES
         if fine:
             self.model.vis.quality.shadowsize, self.model.vis.quality.offsamples = _SHADOW_PX, _SAMPLES
 
@@ -72,15 +78,30 @@ class Tableau:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
-    def _cut_walls(self, height_m: float) -> None:
-        model = self.model
+    def _show_walls(self, low_m: float) -> None:
+        """Each once, though robots of several kinds are stopped by it; those that stop drones alone like glass."""
+        model, ground_sets = self.model, self._sets_of_ground_robots()
         standing = (model.geom_bodyid == 0) & (model.geom_contype & ~(GROUND_BIT | ROBOTS_BIT) != 0)
-        for k in np.flatnonzero(standing):
-            half, middle = model.geom_size[k, 2], model.geom_pos[k, 2]
-            low, high = middle - half, min(middle + half, self.ground_m + height_m)
-            high = max(high, low + 0.01)
-            model.geom_size[k, 2], model.geom_pos[k, 2] = (high - low) / 2, (high + low) / 2
-            model.geom_rgba[k] = WALL_RGBA
+        twins: dict[tuple[float, ...], list[int]] = {}
+        for k in np.flatnonzero(standing).tolist():
+            where = np.concatenate([model.geom_pos[k, :2], model.geom_quat[k], model.geom_size[k, :2]])
+            twins.setdefault(tuple(np.round(where, 6)), []).append(k)
+        tops = model.geom_pos[:, 2] + model.geom_size[:, 2]
+        endless = tops[standing].max(initial=0.0) - 1e-6
+        for alike in twins.values():
+            shown, *others = alike
+            top = tops[alike].min()
+            solid = any(model.geom_contype[k] & ground_sets for k in alike)
+            bottom = model.geom_pos[shown, 2] - model.geom_size[shown, 2]
+            top = max(self.ground_m + low_m if top >= endless else top, bottom + 0.01)
+            model.geom_pos[shown, 2], model.geom_size[shown, 2] = (top + bottom) / 2, (top - bottom) / 2
+            model.geom_rgba[shown] = WALL_RGBA if solid else GLASS_RGBA
+            model.geom_group[others] = UNSEEN
+
+    def _sets_of_ground_robots(self) -> int:
+        """The bits of the walls that stop them."""
+        robots = (robot for robot in self._robots.robots if robot.body.build is not Build.ROTORS)
+        return sum({1 << (FIRST_WALLS_BIT + robot.walls) for robot in robots if robot.walls is not None})
 
     def _paint(self, robot: int, color: Rgba) -> None:
         """Its rotors, or what of it is broadest."""

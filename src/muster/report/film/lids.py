@@ -1,0 +1,99 @@
+"""What lies on top of walls, so that they look like the blocks that they go around; and no-fly zones on the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from muster.mission.model import Mission, Zone
+from muster.motion.grid import Bools, Floats, Grid
+from muster.motion.world import World
+from muster.simulation.physics.marks import Mark, Rgba, plate, triangle
+from muster.simulation.physics.tableau import WALL_RGBA
+
+_ABOVE_M = 0.012
+_FORBIDDEN_RGBA: Rgba = (0.85, 0.3, 0.3, 0.1)
+
+
+def lids_of(mission: Mission, ground_m: float, wall_m: float) -> list[Mark]:
+    """Marks of a mission's map.
+
+    Parameters
+    ----------
+    ground_m, wall_m
+        the ground's height, and that of walls without an end above it, as a `Tableau` shows them.
+    """
+    if mission.map is None or mission.travel_rule != "map":
+        return []
+    image = World.of(mission).image
+    lids = [] if image is None else list(_of_cells(image, ground_m + wall_m + _ABOVE_M))
+    flown = image is None and mission.dimensions == 3 and any(robot.kind == "air" for robot in mission.robots)
+    for zone in mission.map.zones:
+        lids += _of_zone(zone, ground_m, wall_m, flown=flown)
+    return lids
+
+
+def rectangles(blocked: Bools) -> list[tuple[int, int, int, int]]:
+    """Cut blocked cells into few rectangles: first and last column, first and last row, the last ones not within."""
+    begun: dict[tuple[int, int], int] = {}
+    found: list[tuple[int, int, int, int]] = []
+    for row in range(len(blocked) + 1):
+        cells = blocked[row] if row < len(blocked) else np.zeros(blocked.shape[1], dtype=bool)
+        steps = np.diff(np.pad(cells.astype(np.int8), 1))
+        runs = set(zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True))
+        for run in [run for run in begun if run not in runs]:
+            found.append((*run, begun.pop(run), row))
+        for run in runs:
+            begun.setdefault(run, row)
+    return found
+
+
+def triangles(polygon: Floats) -> list[Floats]:
+    """Cut a simple polygon (n, 2) into triangles (3, 2), counter-clockwise, by its ears (Meisters 1975)."""
+    corners = [corner for k, corner in enumerate(polygon) if not np.array_equal(corner, polygon[k - 1])]
+    if _area(np.array(corners)) < 0:
+        corners.reverse()
+    found = []
+    while len(corners) > 3:
+        ear = next((k for k in range(len(corners)) if _is_ear(corners, k)), None)
+        if ear is None:  # it crosses itself
+            return found
+        found.append(np.array([corners[ear - 1], corners[ear], corners[(ear + 1) % len(corners)]]))
+        del corners[ear]
+    return [*found, np.array(corners)]
+
+
+def _of_cells(grid: Grid, top_m: float) -> Iterator[Mark]:
+    for left, right, low, high in rectangles(grid.blocked):
+        middle = grid.to_map(np.array([[(left + right) / 2, (low + high) / 2]]))[0]
+        length, width = (right - left) * grid.resolution_m, (high - low) * grid.resolution_m
+        yield plate(np.array([*middle, top_m]), length, width, grid.origin[2], WALL_RGBA)
+
+
+def _of_zone(zone: Zone, ground_m: float, wall_m: float, *, flown: bool) -> Iterator[Mark]:
+    top, color = ground_m + wall_m + _ABOVE_M, WALL_RGBA
+    if flown and zone.ceiling_m is not None:
+        top = zone.ceiling_m + _ABOVE_M
+    if "ground" not in zone.forbidden_to:
+        top, color = ground_m + _ABOVE_M / 4, _FORBIDDEN_RGBA
+    for corners in triangles(np.array([corner[:2] for corner in zone.polygon], dtype=np.float64)):
+        yield triangle(np.column_stack([corners, np.full(3, top)]), color)
+
+
+def _area(corners: Floats) -> float:
+    x, y = corners.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+def _is_ear(corners: list[Floats], k: int) -> bool:
+    before, tip, after = corners[k - 1], corners[k], corners[(k + 1) % len(corners)]
+    if _area(np.array([before, tip, after])) <= 0:
+        return False
+    others = [c for c in corners if c is not before and c is not tip and c is not after]
+    return not any(_within(other, before, tip, after) for other in others)
+
+
+def _within(place: Floats, *corners: Floats) -> bool:
+    sides = zip(corners, (*corners[1:], corners[0]), strict=True)
+    return all(_area(np.array([start, end, place])) >= 0 for start, end in sides)
