@@ -1,7 +1,8 @@
-"""Films as files: MP4 (VP9, which browsers play) by OpenCV, GIF by Pillow."""
+"""Films as files: MP4 (VP9, which browsers play) by OpenCV, GIF by Pillow; and single pictures, PNG."""
 
 from __future__ import annotations
 
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
@@ -41,12 +42,17 @@ class Mp4:
     def __init__(self, path: str | Path) -> None:
         self._writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, _fourcc(), self.rate_hz, self.size)
         if not self._writer.isOpened():
-            raise _unwritable(path)
+            raise unwritable(path)
+        self._worker = ThreadPoolExecutor(max_workers=1)  # encodes a picture while the next one is drawn
+        self._last: Future[None] | None = None
 
     def add(self, picture: Picture) -> None:
-        self._writer.write(cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+        if self._last is not None:
+            self._last.result()
+        self._last = self._worker.submit(self._writer.write, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
 
     def close(self) -> None:
+        self._worker.shutdown()
         self._writer.release()
 
 
@@ -76,7 +82,7 @@ class Gif:
         try:
             first.save(self._path, append_images=others, save_all=True, duration=round(1000 / self.rate_hz), loop=0)
         except OSError as error:
-            raise _unwritable(self._path) from error
+            raise unwritable(self._path) from error
 
 
 KINDS: dict[str, type[FilmFile]] = {".mp4": Mp4, ".gif": Gif}
@@ -90,7 +96,44 @@ def film_file(path: str | Path) -> type[FilmFile]:
     InputError
         if there is none.
     """
+    check_ending(path, tuple(KINDS))
     return KINDS[Path(path).suffix.lower()]
+
+
+def check_ending(path: str | Path, known: tuple[str, ...]) -> None:
+    """Raise InputError unless a path ends in one of these; to be asked before a run, not after."""
+    suffix = Path(path).suffix
+    if suffix.lower() not in known:
+        value = f"suffix {suffix!r}" if suffix else "no suffix"
+        raise InputError([Finding(str(path), None, "", value, " or ".join(known))])
+
+
+def check_film(path: str | Path) -> None:
+    """Raise InputError unless a film can have this ending, MissingExtraError if it needs Pillow that is not there."""
+    if film_file(path) is Gif:
+        require_pillow()
+
+
+def check_still(path: str | Path) -> None:
+    """Raise InputError unless a still can have this ending."""
+    check_ending(path, (".png",))
+
+
+def write_png(path: str | Path, picture: Picture) -> None:
+    """Write one picture, RGB.
+
+    Raises
+    ------
+    InputError
+        if the ending is not .png, or the file cannot be written.
+    """
+    check_still(path)
+    whole, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    assert whole
+    try:
+        Path(path).write_bytes(data.tobytes())
+    except OSError as error:
+        raise unwritable(path) from error
 
 
 def require_pillow() -> None:
@@ -105,5 +148,5 @@ def _fourcc() -> int:
     return int(cv2.VideoWriter.fourcc(*CODEC))
 
 
-def _unwritable(path: str | Path) -> InputError:
+def unwritable(path: str | Path) -> InputError:
     return InputError([Finding(str(path), None, "", "cannot be written", "a path that can be written")])

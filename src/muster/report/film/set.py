@@ -13,7 +13,7 @@ from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, Rgb, rgb, write_names
 from muster.report.film.footage import Footage
-from muster.report.film.lids import lids_of
+from muster.report.film.walls import Walls
 from muster.report.film.moments import Moments
 from muster.report.film.stage_marks import RING_PX, TASK_PX, StageMarks, rgba
 from muster.report.film.view import TILT, Frame, View, view_of
@@ -23,10 +23,10 @@ from muster.simulation.physics.tableau import Tableau
 
 OVERSAMPLED = 2
 """Pictures are drawn so many times as large, and made smaller: edges are smooth, cheaper than by the graphics library."""
-WALL_M = 0.5
-"""Walls without an end are shown to this height: one sees over them."""
+WALL_PX = 13
+"""Walls without an end are shown so high, in pixels of the film."""
 _MOST_NAMED = 60
-_LEAST_REACH_M = 1.5
+_LEAST_REACH_M = 0.8
 _FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
 """What is kept free for captions, pixels of the film."""
 
@@ -47,12 +47,13 @@ class FilmSet:
         stage, mission = footage.world.stage, footage.mission
         places = places_of(mission, self.moments.poses)
         colors = [rgba(robot_style(k).color) for k in range(self.moments.poses.shape[1])]
-        self._tableau = Tableau(stage, colors, WALL_M)
         self.size = (width, height)
         frame = Frame(width, height, **_FREE)
         self.view: View = view_of(places, frame)
+        walls = Walls(mission, WALL_PX * self.view.pixel_m)
+        self._tableau = Tableau(stage, colors, walls.top)
         self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
-        self._lids = lids_of(mission, self._tableau.ground_m, WALL_M)
+        self._lids = walls.lids(self._tableau.ground_m)
         self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
 
     def __enter__(self) -> Self:
@@ -96,9 +97,10 @@ def places_of(mission: Mission, poses: Floats) -> Floats:
     places = np.array([(*place, 0.0)[:3] for place in found]).reshape(-1, 3)
     way = poses[:, :, :3].reshape(-1, 3)
     whole = np.concatenate([places, way[np.isfinite(way).all(axis=1)], _corners(mission)])
-    missing = np.maximum(_LEAST_REACH_M - np.ptp(whole[:, :2], axis=0) / 2, 0.3)
-    around = np.array([(*(sign * missing), 0.0) for sign in (-1.0, 1.0)])
-    return np.concatenate([whole, whole.min(axis=0) + around[:1], whole.max(axis=0) + around[1:]])
+    low, high = whole[:, :2].min(axis=0), whole[:, :2].max(axis=0)
+    around = np.maximum(_LEAST_REACH_M - (high - low) / 2, 0.03 * (high - low).max())
+    (west, south), (east, north), ground = low - around, high + around, whole[:, 2].min()
+    return np.concatenate([whole, [(x, y, ground) for x in (west, east) for y in (south, north)]])
 
 
 def _corners(mission: Mission) -> Floats:

@@ -6,7 +6,7 @@ A copy, with its own state: the world goes on by itself.
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
@@ -38,19 +38,19 @@ class Tableau:
         whose robots and walls are shown.
     colors
         of the robots, in order.
-    wall_m
-        the height above the ground to which walls without an end are shown, so that one sees over them.
+    wall_top
+        to which height a wall is shown that has its middle at x, y, metres in the map frame.
     fine
         with shadows and smooth edges, which take ten times as long.
     """
 
-    def __init__(self, stage: Stage, colors: Sequence[Rgba], wall_m: float, *, fine: bool = False) -> None:
+    def __init__(self, stage: Stage, colors: Sequence[Rgba], wall_top: Callable[[float, float], float], *, fine: bool = False) -> None:
         self._robots = stage
         self.model: Any = copy.copy(stage.model)
         self.data: Any = mujoco.MjData(self.model)
         self.ground_m = float(self.model.geom("ground").pos[2])
         self.model.geom("ground").rgba = GROUND_RGBA
-        self._show_walls(wall_m)
+        self._show_walls(wall_top)
         for k, color in enumerate(colors):
             self._paint(k, color)
         self.model.vis.headlight.ambient = (_LIGHT,) * 3
@@ -78,7 +78,7 @@ class Tableau:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
-    def _show_walls(self, low_m: float) -> None:
+    def _show_walls(self, wall_top: Callable[[float, float], float]) -> None:
         """Each once, though robots of several kinds are stopped by it; those that stop drones alone like glass."""
         model, ground_sets = self.model, self._sets_of_ground_robots()
         standing = (model.geom_bodyid == 0) & (model.geom_contype & ~(GROUND_BIT | ROBOTS_BIT) != 0)
@@ -86,14 +86,11 @@ class Tableau:
         for k in np.flatnonzero(standing).tolist():
             where = np.concatenate([model.geom_pos[k, :2], model.geom_quat[k], model.geom_size[k, :2]])
             twins.setdefault(tuple(np.round(where, 6)), []).append(k)
-        tops = model.geom_pos[:, 2] + model.geom_size[:, 2]
-        endless = tops[standing].max(initial=0.0) - 1e-6
         for alike in twins.values():
             shown, *others = alike
-            top = tops[alike].min()
             solid = any(model.geom_contype[k] & ground_sets for k in alike)
             bottom = model.geom_pos[shown, 2] - model.geom_size[shown, 2]
-            top = max(self.ground_m + low_m if top >= endless else top, bottom + 0.01)
+            top = max(wall_top(*model.geom_pos[shown, :2].tolist()), bottom + 0.01)
             model.geom_pos[shown, 2], model.geom_size[shown, 2] = (top + bottom) / 2, (top - bottom) / 2
             model.geom_rgba[shown] = WALL_RGBA if solid else GLASS_RGBA
             model.geom_group[others] = UNSEEN

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,26 +13,46 @@ from muster.motion.world import World
 from muster.simulation.physics.marks import Mark, Rgba, plate, triangle
 from muster.simulation.physics.tableau import WALL_RGBA
 
-_ABOVE_M = 0.012
+MOST_M = 0.5
+_ABOVE_M, _SAME_M = 0.012, 1e-6
 _FORBIDDEN_RGBA: Rgba = (0.85, 0.3, 0.3, 0.1)
 
 
-def lids_of(mission: Mission, ground_m: float, wall_m: float) -> list[Mark]:
-    """Marks of a mission's map.
+class Walls:
+    """How the walls of a mission are shown.
+
+    Zones of a mission in space are as high as they are; all else is low, so that one sees over it.
 
     Parameters
     ----------
-    ground_m, wall_m
-        the ground's height, and that of walls without an end above it, as a `Tableau` shows them.
+    low_m
+        how low, above the ground, at most `MOST_M`.
     """
-    if mission.map is None or mission.travel_rule != "map":
-        return []
-    image = World.of(mission).image
-    lids = [] if image is None else list(_of_cells(image, ground_m + wall_m + _ABOVE_M))
-    flown = image is None and mission.dimensions == 3 and any(robot.kind == "air" for robot in mission.robots)
-    for zone in mission.map.zones:
-        lids += _of_zone(zone, ground_m, wall_m, flown=flown)
-    return lids
+
+    def __init__(self, mission: Mission, low_m: float) -> None:
+        self._low_m = min(low_m, MOST_M)
+        stopped = mission.map is not None and mission.travel_rule == "map"
+        self._image = World.of(mission).image if stopped else None
+        self._zones = mission.map.zones if stopped and mission.map is not None else ()
+        self._with_heights = self._image is None and mission.dimensions == 3
+
+    def top(self, x: float, y: float) -> float:
+        """The height to which a wall is shown that has its middle there."""
+        return max((self._height(zone) for zone in self._zones if _is_side(zone, (x, y))), default=self._low_m)
+
+    def lids(self, ground_m: float) -> list[Mark]:
+        """What lies on top, and no-fly zones on the ground."""
+        lids = [] if self._image is None else list(_of_cells(self._image, self._low_m + _ABOVE_M))
+        for zone in self._zones:
+            top, color = self._height(zone) + _ABOVE_M, WALL_RGBA
+            if "ground" not in zone.forbidden_to:
+                top, color = ground_m + _ABOVE_M / 4, _FORBIDDEN_RGBA
+            for corners in triangles(np.array([corner[:2] for corner in zone.polygon], dtype=np.float64)):
+                lids.append(triangle(np.column_stack([corners, np.full(3, top)]), color))
+        return lids
+
+    def _height(self, zone: Zone) -> float:
+        return zone.ceiling_m if self._with_heights and zone.ceiling_m is not None else self._low_m
 
 
 def rectangles(blocked: Bools) -> list[tuple[int, int, int, int]]:
@@ -71,14 +92,10 @@ def _of_cells(grid: Grid, top_m: float) -> Iterator[Mark]:
         yield plate(np.array([*middle, top_m]), length, width, grid.origin[2], WALL_RGBA)
 
 
-def _of_zone(zone: Zone, ground_m: float, wall_m: float, *, flown: bool) -> Iterator[Mark]:
-    top, color = ground_m + wall_m + _ABOVE_M, WALL_RGBA
-    if flown and zone.ceiling_m is not None:
-        top = zone.ceiling_m + _ABOVE_M
-    if "ground" not in zone.forbidden_to:
-        top, color = ground_m + _ABOVE_M / 4, _FORBIDDEN_RGBA
-    for corners in triangles(np.array([corner[:2] for corner in zone.polygon], dtype=np.float64)):
-        yield triangle(np.column_stack([corners, np.full(3, top)]), color)
+def _is_side(zone: Zone, middle: tuple[float, float]) -> bool:
+    """Whether this is the middle of one of its sides."""
+    sides = zip(zone.polygon, (*zone.polygon[1:], zone.polygon[0]), strict=True)
+    return any(math.dist(middle, ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)) < _SAME_M for a, b in sides)
 
 
 def _area(corners: Floats) -> float:
