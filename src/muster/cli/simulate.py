@@ -14,6 +14,7 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.filming import draw_footage, footage_of, require_filmable
 from muster.cli.halting import ctrl_c_halts
 from muster.cli.options import (
     Finite,
@@ -73,6 +74,11 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@click.option("--film", type=_FILE, metavar="FILE", help="Film it, in the physics world (.mp4, .gif).")
+@click.option(
+    "--film-speed", type=Finite(0.01, 1e6), metavar="X", help="X times real time.  [default: a film of at most 24 s]"
+)
+@click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
 @method_options
 @terms_options
 @require_complete_option
@@ -98,6 +104,9 @@ def command(
     html: Path | None,
     plot: Path | None,
     gantt: Path | None,
+    film: Path | None,
+    film_speed: float | None,
+    still: Path | None,
     method: str,
     transport: str,
     settings: tuple[str, ...],
@@ -115,8 +124,9 @@ def command(
     each decides for itself what to do next. They talk in real time.
     """
     _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
+    require_writable(None, (record, html, plot, gantt, film, still), (mission, robots, suitability), (plan,))
     require_drawable(plot, gantt)
+    require_filmable(world, film, film_speed, still)
     noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     planned: Plan | Negotiation
@@ -136,6 +146,7 @@ def command(
             "noise": noise,
             "speed": speed,
         }
+        footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
         tell = _tell if speed is not None and not quiet else None
         with ctrl_c_halts() as halt:
             report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
@@ -145,6 +156,8 @@ def command(
         click.echo(json_text(report.as_dict()), nl=False)
     else:
         print_report(report.as_dict(), loaded, with_tasks=verbose)
+    if footage is not None:
+        draw_footage(footage, film, film_speed, still, quiet=quiet)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission", err=True)
         return INTERRUPTED

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from muster.mission.errors import ParameterError
 from muster.report.film.captions import (
-    INK,
     QUIET_INK,
     Picture,
     Rgb,
@@ -119,6 +118,3 @@ def _color(told: Told, scene: FilmSet) -> Rgb:
         return rgb(ALARM)
     name = told.data.get("robot")
     return rgb(robot_style(robots.index(name)).color if name in robots else LEFT_OUT)
-
-
-__all__ = ["INK", "Made", "speed_for", "write_film"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
-from muster.report.film.captions import Picture, Rgb, rgb, write_names
+from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
 from muster.report.film.walls import Walls
 from muster.report.film.moments import Moments
@@ -44,14 +45,13 @@ class FilmSet:
 
     def __init__(self, footage: Footage, width: int, height: int) -> None:
         self.moments = Moments(footage)
-        stage, mission = footage.world.stage, footage.mission
+        mission = footage.mission
         places = places_of(mission, self.moments.poses)
-        colors = [rgba(robot_style(k).color) for k in range(self.moments.poses.shape[1])]
         self.size = (width, height)
         frame = Frame(width, height, **_FREE)
         self.view: View = view_of(places, frame)
         walls = Walls(mission, WALL_PX * self.view.pixel_m)
-        self._tableau = Tableau(stage, colors, walls.top)
+        self._tableau = tableau_of(footage, walls)
         self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
         self._lids = walls.lids(self._tableau.ground_m)
         self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
@@ -72,21 +72,43 @@ class FilmSet:
         marks = (*self._lids, *self._marks.at(now, poses))
         large = self._renderer.seen_from(view.position, view.axes, lens, marks=marks, depth_m=view.depth_m)
         picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA)
-        self._name(picture, poses)
+        name_all(picture, self.moments, poses, view.pixels, view.pixel_m, self._tableau.ground_m)
         return picture
 
-    def _name(self, picture: Picture, poses: Floats) -> None:
-        situation = self.moments.situation
-        tasks, robots = list(situation.tasks.values()), list(situation.robots)
-        if len(tasks) <= _MOST_NAMED:
-            places = np.array([(*task.position, self._tableau.ground_m)[:3] for task in tasks]).reshape(-1, 3)
-            at = self.view.pixels(places) + (0.0, TASK_PX + 13.0)
-            write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
-        names: list[tuple[str, Rgb]] = [(name, rgb(robot_style(k).color)) for k, name in enumerate(robots)][: len(poses)]
-        at = self.view.pixels(poses[: len(names), :3])
-        rings = np.array([robot.radius_m for robot in situation.robots.values()])[: len(poses)] / self.view.pixel_m
-        at[:, 1] -= np.maximum(rings, RING_PX) * math.sin(TILT) + 6.0
-        write_names(picture, names, at, 13, 600)
+
+def tableau_of(footage: Footage, walls: Walls, *, smooth: bool = False) -> Tableau:
+    """The world of a run, its robots in their colours; those that joined included."""
+    stage = footage.world.stage
+    colors = [rgba(robot_style(k).color) for k in range(len(stage.robots))]
+    return Tableau(stage, colors, walls.top, smooth=smooth)
+
+
+def name_all(
+    picture: Picture,
+    moments: Moments,
+    poses: Floats,
+    pixels: Callable[[Floats], Floats],
+    pixel_m: float,
+    ground_m: float,
+) -> None:
+    """Write tasks' ids beneath them, if they are not too many, and robots' above them.
+
+    Parameters
+    ----------
+    pixels, pixel_m
+        where places are in the picture, and how many metres a pixel of it is across.
+    """
+    tasks, robots = list(moments.situation.tasks.values()), list(moments.situation.robots.values())[: len(poses)]
+    if len(tasks) <= _MOST_NAMED:
+        places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)
+        write_names(
+            picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], pixels(places) + (0.0, TASK_PX + 13.0), 11, 400
+        )
+    names = [(robot.id, rgb(robot_style(k).color)) for k, robot in enumerate(robots)]
+    rings = np.array([max(robot.radius_m / pixel_m, RING_PX) for robot in robots])
+    at = pixels(poses[: len(robots), :3])
+    at[:, 1] -= rings * math.sin(TILT) + 6.0
+    write_names(picture, names, at, 13, 600)
 
 
 def places_of(mission: Mission, poses: Floats) -> Floats:

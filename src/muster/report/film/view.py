@@ -79,21 +79,22 @@ def view_of(places: Floats, frame: Frame) -> View:
     axes = _axes(math.pi / 2 if wide >= long else math.pi)
     focal = frame.height / 2 / math.tan(HALF_ANGLE)
     turned = places @ axes
-    slopes = np.array(
-        [
-            [frame.width / 2 - frame.left, frame.width / 2 - frame.right],
-            [frame.height / 2 - frame.top, frame.height / 2 - frame.bottom],
-        ]
-    ) / focal
+    slopes = (
+        np.array(
+            [
+                [frame.width / 2 - frame.left, frame.width / 2 - frame.right],
+                [frame.height / 2 - frame.top, frame.height / 2 - frame.bottom],
+            ]
+        )
+        / focal
+    )
     bounds = []
     for k in range(2):
         least = (turned[:, k] + slopes[k, 0] * turned[:, 2]).min()  # x <= least - slope z
         most = (turned[:, k] - slopes[k, 1] * turned[:, 2]).max()
         bounds.append((least, most))
     ahead = min((bounds[k][0] - bounds[k][1]) / slopes[k].sum() for k in range(2))
-    across, down = (
-        (bounds[k][0] - slopes[k, 0] * ahead + bounds[k][1] + slopes[k, 1] * ahead) / 2 for k in range(2)
-    )
+    across, down = ((bounds[k][0] - slopes[k, 0] * ahead + bounds[k][1] + slopes[k, 1] * ahead) / 2 for k in range(2))
     distance = float(turned[:, 2].mean() - ahead)
     position = axes @ np.array([across, down, ahead])
     return View(position, axes, focal, frame.width, frame.height, distance / focal)

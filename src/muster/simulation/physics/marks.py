@@ -45,7 +45,9 @@ class Mark:
         if scene.ngeom >= scene.maxgeom:
             return
         geom = scene.geoms[scene.ngeom]
-        mujoco.mjv_initGeom(geom, self.shape, self.size, self.place, self.axes.ravel(), np.array(self.color, np.float32))
+        mujoco.mjv_initGeom(
+            geom, self.shape, self.size, self.place, self.axes.ravel(), np.array(self.color, np.float32)
+        )
         geom.emission, geom.specular = _GLOW, 0.0
         scene.ngeom += 1
 

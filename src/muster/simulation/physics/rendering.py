@@ -1,7 +1,7 @@
 """Pictures of the physics world, drawn without a screen: what a pinhole camera would see, and a view from above.
 
 A camera's frame is that of optics: x to the right, y down, z ahead. Shadows, reflections and smoothing are off: they
-cost more than all the rest; a model that asks for shadows has them.
+cost more than all the rest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Picture = npt.NDArray[np.uint8]
 """(height, width, 3): red, green, blue; the first row is the topmost."""
 
 NEAR_M, FAR_M = 0.02, 300.0
-_COSTLY = (mujoco.mjtRndFlag.mjRND_REFLECTION, mujoco.mjtRndFlag.mjRND_HAZE)
+_COSTLY = (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION, mujoco.mjtRndFlag.mjRND_HAZE)
 
 
 class Scenery(Protocol):
@@ -151,9 +151,7 @@ class Renderer:
         }
         return self._drawn(position, axes, frustum, depth_m, marks, orthographic=False)
 
-    def seen_from_above(
-        self, centre: tuple[float, float], height_m: float, *, marks: Iterable[Mark] = ()
-    ) -> Picture:
+    def seen_from_above(self, centre: tuple[float, float], height_m: float, *, marks: Iterable[Mark] = ()) -> Picture:
         """A map-like view: north is up, and the picture is `height_m` metres high."""
         x, y = centre
         axes = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
@@ -178,7 +176,6 @@ class Renderer:
         self._renderer.update_scene(self._stage.data)
         for flag in _COSTLY:
             scene.flags[flag] = 0
-        scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._stage.model.vis.quality.shadowsize > 0
         for mark in marks:
             mark.put(scene)
         for camera in scene.camera:  # of the left eye and of the right

@@ -26,7 +26,7 @@ _LIGHT = 0.55
 _SLICES = 40
 _AWAY_M = -1000.0
 """The height of a robot that is not there."""
-_SHADOW_PX, _SAMPLES = 4096, 4
+_SAMPLES = 4
 
 
 class Tableau:
@@ -40,11 +40,13 @@ class Tableau:
         of the robots, in order.
     wall_top
         to which height a wall is shown that has its middle at x, y, metres in the map frame.
-    fine
-        with shadows and smooth edges, which take ten times as long.
+    smooth
+        whether edges are, which takes four times as long.
     """
 
-    def __init__(self, stage: Stage, colors: Sequence[Rgba], wall_top: Callable[[float, float], float], *, fine: bool = False) -> None:
+    def __init__(
+        self, stage: Stage, colors: Sequence[Rgba], wall_top: Callable[[float, float], float], *, smooth: bool = False
+    ) -> None:
         self._robots = stage
         self.model: Any = copy.copy(stage.model)
         self.data: Any = mujoco.MjData(self.model)
@@ -55,8 +57,8 @@ class Tableau:
             self._paint(k, color)
         self.model.vis.headlight.ambient = (_LIGHT,) * 3
         self.model.vis.quality.numslices = _SLICES
-        if fine:
-            self.model.vis.quality.shadowsize, self.model.vis.quality.offsamples = _SHADOW_PX, _SAMPLES
+        if smooth:
+            self.model.vis.quality.offsamples = _SAMPLES
 
     @property
     def stage(self) -> Tableau:
