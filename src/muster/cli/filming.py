@@ -1,4 +1,4 @@
-"""Films and stills of `muster simulate`: what is asked for, found out before the mission is carried out, and drawn after."""
+"""Films and stills of `muster simulate`: what is asked for is checked before the run, and drawn after."""
 
 from __future__ import annotations
 

@@ -49,7 +49,10 @@ class Mp4:
     def add(self, picture: Picture) -> None:
         if self._last is not None:
             self._last.result()
-        self._last = self._worker.submit(self._writer.write, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+        self._last = self._worker.submit(self._encode, picture)
+
+    def _encode(self, picture: Picture) -> None:
+        self._writer.write(cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
 
     def close(self) -> None:
         self._worker.shutdown()

@@ -45,7 +45,7 @@ class Footage:
         self._poses: list[Floats] = []
 
     def on_world(self, world: object) -> None:
-        """This world will be filmed.
+        """Film this world.
 
         Raises
         ------

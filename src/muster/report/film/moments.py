@@ -43,13 +43,14 @@ class Moments:
         """Poses (n, 7) at a moment, between those that are known: places straight, turns by the shortest way."""
         after = int(np.clip(np.searchsorted(self.times_s, now), 1, max(1, len(self.times_s) - 1)))
         if len(self.times_s) == 1:
-            return self.poses[0]
+            only: Floats = self.poses[0]
+            return only
         begin, end = self.times_s[after - 1], self.times_s[after]
         share = float(np.clip((now - begin) / (end - begin), 0.0, 1.0))
         first, last = self.poses[after - 1], self.poses[after].copy()
         opposite = (first[:, 3:] * last[:, 3:]).sum(axis=1) < 0
         last[opposite, 3:] *= -1
-        poses = (1 - share) * first + share * last
+        poses: Floats = (1 - share) * first + share * last
         poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
         return poses
 

@@ -14,16 +14,16 @@ from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
-from muster.report.film.walls import Walls
 from muster.report.film.moments import Moments
 from muster.report.film.stage_marks import RING_PX, TASK_PX, StageMarks, rgba
 from muster.report.film.view import TILT, Frame, View, view_of
+from muster.report.film.walls import Walls
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.rendering import Lens, Renderer
 from muster.simulation.physics.tableau import Tableau
 
 OVERSAMPLED = 2
-"""Pictures are drawn so many times as large, and made smaller: edges are smooth, cheaper than by the graphics library."""
+"""Pictures are drawn so many times as large, and made smaller: edges are smooth, more cheaply than by MuJoCo."""
 WALL_PX = 13
 """Walls without an end are shown so high, in pixels of the film."""
 _MOST_NAMED = 60
@@ -71,7 +71,7 @@ class FilmSet:
         lens = Lens(OVERSAMPLED * width, OVERSAMPLED * height, OVERSAMPLED * view.focal_px)
         marks = (*self._lids, *self._marks.at(now, poses))
         large = self._renderer.seen_from(view.position, view.axes, lens, marks=marks, depth_m=view.depth_m)
-        picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA)
+        picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False)
         name_all(picture, self.moments, poses, view.pixels, view.pixel_m, self._tableau.ground_m)
         return picture
 
@@ -101,9 +101,9 @@ def name_all(
     tasks, robots = list(moments.situation.tasks.values()), list(moments.situation.robots.values())[: len(poses)]
     if len(tasks) <= _MOST_NAMED:
         places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)
-        write_names(
-            picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], pixels(places) + (0.0, TASK_PX + 13.0), 11, 400
-        )
+        at = pixels(places)
+        at[:, 1] += TASK_PX + 13.0
+        write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
     names = [(robot.id, rgb(robot_style(k).color)) for k, robot in enumerate(robots)]
     rings = np.array([max(robot.radius_m / pixel_m, RING_PX) for robot in robots])
     at = pixels(poses[: len(robots), :3])

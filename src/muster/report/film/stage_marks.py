@@ -98,7 +98,7 @@ class StageMarks:
         foot = np.array([x, y, self._ground_m + 3 * self._level_m])
         if z < self._ground_m + _STANDS_M:
             yield disc(foot, radius, rim)
-            yield disc(foot + (0.0, 0.0, self._level_m), inner, core)
+            yield disc(np.array([x, y, foot[2] + self._level_m]), inner, core)
             return
         top = np.array([x, y, z])
         pole = strip(foot, top, 1.5 * self._pixel_m, 1.5 * self._pixel_m, rgba("#9AA0A8"))

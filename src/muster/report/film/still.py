@@ -40,7 +40,7 @@ def write_still(path: str | Path, footage: Footage) -> None:
     low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
     room = np.array([_MOST_WIDE - 2 * _EDGE, _MOST_HIGH - _TOP - _EDGE])
     pixel_m = float(((high - low) / room).max())
-    width, height = (np.ceil((high - low) / pixel_m) + (2 * _EDGE, _TOP + _EDGE)).astype(int).tolist()
+    width, height = np.ceil((high - low) / pixel_m + np.array([2 * _EDGE, _TOP + _EDGE])).astype(int).tolist()
     centre = (low + high) / 2 + (0.0, (_TOP - _EDGE) / 2 * pixel_m)
 
     def pixels(where: Floats) -> Floats:

@@ -63,8 +63,7 @@ def rectangles(blocked: Bools) -> list[tuple[int, int, int, int]]:
         cells = blocked[row] if row < len(blocked) else np.zeros(blocked.shape[1], dtype=bool)
         steps = np.diff(np.pad(cells.astype(np.int8), 1))
         runs = set(zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True))
-        for run in [run for run in begun if run not in runs]:
-            found.append((*run, begun.pop(run), row))
+        found += [(*run, begun.pop(run), row) for run in list(begun) if run not in runs]
         for run in runs:
             begun.setdefault(run, row)
     return found
@@ -75,7 +74,7 @@ def triangles(polygon: Floats) -> list[Floats]:
     corners = [corner for k, corner in enumerate(polygon) if not np.array_equal(corner, polygon[k - 1])]
     if _area(np.array(corners)) < 0:
         corners.reverse()
-    found = []
+    found: list[Floats] = []
     while len(corners) > 3:
         ear = next((k for k in range(len(corners)) if _is_ear(corners, k)), None)
         if ear is None:  # it crosses itself

@@ -83,7 +83,8 @@ class Tableau:
     def _show_walls(self, wall_top: Callable[[float, float], float]) -> None:
         """Each once, though robots of several kinds are stopped by it; those that stop drones alone like glass."""
         model, ground_sets = self.model, self._sets_of_ground_robots()
-        standing = (model.geom_bodyid == 0) & (model.geom_contype & ~(GROUND_BIT | ROBOTS_BIT) != 0)
+        stops = np.asarray(model.geom_contype & ~(GROUND_BIT | ROBOTS_BIT))
+        standing = np.asarray((model.geom_bodyid == 0) & (stops != 0))
         twins: dict[tuple[float, ...], list[int]] = {}
         for k in np.flatnonzero(standing).tolist():
             where = np.concatenate([model.geom_pos[k, :2], model.geom_quat[k], model.geom_size[k, :2]])
