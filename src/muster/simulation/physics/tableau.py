@@ -73,7 +73,7 @@ class Tableau:
         frames, turns
             (n, 3) metres, and (n, 4) quaternions, w first, in the map frame; who has NaN is not there.
         """
-        there = np.isfinite(frames).all(axis=1)[:, None]
+        there = np.isfinite(frames).all(axis=1, keepdims=True)
         places = self._robots.places
         self.data.qpos[places[:, :3]] = np.where(there, frames, (0.0, 0.0, _AWAY_M))
         self.data.qpos[places[:, 3:]] = np.where(there, turns, (1.0, 0.0, 0.0, 0.0))

@@ -19,7 +19,7 @@ WITHIN = 3.0
 ALL = "all"
 _WHOLE = "31T-6R50-as-run"
 _COLUMNS = (
-    *("mission", "figure", "robot", "planned", "kinematic", "physics", "physics %"),
+    *("mission", "figure", "robot", "planned", "flown", "physics", "%"),
     *("tasks", "contacts", "apart", "s", "physics s", "mark"),
 )
 
@@ -46,9 +46,10 @@ class BesidePhysics:
             cells = _rows(found[flight], found[_in_physics(flight)])
             rows += [row(_COLUMNS, {"mission": flight.mission, "figure": name, **one}) for one in cells]
         notes = (
-            "planned, kinematic, physics: usage; physics %: against kinematic. tasks: done in the physics world, of "
-            "those planned; contacts, apart (least distance of two centres): there. s, physics s: until the mission was over in each.",
-            f"mark: {EQUAL} if physics is within {WITHIN:g} % of kinematic; of a team, too, if all that was planned is "
+            "planned, flown (in the kinematic world), physics: usage; %: physics against flown. tasks: done in physics, of "
+            "those planned; contacts, apart (least distance of two centres): there. s: until the mission "
+            "was over, in each.",
+            f"mark: {EQUAL} if physics is within {WITHIN:g} % of flown; of a team, too, if all that was planned is "
             "done, without contact.",
             f"{ALLOCATOR}: own plan with {search_iterations(effort)} iterations and seed 0, of all tasks; the "
             f"published one of {_WHOLE} leaves 8 out.",
@@ -99,11 +100,11 @@ def _rows(kinematic: Flown, physics: Flown) -> Iterator[dict[str, Cell]]:
 def _usages(planned: float, kinematic: float, physics: float) -> dict[str, float]:
     return {
         "planned": planned,
-        "kinematic": kinematic,
+        "flown": kinematic,
         "physics": physics,
-        "physics %": excess(physics, kinematic),
+        "%": excess(physics, kinematic),
     }
 
 
 def _mark(cells: Mapping[str, float]) -> str:
-    return EQUAL if abs(cells["physics %"]) <= WITHIN else "more" if cells["physics %"] > 0 else "less"
+    return EQUAL if abs(cells["%"]) <= WITHIN else "more" if cells["%"] > 0 else "less"
