@@ -20,8 +20,9 @@ from muster.report.film.captions import (
     write_events,
 )
 from muster.report.film.files import film_file
-from muster.report.film.footage import Footage, Told
+from muster.report.film.footage import Footage
 from muster.report.film.set import FilmSet
+from muster.report.record.recording import Happening
 from muster.report.record.situation import ALARMING, DONE
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
 
@@ -112,7 +113,7 @@ def _plain(age_s: float) -> float:
     return min(1.0, max(0.0, (_SHOWN_S - age_s) / _FADES_S))
 
 
-def _color(told: Told, scene: FilmSet) -> Rgb:
+def _color(told: Happening, scene: FilmSet) -> Rgb:
     robots = list(scene.moments.situation.robots)
     if told.kind in ALARMING:
         return rgb(ALARM)

@@ -7,7 +7,6 @@ talk in real time need not wait for them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,15 +15,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
-
-
-@dataclass(frozen=True)
-class Told:
-    """An event: when, of which kind, and what is said of it."""
-
-    time_s: float
-    kind: str
-    data: Mapping[str, Any]
+from muster.report.record.recording import Happening
 
 
 class Footage:
@@ -38,7 +29,7 @@ class Footage:
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
-        self.events: list[Told] = []
+        self.events: list[Happening] = []
         self.report: Mapping[str, Any] | None = None
         self._world: Any = None
         self._times: list[float] = []
@@ -70,7 +61,7 @@ class Footage:
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """Keep what has happened."""
-        self.events.append(Told(now, kind, data))
+        self.events.append(Happening(now, kind, data))
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
         """What robots say of themselves is not to be seen."""

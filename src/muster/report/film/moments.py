@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.report.film.footage import Footage, Told
+from muster.report.film.footage import Footage
+from muster.report.record.recording import Happening
 from muster.report.record.situation import OUT, Situation
 
 
@@ -25,7 +26,7 @@ class Moments:
         """Tasks that are under way or done, and who does or did them."""
         self.out: set[str] = set()
         """Robots that take no part."""
-        self.told: list[Told] = []
+        self.told: list[Happening] = []
         self._ahead = list(footage.events)
 
     @property
@@ -54,7 +55,7 @@ class Moments:
         poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
         return poses
 
-    def _take(self, told: Told) -> None:
+    def _take(self, told: Happening) -> None:
         task, robot = told.data.get("task"), told.data.get("robot")
         self.situation.take(told.kind, told.data)
         if told.kind in ("starts", "ends"):

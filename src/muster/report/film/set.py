@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self
@@ -16,7 +15,7 @@ from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
 from muster.report.film.moments import Moments
 from muster.report.film.stage_marks import RING_PX, TASK_PX, StageMarks, rgba
-from muster.report.film.view import TILT, Frame, View, view_of
+from muster.report.film.view import Frame, View, view_of
 from muster.report.film.walls import Walls
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.rendering import Lens, Renderer
@@ -107,7 +106,7 @@ def name_all(
     names = [(robot.id, rgb(robot_style(k).color)) for k, robot in enumerate(robots)]
     rings = np.array([max(robot.radius_m / pixel_m, RING_PX) for robot in robots])
     at = pixels(poses[: len(robots), :3])
-    at[:, 1] -= rings * math.sin(TILT) + 6.0
+    at[:, 1] -= rings + 5.0
     write_names(picture, names, at, 13, 600)
 
 

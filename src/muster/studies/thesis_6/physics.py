@@ -46,8 +46,8 @@ class BesidePhysics:
             cells = _rows(found[flight], found[_in_physics(flight)])
             rows += [row(_COLUMNS, {"mission": flight.mission, "figure": name, **one}) for one in cells]
         notes = (
-            "planned, flown (in the kinematic world), physics: usage; %: physics against flown. tasks: done there, of those "
-            "planned; contacts, apart: there, the latter the least distance of two centres. s: until the mission was over.",
+            "planned, flown (in the kinematic world), physics: usage; %: physics against flown. tasks: done there, of "
+            "those planned; contacts, apart: there, apart the least distance of two centres. s: until all was over.",
             f"mark: {EQUAL} if physics is within {WITHIN:g} % of flown; of a team, too, if all that was planned is "
             "done, without contact.",
             f"{ALLOCATOR}: own plan with {search_iterations(effort)} iterations and seed 0, of all tasks; the "
