@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from muster._negotiated.simulation import Negotiation
     from muster.allocation.stop import Progress
     from muster.execution import Report
+    from muster.report.film import Footage
     from muster.verification import Verdict
 
 
@@ -169,7 +171,13 @@ def _require_mission(mission: object) -> None:
 
 
 def simulate(
-    mission: Mission, plan: Plan | Negotiation, *, seed: int = 0, record: str | Path | None = None, **how: Any
+    mission: Mission,
+    plan: Plan | Negotiation,
+    *,
+    seed: int = 0,
+    record: str | Path | None = None,
+    film: str | Path | Footage | None = None,
+    **how: Any,
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
 
@@ -182,24 +190,52 @@ def simulate(
         of the world and of planning anew.
     record
         a file (.mcap) that is to hold what happened; needs the extra `record`.
+    film
+        a file (.mp4, .gif) for a film of it, in the physics world; or a `Footage` of the mission, of which films and
+        stills can be made afterwards.
     how
         as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
 
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have.
+        if the plan names robots or tasks that the mission does not have; if a film is wanted of another world.
+    InputError, RenderingError
+        if a film cannot have that ending, or nothing draws here: before the mission is carried out.
     MissingExtraError
         where an extra is not installed that is needed; a negotiation needs `net`, the physics world `physics`.
     """
     _require_mission(mission)
     carry_out = _carrying_out(mission, plan)
-    if record is None:
-        return carry_out(seed=seed, **how)
-    from muster.report.record import RecordWriter
+    with ExitStack() as stack:
+        recorders: list[Any] = []
+        if record is not None:
+            from muster.report.record import RecordWriter
 
-    with RecordWriter(record, mission) as recorder:
-        return carry_out(seed=seed, recorder=recorder, **how)
+            recorders.append(stack.enter_context(RecordWriter(record, mission)))
+        if film is not None:
+            footage = _footage(mission, film)
+            recorders.append(footage)
+            how["on_world"] = footage.on_world
+        if recorders:
+            from muster.report.recorders import Recorders
+
+            how["recorder"] = Recorders(*recorders)
+        report = carry_out(seed=seed, **how)
+    if isinstance(film, str | Path):
+        from muster.report.film import write_film
+
+        write_film(film, footage)
+    return report
+
+
+def _footage(mission: Mission, film: str | Path | Footage) -> Footage:
+    from muster.report.film import Footage, check_film
+
+    if isinstance(film, Footage):
+        return film
+    check_film(film)
+    return Footage(mission)
 
 
 def _carrying_out(mission: Mission, plan: Plan | Negotiation) -> Callable[..., Report]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from muster.execution.report import Report
     from muster.motion.grid import Floats
 
+OnWorld = Callable[[SimulatedWorld], None]
 WORLDS = ("kinematic", "physics")
 LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
@@ -56,6 +57,8 @@ class Simulation:
         is told all that happens.
     on_look
         is told each look of a camera; cameras look where the mission has tags.
+    on_world
+        is given the world when it is made, to look at it: at bodies, in the physics world.
 
     Raises
     ------
@@ -77,10 +80,13 @@ class Simulation:
         noise: Noise = NO_NOISE,
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
+        on_world: OnWorld | None = None,
     ) -> None:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+        if on_world is not None:
+            on_world(self._world)
         self._executor = Executor(
             mission,
             _with_objective(mission, plan),

@@ -112,6 +112,45 @@ def test_a_plan_record_page_and_picture(muster, tmp_path, monkeypatch):
     assert read_plan("plan.json").tasks_completed == 16
 
 
+@pytest.mark.skipif(find_spec("mujoco") is None, reason="the extra `physics` is not installed")
+def test_a_film_and_a_still_of_the_physics_world(muster, tmp_path):
+    film, still = tmp_path / "flown.gif", tmp_path / "end.png"
+    how = ("--world", "physics", "--iterations", "20", "--film-speed", "100")
+    code, out, err = muster("simulate", "6T-2R", *how, "--film", str(film), "--still", str(still))
+    assert code == 0
+    assert "6 of 6" in out
+    assert re.fullmatch(rf"{re.escape(str(film))}: \d\.\d s at 100 times real time\n", err)
+    assert film.read_bytes()[:6] == b"GIF89a"
+    assert still.read_bytes()[:4] == b"\x89PNG"
+    again = muster("simulate", "6T-2R", *how, "--film", str(film), "-q")
+    assert (again[0], again[2]) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--film", "a.mp4"), "--film given; expected it together with --world physics"),
+        (("--still", "a.png"), "--still given; expected it together with --world physics"),
+        (("--film-speed", "2"), "--film-speed given; expected it together with --film"),
+        (("--world", "physics", "--film", "a.avi"), "a.avi: suffix '.avi'; expected .mp4 or .gif"),
+        (("--world", "physics", "--film", "film"), "film: no suffix; expected .mp4 or .gif"),
+        (("--world", "physics", "--still", "a.gif"), "a.gif: suffix '.gif'; expected .png"),
+        (("--world", "physics", "--film", "a.mp4", "--record", "a.mp4"), "a.mp4: given twice"),
+        (("--world", "physics", "--film", "no/a.mp4"), "no/a.mp4: cannot be written"),
+    ],
+)
+def test_films_that_cannot_be(muster, tmp_path, monkeypatch, arguments, message):
+    """Found out before the mission is carried out, in one line."""
+    if "physics" in arguments and find_spec("mujoco") is None:
+        pytest.skip("the extra `physics` is not installed")
+    monkeypatch.chdir(tmp_path)
+    code, out, err = muster("simulate", "6T-2R", *arguments)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert message in err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_lost_tasks_can_be_an_error(muster, eventful):
     assert muster("simulate", eventful, "--iterations", "100", "--require-complete")[0] == 3
 

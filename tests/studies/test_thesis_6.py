@@ -2,14 +2,17 @@
 
 import json
 from dataclasses import replace
+from importlib.util import find_spec
 
 import pytest
 
 import muster as package
 from muster.cli.main import run as muster
-from muster.mission.errors import MusterError
+from muster.mission.errors import MissingExtraError, MusterError
 from muster.simulation import Noise
 from muster.studies import Effort, study_named
+from muster.studies.marks import EQUAL
+from muster.studies.thesis_6 import physics
 from muster.studies.thesis_6.flights import Flight, fly, mission_with
 from muster.studies.thesis_6.published import excess, plans
 from muster.studies.thesis_6.totals import best_of, search_flights
@@ -153,6 +156,41 @@ def test_missions_with_actions_differ_in_nothing_else(name):
     assert acting.suitability == plain.suitability
     for there, here in zip(plain.tasks, acting.tasks, strict=True):
         assert replace(here, action=None, actuation_cost=0) == replace(there, actuation_cost=0)
+
+
+needs_physics = pytest.mark.skipif(find_spec("mujoco") is None, reason="the extra `physics` is not installed")
+
+
+@needs_physics
+def test_ground_missions_in_the_physics_world(tables):
+    """The issue's proof: all tasks done, no contact, each robot within 3 % of the kinematic world."""
+    rows = tables["physics"].records()
+    assert {row["mission"] for row in rows} == {"6T-2R", "11T-2R", "31T-6R50-as-run", "31T-6R50"}
+    assert all(row["mark"] == EQUAL and abs(row["%"]) < 3 for row in rows)
+    done = [(row["mission"], row["tasks"], row["contacts"]) for row in rows if row["robot"] == "all"]
+    assert ("31T-6R50-as-run", "31/31", 0) in done
+    assert all(contacts == 0 for _, _, contacts in done)
+
+
+@needs_physics
+def test_6t_2r_in_the_physics_world():
+    (plan,) = plans("6.8")
+    flown = fly(plan.flight(world="physics"))
+    assert flown.usages == pytest.approx((8.23, 9.81), abs=0.01)
+    assert flown.report.min_distance_m == pytest.approx(1.63, abs=0.01)
+    assert flown.report.mission_time_s == pytest.approx(40.4, abs=0.15)
+    assert (len(flown.report.tasks_done), flown.lost, flown.report.contacts) == (6, 0, 0)
+
+
+def test_without_the_extra_the_physics_table_says_what_to_install(monkeypatch):
+    def lacking():
+        raise MissingExtraError("physics", "the physics world")
+
+    monkeypatch.setattr(physics, "require_physics_extra", lacking)
+    report = study_named("thesis-6").run(Effort(tables=("physics",)))
+    assert report.runs == 0
+    assert report.tables[0].rows == ()
+    assert "muster-robotics[physics]" in report.tables[0].notes[0]
 
 
 def test_slip_costs_half_of_it(tables):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import Recorder, recorded_world
+from muster._carrying_out import OnWorld, Recorder, recorded_world
 from muster._looking import OnLook, lookout_for, with_found
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
@@ -58,6 +58,7 @@ def negotiate_and_carry_out(
     noise: Noise = NO_NOISE,
     speed: float | None = None,
     recorder: Recorder | None = None,
+    on_world: OnWorld | None = None,
     on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
     on_look: OnLook | None = None,
@@ -90,6 +91,8 @@ def negotiate_and_carry_out(
         bodies = recorded_world(
             world, problem.mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
         )
+        if on_world is not None:
+            on_world(bodies)
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
         lookout = lookout_for(problem.mission, bodies, bodies.ports, noise=noise, seed=seed, on_look=on_look)

@@ -14,6 +14,7 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.filming import draw_footage, footage_of, require_filmable
 from muster.cli.halting import ctrl_c_halts
 from muster.cli.options import (
     Finite,
@@ -78,6 +79,11 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option(
     "--cameras", type=_FILE, metavar="DIR", help="Write what cameras saw of each tag, largest; with --world physics."
 )
+@click.option("--film", type=_FILE, metavar="FILE", help="Film it, in the physics world (.mp4, .gif).")
+@click.option(
+    "--film-speed", type=Finite(0.01, 1e6), metavar="X", help="X times real time.  [default: a film of at most 24 s]"
+)
+@click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
 @method_options
 @terms_options
 @require_complete_option
@@ -105,6 +111,9 @@ def command(
     gantt: Path | None,
     found: Path | None,
     cameras: Path | None,
+    film: Path | None,
+    film_speed: float | None,
+    still: Path | None,
     method: str,
     transport: str,
     settings: tuple[str, ...],
@@ -122,8 +131,9 @@ def command(
     each decides for itself what to do next. They talk in real time.
     """
     _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt, found), (mission, robots, suitability), (plan,))
+    require_writable(None, (record, html, plot, gantt, film, still, found), (mission, robots, suitability), (plan,))
     require_drawable(plot, gantt, found)
+    require_filmable(world, film, film_speed, still)
     noise = _noise(noises)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
@@ -145,6 +155,7 @@ def command(
             "speed": speed,
             "on_look": looks,
         }
+        footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
         tell = _tell if speed is not None and not quiet else None
         with ctrl_c_halts() as halt:
             report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
@@ -156,6 +167,8 @@ def command(
         click.echo(json_text(report.as_dict()), nl=False)
     else:
         print_report(report.as_dict(), loaded, with_tasks=verbose)
+    if footage is not None:
+        draw_footage(footage, film, film_speed, still, quiet=quiet)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission", err=True)
         return INTERRUPTED

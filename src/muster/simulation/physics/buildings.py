@@ -1,81 +1,131 @@
 """What is drawn of a map in the physics world: a low fence at its boundary, buildings with roofs, walls of an image.
 
 What stops robots are other geoms, which are not drawn: a ground robot is stopped at any height by what a drone flies
-over, and a zone that is closed to one kind alone is no building. Here things are as high as they are.
+over, and a zone that is closed to one kind alone is no building. Here things are as high as they are; or, to be looked
+at from above, low where they have no height of their own, with what is closed to one kind marked.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from muster.motion.grid import Floats
-from muster.motion.world import World
+from muster.motion.grid import Bools, Grid
+from muster.motion.world import Area, World
 from muster.simulation.physics.bodies import quaternion
 from muster.simulation.physics.xml import add
-from muster.simulation.walls import borders_of
 
 if TYPE_CHECKING:
     import shapely
 
-FENCE_M, WALL_M, BUILDING_M = 0.1, 0.8, 2.5
-"""Heights above the ground: of the boundary; of the walls of an image, which have none; of zones without a ceiling."""
-THICKNESS_M = 0.04
-WALLS_RGBA, ROOFS_RGBA = (0.62, 0.58, 0.53, 1.0), (0.72, 0.68, 0.63, 1.0)
+Rgba = tuple[float, float, float, float]
+"""Red, green, blue and how opaque: 0 to 1."""
 Triangle = tuple[tuple[float, float, float], ...]
 """Three corners."""
+WALL_RGBA: Rgba = (0.7, 0.71, 0.74, 1.0)
+CLOSED_RGBA: Rgba = (0.85, 0.3, 0.3, 0.15)
+_THICK_M, _FLAT_M = 0.04, 0.004
 _SHOWN = {"contype": 0, "conaffinity": 0}
 
 
-def add_buildings(root: ET.Element, place: ET.Element, world: World | None, ground_m: float) -> None:
+@dataclass(frozen=True)
+class Heights:
+    """How high is drawn what has no height of its own, metres above the ground.
+
+    Parameters
+    ----------
+    fence_m, wall_m, building_m
+        the boundary, walls of an image, zones without a ceiling.
+    marked
+        whether zones that are closed to ground robots alone are drawn like walls, and those closed to drones alone as
+        a tint of the ground.
+    """
+
+    fence_m: float = 0.1
+    wall_m: float = 0.8
+    building_m: float = 2.5
+    marked: bool = False
+
+    @classmethod
+    def low(cls, metres: float) -> Heights:
+        """All alike, so that one sees over it."""
+        return cls(metres, metres, metres, marked=True)
+
+
+def add_buildings(root: ET.Element, place: ET.Element, world: World, ground_m: float, heights: Heights) -> None:
     """Put what is drawn of a map into the model."""
-    if world is None:
-        return
     if world.image is not None:
-        for piece in borders_of(world.image):
-            _wall(place, piece, ground_m, ground_m + WALL_M)
+        for block in _blocks(world.image):
+            _box(place, block, ground_m, heights.wall_m)
     if world.boundary is not None:
-        ring = np.array(world.boundary.exterior.coords)[:, :2]
-        for piece in np.hstack([ring[:-1], ring[1:]]):
-            _wall(place, piece, ground_m, ground_m + FENCE_M)
+        for (x0, y0), (x1, y1) in pairwise(_corners(world.boundary)):
+            length, yaw = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
+            _box(place, ((x0 + x1) / 2, (y0 + y1) / 2, length + _THICK_M, _THICK_M, yaw), ground_m, heights.fence_m)
     asset = ET.SubElement(root, "asset")
     for area in world.areas:
-        if {"ground", "air"} <= set(area.zone.forbidden_to):
-            low = max(area.floor_m, ground_m)
-            high = area.ceiling_m if math.isfinite(area.ceiling_m) else low + BUILDING_M
-            _building(asset, place, f"zone{area.number}", area.polygon, low, high)
+        closed_to = set(area.zone.forbidden_to)
+        if closed_to == {"ground", "air"} or (closed_to == {"ground"} and heights.marked):
+            low, high = _extent(area, world, ground_m, heights)
+            _prism(asset, place, area, low, high, WALL_RGBA)
+        elif heights.marked:
+            _prism(asset, place, area, ground_m, ground_m + _FLAT_M, CLOSED_RGBA)
 
 
-def _wall(place: ET.Element, piece: Floats, low: float, high: float) -> None:
-    x0, y0, x1, y1 = map(float, piece)
-    length = math.hypot(x1 - x0, y1 - y0)
-    if length == 0:
-        return
+def rectangles(blocked: Bools) -> list[tuple[int, int, int, int]]:
+    """Cut blocked cells into few rectangles: first and last column, first and last row, the last ones not within."""
+    begun: dict[tuple[int, int], int] = {}
+    found: list[tuple[int, int, int, int]] = []
+    for row in range(len(blocked) + 1):
+        cells = blocked[row] if row < len(blocked) else np.zeros(blocked.shape[1], dtype=bool)
+        steps = np.diff(np.pad(cells.astype(np.int8), 1))
+        runs = set(zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True))
+        found += [(*run, begun.pop(run), row) for run in list(begun) if run not in runs]
+        for run in runs:
+            begun.setdefault(run, row)
+    return found
+
+
+def _extent(area: Area, world: World, ground_m: float, heights: Heights) -> tuple[float, float]:
+    """From where to where a zone reaches; in a mission in the plane heights do not count."""
+    low = max(area.floor_m, ground_m)
+    in_space = world.dimensions == 3 or not heights.marked
+    return low, area.ceiling_m if in_space and math.isfinite(area.ceiling_m) else low + heights.building_m
+
+
+def _blocks(grid: Grid) -> Iterator[tuple[float, float, float, float, float]]:
+    """Of blocked cells: the middle of each rectangle, its length, width and yaw, in the map frame."""
+    for left, right, low, high in rectangles(grid.blocked):
+        x, y = grid.to_map(np.array([[(left + right) / 2, (low + high) / 2]]))[0].tolist()
+        yield x, y, (right - left) * grid.resolution_m, (high - low) * grid.resolution_m, grid.origin[2]
+
+
+def _box(place: ET.Element, block: tuple[float, float, float, float, float], ground_m: float, height_m: float) -> None:
+    x, y, length, width, yaw = map(float, block)
     add(
         place,
         "geom",
         type="box",
-        pos=((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2),
-        size=((length + THICKNESS_M) / 2, THICKNESS_M / 2, (high - low) / 2),
-        quat=quaternion(math.atan2(y1 - y0, x1 - x0)),
-        rgba=WALLS_RGBA,
+        pos=(x, y, ground_m + height_m / 2),
+        size=(length / 2, width / 2, height_m / 2),
+        quat=quaternion(yaw),
+        rgba=WALL_RGBA,
         **_SHOWN,
     )
 
 
-def _building(
-    asset: ET.Element, place: ET.Element, name: str, polygon: shapely.Polygon, low: float, high: float
-) -> None:
-    """A prism: its sides, its roof, and what is under it."""
+def _prism(asset: ET.Element, place: ET.Element, area: Area, low: float, high: float, rgba: Rgba) -> None:
+    """Its sides, its roof, and what is under it."""
     if high <= low:
         return
-    vertices = np.array([*_sides(polygon, low, high), *_lids(polygon, low, high)]).reshape(-1, 3)
+    vertices = np.array([*_sides(area.polygon, low, high), *_lids(area.polygon, low, high)]).reshape(-1, 3)
     middle = vertices.mean(axis=0)
+    name = f"zone{area.number}"
     add(
         asset,
         "mesh",
@@ -84,7 +134,7 @@ def _building(
         face=" ".join(map(str, range(len(vertices)))),
         inertia="shell",
     )
-    add(place, "geom", type="mesh", mesh=name, pos=tuple(middle), rgba=ROOFS_RGBA, **_SHOWN)
+    add(place, "geom", type="mesh", mesh=name, pos=tuple(middle), rgba=rgba, **_SHOWN)
 
 
 def _sides(polygon: shapely.Polygon, low: float, high: float) -> Iterator[Triangle]:

@@ -25,6 +25,7 @@ from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
 from muster.simulation.lasers import mounted_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
+from muster.simulation.physics.buildings import Heights
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.rays import Rays
@@ -68,6 +69,11 @@ class PhysicsWorld(CrowdedWorld):
         self._set_stage()
         assert self._stage is not None
         return self._stage
+
+    def replica(self, heights: Heights) -> Stage:
+        """Another stage with the same robots, to put them anywhere for pictures; see `buildings`."""
+        stage = self.stage
+        return Stage(stage.robots, (), Scenery(self._map, self._tags, self.ground_m, heights), stage.step_s)
 
     @property
     def frames(self) -> Floats:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import mujoco
 import numpy as np
@@ -19,14 +20,28 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError, RenderingError
 from muster.motion.grid import Floats
 from muster.simulation.physics.extra import BACKENDS
+from muster.simulation.physics.marks import Mark
 from muster.simulation.physics.model import SHOW_HEIGHT, SHOW_WIDTH
-from muster.simulation.physics.physics_world import PhysicsWorld
 
 Picture = npt.NDArray[np.uint8]
 """(height, width, 3): red, green, blue; the first row is the topmost."""
 
 NEAR_M, FAR_M = 0.02, 300.0
 _COSTLY = (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION, mujoco.mjtRndFlag.mjRND_HAZE)
+
+
+class Scenery(Protocol):
+    """A model of MuJoCo's with its state."""
+
+    model: Any
+    data: Any
+
+
+class Shown(Protocol):
+    """What can be drawn: a `PhysicsWorld`, whose stage is another one after a robot has joined, or a `Tableau`."""
+
+    @property
+    def stage(self) -> Scenery: ...
 
 
 @dataclass(frozen=True)
@@ -70,7 +85,7 @@ class Lens:
 class Renderer:
     """Draws a physics world as it is when it is asked, robots that joined included.
 
-    Use it in a `with`, or call `close`.
+    Use it in a `with`, or call `close`. There may be several at a time.
 
     Raises
     ------
@@ -78,7 +93,7 @@ class Renderer:
         if there is neither EGL nor OSMesa.
     """
 
-    def __init__(self, world: PhysicsWorld, width: int, height: int) -> None:
+    def __init__(self, world: Shown, width: int, height: int) -> None:
         Lens(width, height, 1.0)
         self._world = world
         self._size = (width, height)
@@ -94,7 +109,15 @@ class Renderer:
         """Give back what it holds of the graphics library."""
         self._renderer.close()
 
-    def seen_from(self, position: Floats, axes: Floats, lens: Lens) -> Picture:
+    def seen_from(
+        self,
+        position: Floats,
+        axes: Floats,
+        lens: Lens,
+        *,
+        marks: Iterable[Mark] = (),
+        depth_m: tuple[float, float] = (NEAR_M, FAR_M),
+    ) -> Picture:
         """What a camera sees.
 
         Parameters
@@ -105,6 +128,11 @@ class Renderer:
             (3, 3): its x to the right, y down, z ahead as columns in the map frame.
         lens
             of the size that this renderer has.
+        marks
+            what else is in the picture.
+        depth_m
+            the nearest and the farthest that is seen, along the axis: the closer together, the better what lies almost
+            in one plane is told apart.
 
         Raises
         ------
@@ -115,22 +143,32 @@ class Renderer:
             width, height = self._size
             raise ParameterError(f"lens: {lens.width} x {lens.height} pixels; expected {width} x {height}")
         across, down = lens.centre_px or (lens.width / 2, lens.height / 2)
-        scale = NEAR_M / lens.focal_px
+        scale = depth_m[0] / lens.focal_px
         frustum = {
             "frustum_center": scale * (lens.width / 2 - across),
             "frustum_top": scale * down,
             "frustum_bottom": -scale * (lens.height - down),
         }
-        return self._drawn(position, axes, frustum, orthographic=False)
+        return self._drawn(position, axes, frustum, depth_m, marks, orthographic=False)
 
-    def seen_from_above(self, centre: tuple[float, float], height_m: float) -> Picture:
+    def seen_from_above(self, centre: tuple[float, float], height_m: float, *, marks: Iterable[Mark] = ()) -> Picture:
         """A map-like view: north is up, and the picture is `height_m` metres high."""
         x, y = centre
         axes = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
         frustum = {"frustum_center": 0.0, "frustum_top": height_m / 2, "frustum_bottom": -height_m / 2}
-        return self._drawn(np.array([x, y, FAR_M / 2]), axes, frustum, orthographic=True)
+        above = np.array([x, y, FAR_M / 2])
+        return self._drawn(above, axes, frustum, (NEAR_M, FAR_M), marks, orthographic=True)
 
-    def _drawn(self, position: Floats, axes: Floats, frustum: dict[str, float], *, orthographic: bool) -> Picture:
+    def _drawn(
+        self,
+        position: Floats,
+        axes: Floats,
+        frustum: dict[str, float],
+        depth_m: tuple[float, float],
+        marks: Iterable[Mark],
+        *,
+        orthographic: bool,
+    ) -> Picture:
         if self._stage is not self._world.stage:
             self.close()
             self._open()
@@ -138,9 +176,11 @@ class Renderer:
         self._renderer.update_scene(self._stage.data)
         for flag in _COSTLY:
             scene.flags[flag] = 0
+        for mark in marks:
+            mark.put(scene)
         for camera in scene.camera:  # of the left eye and of the right
             camera.pos, camera.forward, camera.up = position, axes[:, 2], -axes[:, 1]
-            camera.frustum_near, camera.frustum_far, camera.orthographic = NEAR_M, FAR_M, int(orthographic)
+            (camera.frustum_near, camera.frustum_far), camera.orthographic = depth_m, int(orthographic)
             for name, value in frustum.items():
                 setattr(camera, name, value)
         picture: Picture = self._renderer.render()

@@ -7,21 +7,23 @@ from xml.etree import ElementTree as ET
 
 from muster.mission.model import Tag
 from muster.motion.world import World
-from muster.simulation.physics.buildings import add_buildings
+from muster.simulation.physics.buildings import Heights, add_buildings
 from muster.simulation.physics.tag_plates import add_plates, picture_files
 
 
 @dataclass(frozen=True)
 class Scenery:
-    """Of one mission: its map, its tags, the height of the ground in metres."""
+    """Of one mission: its map, its tags, the height of the ground in metres, and how high walls are drawn."""
 
     map: World | None
     tags: tuple[Tag, ...]
     ground_m: float
+    heights: Heights = Heights()
 
     def add(self, root: ET.Element, place: ET.Element) -> None:
         """Put it into a model, of which these are the root and the body of the world."""
-        add_buildings(root, place, self.map, self.ground_m)
+        if self.map is not None:
+            add_buildings(root, place, self.map, self.ground_m, self.heights)
         add_plates(root, place, self.tags)
 
     @property

@@ -1,4 +1,4 @@
-"""One plan, published or own, judged and carried out in the kinematic world."""
+"""One plan, published or own, judged and carried out in a world."""
 
 from __future__ import annotations
 
@@ -41,6 +41,8 @@ class Flight:
         of capacities, `rules.capacity_reserve`.
     seed
         of search, and of the world.
+    world
+        `kinematic` or `physics`.
     avoidance, noise
         of the world; without avoidance robots drive through each other.
     """
@@ -51,6 +53,7 @@ class Flight:
     ignored: tuple[str, ...] = ()
     reserve: float = 0.0
     seed: int = 0
+    world: str = "kinematic"
     avoidance: str = "orca"
     noise: Noise = NO_NOISE
 
@@ -114,7 +117,13 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         if the judge rejects the plan.
     """
     mission, (plan, _, _) = mission_with(flight), _planned(_on_paper(flight))
-    return carry_out(mission, plan, seed=flight.seed, avoidance=flight.avoidance, noise=flight.noise, recorder=recorder)
+    how: dict[str, Any] = {
+        "world": flight.world,
+        "seed": flight.seed,
+        "avoidance": flight.avoidance,
+        "noise": flight.noise,
+    }
+    return carry_out(mission, plan, recorder=recorder, **how)
 
 
 def mission_with(flight: Flight) -> Mission:
@@ -125,7 +134,7 @@ def mission_with(flight: Flight) -> Mission:
 
 def _on_paper(flight: Flight) -> Flight:
     """A flight without what makes no difference to its plan."""
-    return replace(flight, avoidance="none", noise=NO_NOISE)
+    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE)
 
 
 @lru_cache(maxsize=1000)

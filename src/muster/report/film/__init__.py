@@ -1,0 +1,12 @@
+"""Films and stills of the physics world. Importing it without the extra `physics`: MissingExtraError."""
+
+from muster.simulation.physics.extra import require_physics_extra
+
+require_physics_extra()
+
+from muster.report.film.files import check_film, check_still  # noqa: E402
+from muster.report.film.film import Made, speed_for, write_film  # noqa: E402 (OpenCV comes with it)
+from muster.report.film.footage import Footage  # noqa: E402
+from muster.report.film.still import write_still  # noqa: E402
+
+__all__ = ["Footage", "Made", "check_film", "check_still", "speed_for", "write_film", "write_still"]

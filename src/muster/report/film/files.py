@@ -1,0 +1,155 @@
+"""Films as files: MP4 (VP9, which browsers play) by OpenCV, GIF by Pillow; and single pictures, PNG."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, ClassVar, Protocol
+
+import cv2
+
+from muster.mission.errors import Finding, InputError, MissingExtraError
+from muster.report.film.captions import Picture
+
+CODEC = "vp09"
+
+
+class FilmFile(Protocol):
+    """A film that is being written, picture by picture."""
+
+    size: ClassVar[tuple[int, int]]
+    """Width and height of its pictures, in pixels."""
+    rate_hz: ClassVar[float]
+    """Pictures in a second."""
+
+    def __init__(self, path: str | Path) -> None: ...
+
+    def add(self, picture: Picture) -> None:
+        """One more picture, RGB."""
+        ...
+
+    def close(self) -> None:
+        """Make it a whole film."""
+        ...
+
+
+class Mp4:
+    """Raises InputError if the file cannot be written."""
+
+    size: ClassVar[tuple[int, int]] = (960, 540)
+    rate_hz: ClassVar[float] = 25.0
+
+    def __init__(self, path: str | Path) -> None:
+        self._writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, _fourcc(), self.rate_hz, self.size)
+        if not self._writer.isOpened():
+            raise unwritable(path)
+        self._worker = ThreadPoolExecutor(max_workers=1)  # encodes a picture while the next one is drawn
+        self._last: Future[None] | None = None
+
+    def add(self, picture: Picture) -> None:
+        if self._last is not None:
+            self._last.result()
+        self._last = self._worker.submit(self._encode, picture)
+
+    def _encode(self, picture: Picture) -> None:
+        self._writer.write(cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+
+    def close(self) -> None:
+        self._worker.shutdown()
+        self._writer.release()
+
+
+class Gif:
+    """Raises InputError if the file cannot be written, MissingExtraError if Pillow is not installed."""
+
+    size: ClassVar[tuple[int, int]] = (640, 360)
+    rate_hz: ClassVar[float] = 12.5
+
+    def __init__(self, path: str | Path) -> None:
+        require_pillow()
+        self._path = Path(path)
+        self._pictures: list[Any] = []
+
+    def add(self, picture: Picture) -> None:
+        from PIL import Image
+
+        image = Image.fromarray(picture)
+        if not self._pictures:
+            self._palette = image.quantize(128)
+        self._pictures.append(image.quantize(palette=self._palette, dither=Image.Dither.NONE))
+
+    def close(self) -> None:
+        if not self._pictures:
+            return
+        first, *others = self._pictures
+        try:
+            first.save(self._path, append_images=others, save_all=True, duration=round(1000 / self.rate_hz), loop=0)
+        except OSError as error:
+            raise unwritable(self._path) from error
+
+
+KINDS: dict[str, type[FilmFile]] = {".mp4": Mp4, ".gif": Gif}
+
+
+def film_file(path: str | Path) -> type[FilmFile]:
+    """The kind of file that a path's ending says.
+
+    Raises
+    ------
+    InputError
+        if there is none.
+    """
+    check_ending(path, tuple(KINDS))
+    return KINDS[Path(path).suffix.lower()]
+
+
+def check_ending(path: str | Path, known: tuple[str, ...]) -> None:
+    """Raise InputError unless a path ends in one of these; to be asked before a run, not after."""
+    suffix = Path(path).suffix
+    if suffix.lower() not in known:
+        value = f"suffix {suffix!r}" if suffix else "no suffix"
+        raise InputError([Finding(str(path), None, "", value, " or ".join(known))])
+
+
+def check_film(path: str | Path) -> None:
+    """Raise InputError unless a film can have this ending, MissingExtraError if it needs Pillow that is not there."""
+    if film_file(path) is Gif:
+        require_pillow()
+
+
+def check_still(path: str | Path) -> None:
+    """Raise InputError unless a still can have this ending."""
+    check_ending(path, (".png",))
+
+
+def write_png(path: str | Path, picture: Picture) -> None:
+    """Write one picture, RGB.
+
+    Raises
+    ------
+    InputError
+        if the ending is not .png, or the file cannot be written.
+    """
+    check_still(path)
+    whole, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    assert whole
+    try:
+        Path(path).write_bytes(data.tobytes())
+    except OSError as error:
+        raise unwritable(path) from error
+
+
+def require_pillow() -> None:
+    """Raise MissingExtraError where Pillow is not installed."""
+    try:
+        import PIL  # noqa: F401
+    except ImportError:
+        raise MissingExtraError("map", "a GIF") from None
+
+
+def _fourcc() -> int:
+    return int(cv2.VideoWriter.fourcc(*CODEC))
+
+
+def unwritable(path: str | Path) -> InputError:
+    return InputError([Finding(str(path), None, "", "cannot be written", "a path that can be written")])

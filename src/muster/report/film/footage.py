@@ -1,0 +1,108 @@
+"""What happened in a physics world, kept for pictures: where all bodies were at each step, and what was told.
+
+A recorder that is given the world, too. Pictures are drawn afterwards: then one knows how long it took, and robots that
+talk in real time need not wait for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.motion.grid import Floats
+from muster.report.record.recording import Happening
+
+
+class Footage:
+    """Is a recorder as `_carrying_out` wants it, and wants to be given the world (`on_world`).
+
+    Parameters
+    ----------
+    mission
+        that is carried out.
+    """
+
+    def __init__(self, mission: Mission) -> None:
+        self.mission = mission
+        self.events: list[Happening] = []
+        self.report: Mapping[str, Any] | None = None
+        self._world: Any = None
+        self._times: list[float] = []
+        self._poses: list[Floats] = []
+
+    def on_world(self, world: object) -> None:
+        """Film this world.
+
+        Raises
+        ------
+        ParameterError
+            if it is not a physics world: in others there is nothing to see.
+        RenderingError
+            if nothing draws here.
+        """
+        from muster.simulation.physics import PhysicsWorld
+        from muster.simulation.physics.rendering import Renderer
+
+        if not isinstance(world, PhysicsWorld):
+            raise ParameterError(f"film: {type(world).__name__}; expected the physics world, in which there are bodies")
+        with Renderer(world, 16, 16):
+            self._world = world
+        self._keep(world.time_s)
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        """Look where the bodies are; the world's first step comes before it is given, and is kept then."""
+        if self._world is not None:
+            self._keep(now)
+
+    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Keep what has happened."""
+        self.events.append(Happening(now, kind, data))
+
+    def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
+        """What robots say of themselves is not to be seen."""
+
+    def on_plan(self, now: float, plan: Plan) -> None:
+        """Plans are not to be seen."""
+
+    def on_report(self, report: Mapping[str, Any]) -> None:
+        """Keep how it ended."""
+        self.report = report
+
+    @property
+    def world(self) -> Any:
+        """The `PhysicsWorld`.
+
+        Raises
+        ------
+        ParameterError
+            if there was none.
+        """
+        if self._world is None:
+            raise ParameterError("film: no world was carried out in; expected one")
+        return self._world
+
+    @property
+    def times_s(self) -> Floats:
+        """When the bodies were looked at: (m,) seconds of the mission's clock, growing."""
+        return np.array(self._times)
+
+    @property
+    def poses(self) -> Floats:
+        """Places of the bodies' frames, metres, and quaternions, w first: (m, n, 7); NaN of who was not there."""
+        count = max(map(len, self._poses))
+        poses = np.full((len(self._poses), count, 7), np.nan)
+        for moment, rows in zip(poses, self._poses, strict=True):
+            moment[: len(rows)] = rows
+        return poses
+
+    def _keep(self, now: float) -> None:
+        if self._times and now <= self._times[-1]:
+            return
+        stage = self._world.stage
+        self._times.append(float(now))
+        self._poses.append(np.column_stack([stage.data.xpos[stage.bodies], stage.data.xquat[stage.bodies]]))
