@@ -24,7 +24,7 @@ _LEVEL_M = 0.0015
 """Between what lies upon each other, as a share of a pixel's size where this is more."""
 _STANDS_M = 0.3
 """Tasks higher than this above the ground are balls on poles."""
-_BEND_RAD, _PIECE_PX, _MOST_PIECES = 0.12, 40.0, 1500
+_BEND_RAD, _PIECE_PX, _MOST_PIECES = 0.12, 40.0, 6000
 
 
 def rgba(color: str, opaque: float = 1.0, *, faded: float = 0.0) -> Rgba:
@@ -50,10 +50,12 @@ class StageMarks:
         self._moments, self._ground_m, self._pixel_m = moments, ground_m, pixel_m
         self._level_m = max(_LEVEL_M, 0.03 * pixel_m)
         self._trails: list[list[Mark | None]] = [[] for _ in range(moments.poses.shape[1])]
-        self._bends = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m) for k in range(moments.poses.shape[1])]
+        count = moments.poses.shape[1]
+        most = max(1, _MOST_PIECES // max(1, count))
+        self._bends = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m, most) for k in range(count)]
 
     def at(self, now: float, poses: Floats) -> Iterator[Mark]:
-        """Marks from the lowest to the highest.
+        """Marks, trails last: of these there may be more than a scene has room for.
 
         Parameters
         ----------
@@ -62,12 +64,12 @@ class StageMarks:
         """
         situation = self._moments.situation
         colors = {name: robot_style(k).color for k, name in enumerate(situation.robots)}
-        for k in range(len(poses)):
-            yield from self._trail(k, now, poses[k])
         for name, task in situation.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
             yield from self._task(task, situation.states[name], who)
         yield from self._rings(situation.robots, colors, poses)
+        for k in range(len(poses)):
+            yield from self._trail(k, now, poses[k])
 
     def _trail(self, robot: int, now: float, pose: Floats) -> Iterator[Mark]:
         """The way so far; on the ground, or in the air."""
@@ -123,8 +125,8 @@ class StageMarks:
                     yield pole
 
 
-def _bends(way: Floats, piece_m: float) -> list[tuple[int, Floats]]:
-    """Where a way (m, 3) bends, or goes on straight for long: rows of it with the places."""
+def _bends(way: Floats, piece_m: float, most: int) -> list[tuple[int, Floats]]:
+    """Where a way (m, 3) bends, or goes on straight for long: at most so many rows of it, with the places."""
     there = np.flatnonzero(np.isfinite(way).all(axis=1))
     kept: list[tuple[int, Floats]] = []
     ahead = np.zeros(3)
@@ -140,4 +142,4 @@ def _bends(way: Floats, piece_m: float) -> list[tuple[int, Floats]]:
         if turned or far > piece_m:
             kept.append((row, way[row]))
             ahead = step / far
-    return kept[:: max(1, len(kept) // _MOST_PIECES)]
+    return kept[:: -(-len(kept) // most) or 1]
