@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,6 +46,8 @@ def draw_footage(footage: Footage, film: Path | None, speed: float | None, still
     if still is not None:
         write_still(still, footage)
     if film is not None:
+        if not quiet and sys.stderr.isatty():
+            click.echo(f"drawing {film}; Ctrl-C leaves it as long as it is then", err=True)
         made = write_film(film, footage, speed=speed)
         if not quiet:
             click.echo(f"{film}: {made.duration_s:.1f} s at {made.speed:g} times real time", err=True)

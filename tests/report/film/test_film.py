@@ -212,3 +212,15 @@ def test_a_folder_that_is_not_there(footage, tmp_path):
 
     with pytest.raises(InputError, match="cannot be written"):
         write_film(tmp_path / "no" / "film.mp4", footage, speed=40)
+
+
+def test_a_trail_goes_as_far_as_the_robot_went_and_came_back():
+    from muster.report.film.stage_marks import _bends
+
+    out = np.linspace(0, 9.3, 94)
+    way = np.column_stack([np.concatenate([out, out[::-1]]), np.zeros(188), np.zeros(188)])
+    kept = np.array([place for _, place in _bends(way, 1.0, 100)])
+    assert kept[:, 0].max() == pytest.approx(9.3, abs=0.11)
+    corner = np.array([(x, 0, 0) for x in np.arange(0, 3, 0.1)] + [(3, y, 0) for y in np.arange(0, 3, 0.1)])
+    places = np.array([place for _, place in _bends(corner, 1.0, 100)])
+    assert np.linalg.norm(places - (3, 0, 0), axis=1).min() < 0.11

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import zlib
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 import cv2
+import numpy as np
 
 from muster.mission.errors import Finding, InputError, MissingExtraError
-from muster.report.film.captions import Picture
+from muster.report.film.captions import Picture, rgb
+from muster.report.styles import ALARM, LEFT_OUT, PALETTE
 
 CODEC = "vp09"
+COLORS = 128
 
 
 class FilmFile(Protocol):
@@ -68,24 +72,31 @@ class Gif:
     def __init__(self, path: str | Path) -> None:
         require_pillow()
         self._path = Path(path)
-        self._pictures: list[Any] = []
+        self._pictures: list[bytes] = []  # compressed: a long film is many
 
     def add(self, picture: Picture) -> None:
         from PIL import Image
 
-        image = Image.fromarray(picture)
         if not self._pictures:
-            self._palette = image.quantize(128)
-        self._pictures.append(image.quantize(palette=self._palette, dither=Image.Dither.NONE))
+            self._palette = Image.fromarray(np.concatenate([picture, _swatches(picture.shape[1])])).quantize(COLORS)
+        image = Image.fromarray(picture).quantize(palette=self._palette, dither=Image.Dither.NONE)
+        self._pictures.append(zlib.compress(image.tobytes(), 1))
 
     def close(self) -> None:
         if not self._pictures:
             return
-        first, *others = self._pictures
+        first, others = self._image(self._pictures[0]), map(self._image, self._pictures[1:])
         try:
             first.save(self._path, append_images=others, save_all=True, duration=round(1000 / self.rate_hz), loop=0)
         except OSError as error:
             raise unwritable(self._path) from error
+
+    def _image(self, data: bytes) -> Any:
+        from PIL import Image
+
+        image = Image.frombytes("P", self.size, zlib.decompress(data))
+        image.putpalette(self._palette.getpalette() or [])
+        return image
 
 
 KINDS: dict[str, type[FilmFile]] = {".mp4": Mp4, ".gif": Gif}
@@ -145,6 +156,13 @@ def require_pillow() -> None:
         import PIL  # noqa: F401
     except ImportError:
         raise MissingExtraError("map", "a GIF") from None
+
+
+def _swatches(width: int) -> Picture:
+    """Stripes of all colours that there may be later in a film, full and pale, for its palette."""
+    colors = np.array([rgb(color) for color in (*PALETTE, ALARM, LEFT_OUT)], dtype=np.float64)
+    shades = np.concatenate([colors, 0.7 * colors + 0.3 * 255, 0.4 * colors + 0.6 * 255])
+    return np.repeat(np.repeat(shades[:, None, :], width, axis=1), 4, axis=0).astype(np.uint8)
 
 
 def _fourcc() -> int:

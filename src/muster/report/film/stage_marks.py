@@ -25,7 +25,7 @@ _LEVEL_M = 0.0015
 """Between what lies upon each other, as a share of a pixel's size where this is more."""
 _STANDS_M = 0.3
 """Tasks higher than this above the ground are balls on poles."""
-_BEND_RAD, _PIECE_PX, _MOST_PIECES = 0.12, 40.0, 1500
+_BEND_RAD, _PIECE_PX, _MOST_PIECES = 0.12, 40.0, 6000
 
 
 def rgba(color: str, opaque: float = 1.0, *, faded: float = 0.0) -> Rgba:
@@ -51,10 +51,12 @@ class StageMarks:
         self._moments, self._ground_m, self._pixel_m = moments, ground_m, pixel_m
         self._level_m = max(_LEVEL_M, 0.03 * pixel_m)
         self._trails: list[list[Mark | None]] = [[] for _ in range(moments.poses.shape[1])]
-        self._bends = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m) for k in range(moments.poses.shape[1])]
+        count = moments.poses.shape[1]
+        most = max(1, _MOST_PIECES // max(1, count))
+        self._bends = [_bends(moments.poses[:, k, :3], _PIECE_PX * pixel_m, most) for k in range(count)]
 
     def at(self, now: float, poses: Floats) -> Iterator[Mark]:
-        """Marks from the lowest to the highest.
+        """Marks, trails last: of these there may be more than a scene has room for.
 
         Parameters
         ----------
@@ -63,12 +65,12 @@ class StageMarks:
         """
         situation = self._moments.situation
         colors = {name: robot_style(k).color for k, name in enumerate(situation.robots)}
-        for k in range(len(poses)):
-            yield from self._trail(k, now, poses[k])
         for name, task in situation.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
             yield from self._task(task, situation.states[name], who)
         yield from self._rings(situation.robots, colors, poses)
+        for k in range(len(poses)):
+            yield from self._trail(k, now, poses[k])
 
     def _trail(self, robot: int, now: float, pose: Floats) -> Iterator[Mark]:
         """The way so far; on the ground, or in the air."""
@@ -124,21 +126,28 @@ class StageMarks:
                     yield pole
 
 
-def _bends(way: Floats, piece_m: float) -> list[tuple[int, Floats]]:
-    """Where a way (m, 3) bends, or goes on straight for long: rows of it with the places."""
-    there = np.flatnonzero(np.isfinite(way).all(axis=1))
-    kept: list[tuple[int, Floats]] = []
-    ahead = np.zeros(3)
-    for row in there.tolist():
-        if not kept:
-            kept.append((row, way[row]))
-            continue
-        step = way[row] - kept[-1][1]
-        far = float(np.linalg.norm(step))
-        if far < piece_m / 20:
-            continue
-        turned = float(np.linalg.norm(ahead)) == 0.0 or float(ahead @ step) / far < np.cos(_BEND_RAD)
-        if turned or far > piece_m:
+def _bends(way: Floats, piece_m: float, most: int) -> list[tuple[int, Floats]]:
+    """Where a way (m, 3) bends, or goes on straight for long: at most so many rows of it, with the places."""
+    there = np.flatnonzero(np.isfinite(way).all(axis=1)).tolist()
+    if not there:
+        return []
+    kept = [(there[0], way[there[0]])]
+    ahead, tip = np.zeros(3), kept[0]
+    for row in there[1:]:
+        (step, far), reached = _from(kept, way[row]), _from(kept, tip[1])[1]
+        if far < reached - piece_m / 20:  # it has turned back, maybe just as it came
+            kept.append(tip)
+            step, far = _from(kept, way[row])
+        turned = not ahead.any() or float(ahead @ step) < far * np.cos(_BEND_RAD)
+        if far > piece_m / 20 and (turned or far > piece_m):
             kept.append((row, way[row]))
             ahead = step / far
-    return kept[:: max(1, len(kept) // _MOST_PIECES)]
+        if far >= reached or kept[-1][0] >= tip[0]:
+            tip = (row, way[row])
+    return kept[:: -(-len(kept) // most) or 1]
+
+
+def _from(kept: list[tuple[int, Floats]], place: Floats) -> tuple[Floats, float]:
+    """The step to a place from the last one kept, and how far that is."""
+    step = place - kept[-1][1]
+    return step, float(np.linalg.norm(step))
