@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from muster._hearing import heard
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
@@ -48,7 +49,7 @@ class Simulation:
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
     noise
-        of motion and telemetry.
+        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
     recorder
         is told all that happens.
 
@@ -75,10 +76,11 @@ class Simulation:
         roads = Roads.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, roads)
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+        self._hearing = heard(self._world)
         self._executor = Executor(
             mission,
             _with_objective(mission, plan),
-            self._world.ports,
+            self._hearing.ports,
             way=way_of(mission, roads),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
@@ -112,8 +114,8 @@ class Simulation:
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
         """Where robots say that they are, metres: those that were heard."""
-        heard = {name: port.telemetry() for name, port in self._world.ports.items()}
-        return {name: said.position for name, said in heard.items() if said is not None}
+        told = {name: port.telemetry() for name, port in self._hearing.ports.items()}
+        return {name: said.position for name, said in told.items() if said is not None}
 
     def advance(self, until_s: float) -> Sequence[Happening]:
         """Go on until something happens, until the mission is over, or up to a time; returns what happened.
@@ -123,7 +125,7 @@ class Simulation:
         first = len(self._executor.happenings)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s)
-            self._world.advance(max(due_s, self.time_s + self._world.dt_s))
+            self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._executor.tick(self.time_s)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
+from muster._hearing import heard
 from muster._negotiated.log import Log
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
 from muster.execution.changes import may_bring_work
@@ -34,6 +35,7 @@ class Theatre:
 
     def __init__(self, mission: Mission, world: SimulatedWorld, order: Order, log: Log) -> None:
         self._world, self._order, self._log = world, order, log
+        self._hearing = heard(world)
         self._method = method_named(order.method)
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._did: dict[str, Did] = {}
@@ -86,7 +88,7 @@ class Theatre:
         """
         until_s = time.monotonic() + _LOOK_S
         self._due_s += _LOOK_S * speed
-        while self._world.advance(self._due_s):  # it stops wherever a way point is passed
+        while self._hearing.advance(self._due_s):  # it stops wherever a way point is passed
             pass
         while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
             self._befalls(self._ahead.pop(0))
@@ -95,7 +97,7 @@ class Theatre:
         while self._unsaid and self._connected:
             self._say(self._unsaid.pop(0), self._connected[0])
         for robot in self.team.living:
-            said = self._world.ports[robot].telemetry()
+            said = self._hearing.ports[robot].telemetry()
             assert said is not None
             self.team.tell(robot, Sense(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
             self._log.see(robot, said, self.time_s)

@@ -66,13 +66,19 @@ def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2
 
 
 def moved_as_counted(
-    estimate: Estimate, dt: float, metres: float, heading_rad: float, errors: GroundErrors
+    estimate: Estimate,
+    dt: float,
+    metres: float,
+    heading_rad: float,
+    errors: GroundErrors,
+    turning_radps: float | None = None,
 ) -> Estimate:
     """The estimate `dt` seconds later, by what an odometer counted in between and the heading that the robot then has.
 
     For reports that are rare: odometry makes the prediction itself, as in the thesis. Speed and yaw rate of the state
     are then means of the interval. Who turned before or after it drove is off that arc by up to half the way times the
-    turn; half of this is taken for a standard deviation.
+    turn; half of this is taken for a standard deviation. `turning_radps` is the mean yaw rate by the gyro; None where
+    there is none.
 
     Raises
     ------
@@ -88,6 +94,8 @@ def moved_as_counted(
     before = predicted(estimate, np.eye(_NUMBERS), change)
     spread = math.hypot(errors.odometry_share * metres, errors.odometry_mps * dt) / dt
     before = _linear(before, np.eye(_NUMBERS)[[SPEED]], [metres / dt], [spread]).estimate
+    if turning_radps is not None:
+        before = by_gyro(before, turning_radps, errors).estimate
     turning = np.eye(_NUMBERS)[[HEADING]] + dt * np.eye(_NUMBERS)[[YAW_RATE]]
     near = float((turning @ before.mean)[0])
     facing = near + float(wrapped(heading_rad - near))
@@ -186,7 +194,7 @@ def _linear(estimate: Estimate, sensor: Floats, measured: npt.ArrayLike, deviati
 def _turned(estimate: Estimate) -> Estimate:
     mean = estimate.mean.copy()
     mean[HEADING] = wrapped(mean[HEADING])
-    return Estimate(mean, estimate.covariance)
+    return estimate.around(mean)
 
 
 def _turned_correction(correction: Correction) -> Correction:
