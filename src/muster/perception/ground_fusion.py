@@ -93,13 +93,17 @@ def moved_as_counted(
     change[BIAS, BIAS] = errors.gyro_walk**2 * dt
     before = predicted(estimate, np.eye(_NUMBERS), change)
     spread = math.hypot(errors.odometry_share * metres, errors.odometry_mps * dt) / dt
-    before = _linear(before, np.eye(_NUMBERS)[[SPEED]], [metres / dt], [spread]).estimate
+    near = float(before.mean[HEADING] + dt * before.mean[YAW_RATE])
     if turning_radps is not None:
-        before = by_gyro(before, turning_radps, errors).estimate
-    turning = np.eye(_NUMBERS)[[HEADING]] + dt * np.eye(_NUMBERS)[[YAW_RATE]]
-    near = float((turning @ before.mean)[0])
+        near = float(before.mean[HEADING] + dt * (turning_radps - before.mean[BIAS]))
     facing = near + float(wrapped(heading_rad - near))
-    before = _linear(before, turning, [facing], [errors.heading_rad]).estimate
+    sensor = np.zeros((2 if turning_radps is None else 3, _NUMBERS))
+    sensor[0, SPEED], sensor[1, [HEADING, YAW_RATE]] = 1.0, (1.0, dt)
+    measured, deviations = [metres / dt, facing], [spread, errors.heading_rad]
+    if turning_radps is not None:
+        sensor[2, [YAW_RATE, BIAS]] = 1.0
+        measured, deviations = [*measured, turning_radps], [*deviations, errors.gyro_radps]
+    before = _linear(before, sensor, measured, deviations).estimate
     bulge = metres * abs(before.mean[YAW_RATE]) * dt / 4
     slack = np.diag([bulge**2, bulge**2] + [0.0] * (_NUMBERS - 2))
     return _turned(extended_prediction(before, lambda state: arc(state, dt), slack))

@@ -18,7 +18,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.port import Inertial, RobotPort, Telemetry, Waypoint
 from muster.perception import air_fusion, ground_fusion, heading_fusion
 from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.kalman import Correction, Estimate, corrected, predicted
+from muster.perception.kalman import Correction, Estimate
 
 _SAME_S = 1e-6
 
@@ -74,14 +74,14 @@ class GroundTracker:
             pose = (*said.position[:2], said.heading)
             spread = (errors.position_m, errors.position_m, errors.heading_rad)
             self._estimate, self._last = ground_fusion.standing_at(pose, spread, errors), said
-            self._height = Estimate(np.array(said.position[2:]), np.array([[errors.position_m**2]]))
+            self._height, self._height_variance = said.position[2], errors.position_m**2
         elif said.time_s > self._last.time_s:
             self._take_in(self._estimate, self._last, said)
             self._last = said
         x, y, heading, counted, _, _, slip = map(float, self._estimate.mean)
         speed = counted * (1 - slip)
         velocity = (speed * math.cos(heading), speed * math.sin(heading), said.velocity[2])
-        return replace(said, position=(x, y, float(self._height.mean[0])), heading=heading, velocity=velocity)
+        return replace(said, position=(x, y, self._height), heading=heading, velocity=velocity)
 
     def _take_in(self, estimate: Estimate, last: Telemetry, said: Telemetry) -> None:
         errors, metres, dt = self._errors, said.odometry_m - last.odometry_m, said.time_s - last.time_s
@@ -90,8 +90,14 @@ class GroundTracker:
         estimate = ground_fusion.moved_as_counted(estimate, dt, metres, said.heading, errors, turning)
         self._fix = ground_fusion.by_position(estimate, said.position[:2], errors)
         self._estimate = self._fix.estimate
-        climbed = predicted(self._height, [[1.0]], [[(errors.climb_share * metres) ** 2]])
-        self._height = corrected(climbed, [[1.0]], said.position[2:], [[errors.position_m**2]]).estimate
+        self._climb(said.position[2], errors.climb_share * metres)
+
+    def _climb(self, said_m: float, spread_m: float) -> None:
+        """The height has a filter of its own: one number, (2.1) to (2.5)."""
+        climbed = self._height_variance + spread_m**2
+        gain = climbed / (climbed + self._errors.position_m**2)
+        self._height += gain * (said_m - self._height)
+        self._height_variance = (1 - gain) * climbed
 
 
 class AirTracker:
