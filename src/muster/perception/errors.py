@@ -32,7 +32,7 @@ class GroundErrors(_Deviations):
     odometry_slip
         of the share of what wheels count that is never travelled, at the beginning; fixes tell the filter.
     climb_share
-        of the metres by which the ground rises or falls on a metre of way.
+        of the metres by which a metre of way rises more or less than odometry has it.
     odometry_radps
         of the yaw rate by wheels.
     gyro_radps, gyro_bias_radps, gyro_walk

@@ -87,15 +87,17 @@ class GroundTracker:
         errors, metres, dt = self._errors, said.odometry_m - last.odometry_m, said.time_s - last.time_s
         felt = _felt_in(said, dt)
         turning = None if felt is None else felt.turning_radps
-        estimate = ground_fusion.moved_as_counted(estimate, dt, metres, said.heading, errors, turning)
+        rise, level = _slope(said)
+        estimate = ground_fusion.moved_as_counted(estimate, dt, level * metres, said.heading, errors, turning)
         self._fix = ground_fusion.by_position(estimate, said.position[:2], errors)
         self._estimate = self._fix.estimate
-        self._climb(said.position[2], errors.climb_share * metres)
+        self._climb(said.position[2], rise * metres, errors.climb_share * metres)
 
-    def _climb(self, said_m: float, spread_m: float) -> None:
+    def _climb(self, said_m: float, counted_m: float, spread_m: float) -> None:
         """The height has a filter of its own: one number, (2.1) to (2.5)."""
         climbed = self._height_variance + spread_m**2
         gain = climbed / (climbed + self._errors.position_m**2)
+        self._height += counted_m
         self._height += gain * (said_m - self._height)
         self._height_variance = (1 - gain) * climbed
 
@@ -194,6 +196,13 @@ class FusedPort:
         """See `RobotPort`."""
         said = self._port.telemetry()
         return None if said is None else self.tracker.fused(said)
+
+
+def _slope(said: Telemetry) -> tuple[float, float]:
+    """By how much the way rises, and how far it goes level, for each metre of it, by odometry."""
+    east, north, up = said.velocity
+    speed = math.hypot(east, north, up)
+    return (up / speed, math.hypot(east, north) / speed) if speed > 0 else (0.0, 1.0)
 
 
 def _felt_in(said: Telemetry, dt: float) -> Inertial | None:
