@@ -52,7 +52,7 @@ def test_a_robot_on_the_ground(tmp_path, steps, share):
 @pytest.mark.parametrize(("steps", "share"), [(1, 0.35), (5, 0.7), (10, 0.95)])
 def test_a_drone(tmp_path, steps, share):
     flies = mission(tmp_path, "position: [0, 0, 1], kind: air, kinematics: quadcopter, speed_mps: 1")
-    tracker = AirTracker(AirErrors(position_m=0.1, acceleration_mps2=1.0))
+    tracker = AirTracker(AirErrors(position_m=0.1, acceleration_mps2=1.0, odometry_slip=0.05))
     said, fused = flown(flies, tracker, [(10, 0, 3), (10, 10, 3), (0, 0, 1)] * 2, steps)
     assert said == pytest.approx(0.1 * math.sqrt(3), rel=0.2)
     assert fused < share * said
