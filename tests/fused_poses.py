@@ -39,7 +39,7 @@ def by_reports(folder):
 
 def by_missions():
     """Of missions carried out: places, headings, and the normalised innovation squared by degree of freedom."""
-    for name in ("6T-2R", "11T-2R", "market-rescue-arena", "16T-3R-actions", "auction-1"):
+    for name in ("6T-2R", "11T-2R", "16T-3R-actions", "auction-1"):
         for world in ("kinematic", "physics"):
             rows = []
             for seed in SEEDS:
