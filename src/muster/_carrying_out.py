@@ -10,6 +10,7 @@ from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from muster._hearing import heard
 from muster._looking import Lookout, OnLook, lookout_for, with_found
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.mission.errors import ParameterError
@@ -52,7 +53,7 @@ class Simulation:
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
     noise
-        of motion and telemetry.
+        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
     recorder
         is told all that happens.
     on_look
@@ -87,17 +88,18 @@ class Simulation:
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         if on_world is not None:
             on_world(self._world)
+        self._hearing = heard(self._world)
         self._executor = Executor(
             mission,
             _with_objective(mission, plan),
-            self._world.ports,
+            self._hearing.ports,
             way=way_of(mission, roads),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
             observer=recorder,
             now=self._world.time_s,
         )
-        self._lookout = lookout_for(mission, self._world, self._world.ports, noise=noise, seed=seed, on_look=on_look)
+        self._lookout = lookout_for(mission, self._world, self._hearing.ports, noise=noise, seed=seed, on_look=on_look)
         self._recorder = recorder
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._executor.tick(self.time_s)
@@ -130,8 +132,8 @@ class Simulation:
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
         """Where robots say that they are, metres: those that were heard."""
-        heard = {name: port.telemetry() for name, port in self._world.ports.items()}
-        return {name: said.position for name, said in heard.items() if said is not None}
+        told = {name: port.telemetry() for name, port in self._hearing.ports.items()}
+        return {name: said.position for name, said in told.items() if said is not None}
 
     def advance(self, until_s: float) -> Sequence[Happening]:
         """Go on until something happens, until the mission is over, or up to a time; returns what happened.
@@ -141,7 +143,7 @@ class Simulation:
         first = len(self._executor.happenings)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
-            self._world.advance(max(due_s, self.time_s + self._world.dt_s))
+            self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._look()

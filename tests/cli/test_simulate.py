@@ -182,7 +182,7 @@ def test_noise_wears_robots_down_by_its_seed(muster):
         (["slip=x"], "--noise: slip=x; expected a number after slip="),
         (
             ["wind=1"],
-            "--noise: wind=1; expected each of velocity, slip, odometry, position_m, heading_rad",
+            "--noise: wind=1; expected each of velocity, slip, odometry, motors, position_m, heading_rad, attitude_rad",
         ),
         (["slip=0", "slip=0"], "--noise: slip=0; expected each of"),
         (["slip=2"], "slip: 2.0; expected at most 1"),

@@ -188,3 +188,32 @@ def test_what_does_not_fit_is_refused(call, message):
     with pytest.raises(ParameterError) as refusal:
         call()
     assert str(refusal.value) == message
+
+
+@given(seeds)
+def test_around_another_mean_is_the_same_doubt(seed):
+    random, estimate, *_ = drawn(seed)
+    mean = random.normal(size=4)
+    moved = estimate.around(mean)
+    same(moved.mean, mean)
+    assert (moved.covariance == estimate.covariance).all()
+    assert not moved.mean.flags.writeable
+    with pytest.raises(ParameterError, match=r"^mean: shape \(3,\); expected \(4,\)$"):
+        estimate.around(mean[:3])
+
+
+@given(seeds)
+def test_what_filters_make_is_an_estimate(seed):
+    """They do not look at eigenvalues again; the covariances are such all the same, and nobody can write them."""
+    random, estimate, sensor, measured, uncertainty = drawn(seed)
+    for _ in range(20):
+        estimate = predicted(estimate, random.normal(size=(4, 4)), covariance(random, 4))
+        estimate = corrected(estimate, sensor, measured, uncertainty).estimate
+        Estimate(estimate.mean, estimate.covariance)
+        with pytest.raises(ValueError, match="read-only"):
+            estimate.covariance[0, 0] = 1.0
+
+
+def test_numbers_that_run_away_are_told():
+    with np.errstate(all="ignore"), pytest.raises(ParameterError, match=r"expected a finite estimate$"):
+        predicted(Estimate([1e300], [[1.0]]), [[1e300]], [[1.0]])

@@ -95,10 +95,11 @@ def negotiate_and_carry_out(
             on_world(bodies)
         order = order_of(problem, negotiation, memory)
         log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
-        lookout = lookout_for(problem.mission, bodies, bodies.ports, noise=noise, seed=seed, on_look=on_look)
+        theatre = Theatre(problem.mission, bodies, order, log)
+        lookout = lookout_for(problem.mission, bodies, theatre.ports, noise=noise, seed=seed, on_look=on_look)
         if lookout is not None:
             stack.callback(lookout.close)
-        theatre = Theatre(problem.mission, bodies, order, log, lookout)
+            theatre.lookout = lookout
         theatre.team = stack.enter_context(Team(order, theatre.hear))
         halt = halt or threading.Event()
         theatre.agree_first(negotiation.limit_s, halt)

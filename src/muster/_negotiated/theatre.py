@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Mapping
 
+from muster._hearing import heard
 from muster._looking import Lookout
 from muster._negotiated.log import Log
 from muster._negotiated.words import Befalls, Did, Radio, Sense, Steer
@@ -12,6 +14,7 @@ from muster.execution.changes import may_bring_work
 from muster.mission.errors import MusterError
 from muster.mission.model import Event, Mission
 from muster.mission.yaml_writer import plain
+from muster.motion.port import RobotPort
 from muster.negotiation.messages import Stage
 from muster.negotiation.methods import method_named
 from muster.negotiation.team import Team
@@ -32,11 +35,11 @@ class Theatre:
     """The bodies of the robots and what befalls them, between the world and the robots' processes."""
 
     team: Team
+    lookout: Lookout | None = None
 
-    def __init__(
-        self, mission: Mission, world: SimulatedWorld, order: Order, log: Log, lookout: Lookout | None = None
-    ) -> None:
-        self._world, self._order, self._log, self._lookout = world, order, log, lookout
+    def __init__(self, mission: Mission, world: SimulatedWorld, order: Order, log: Log) -> None:
+        self._world, self._order, self._log = world, order, log
+        self._hearing = heard(world)
         self._method = method_named(order.method)
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._did: dict[str, Did] = {}
@@ -59,6 +62,11 @@ class Theatre:
                 self._log.take(robot, at_s, kind, data, word.used)
             for task, usage in word.usages.items():
                 self._log.note_usage(task, usage)
+
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """How robots are reached, and what they say of themselves."""
+        return self._hearing.ports
 
     @property
     def time_s(self) -> float:
@@ -89,7 +97,7 @@ class Theatre:
         """
         until_s = time.monotonic() + _LOOK_S
         self._due_s += _LOOK_S * speed
-        while self._world.advance(self._due_s):  # it stops wherever a way point is passed
+        while self._hearing.advance(self._due_s):  # it stops wherever a way point is passed
             pass
         while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
             self._befalls(self._ahead.pop(0))
@@ -99,7 +107,7 @@ class Theatre:
         while self._unsaid and self._connected:
             self._say(self._unsaid.pop(0), self._connected[0])
         for robot in self.team.living:
-            said = self._world.ports[robot].telemetry()
+            said = self._hearing.ports[robot].telemetry()
             assert said is not None
             self.team.tell(robot, Sense(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
             self._log.see(robot, said, self.time_s)
@@ -110,9 +118,9 @@ class Theatre:
 
     def _look(self) -> None:
         """Let cameras look; of what becomes of what they find one robot is told, which tells the others."""
-        if self._lookout is None:
+        if self.lookout is None:
             return
-        for found, event in self._lookout.look(self.time_s):
+        for found, event in self.lookout.look(self.time_s):
             self._log.tell(self.time_s, "found", found)
             if event is not None:
                 self._befalls(event)
@@ -156,8 +164,8 @@ class Theatre:
             self._return(event)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
-            if self._lookout is not None:
-                self._lookout.join(event.robot_joins)
+            if self.lookout is not None:
+                self.lookout.join(event.robot_joins)
             self.team.start(event.robot_joins.id)
         elif event.delay_task is not None:
             for robot in self.team.living:  # who is at work notices by itself

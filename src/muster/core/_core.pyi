@@ -539,13 +539,16 @@ class CrowdWorld:
         What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed ahead of one that faces its way, yaw rate.
         """
 
-    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
+    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], counted: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
         """
-        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; slower than `still` is standing. Returns events as `advance`.
+        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; the metres that their wheels counted, NaN without wheels; slower than `still` is standing. Returns events as `advance`.
         """
 
     @property
     def time(self) -> float: ...
+
+    @property
+    def dt(self) -> float: ...
 
     @property
     def steps(self) -> int: ...
@@ -559,7 +562,14 @@ class CrowdWorld:
         """
 
     def report(self, robot: int) -> tuple[float, tuple[float, float, float], float, tuple[float, float, float], float, int, int]:
-        """Time, position, heading, velocity, odometry, order, way points passed."""
+        """
+        Time, position, heading, velocity as odometry has it, odometry, order, way points passed.
+        """
+
+    def felt(self, robot: int) -> tuple[tuple[float, float, float], float]:
+        """
+        Acceleration ahead, to the left and up, between the middles of the last two steps; yaw rate of the last.
+        """
 
     def busy(self, robot: int) -> bool: ...
 

@@ -25,6 +25,7 @@ using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::devi
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
 using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
+using Metres = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Slabs = std::vector<std::tuple<std::vector<std::array<double, 2>>, double, double>>;
 
 Avoidance avoidance_named(const std::string& name) {
@@ -64,13 +65,15 @@ std::vector<Event> told(const std::vector<CrowdEvent>& found) {
   return events;
 }
 
-std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, double still) {
-  if (poses.shape(0) != world.robots().size() || lags.shape(0) != world.robots().size())
+std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, const Metres& counted,
+                               double still) {
+  const std::size_t n = world.robots().size();
+  if (poses.shape(0) != n || lags.shape(0) != n || counted.shape(0) != n)
     throw std::invalid_argument("the arrays must have a row for each robot");
   std::vector<Carried> after;
   for (std::size_t i = 0; i < poses.shape(0); ++i) {
     const double *p = poses.data() + 4 * i, *l = lags.data() + 4 * i;
-    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3]});
+    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3], counted.data()[i]});
   }
   return told(world.carried_out(after, still));
 }
@@ -156,10 +159,12 @@ void bind_crowd_world(nb::module_& m) {
       .def("command", &command,
            "What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed "
            "ahead of one that faces its way, yaw rate.")
-      .def("carried_out", &carried_out, "poses"_a, "lags"_a, "still"_a,
+      .def("carried_out", &carried_out, "poses"_a, "lags"_a, "counted"_a, "still"_a,
            "Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they "
-           "told to stand; slower than `still` is standing. Returns events as `advance`.")
+           "told to stand; the metres that their wheels counted, NaN without wheels; slower than `still` is standing. "
+           "Returns events as `advance`.")
       .def_prop_ro("time", &CrowdWorld::time)
+      .def_prop_ro("dt", &CrowdWorld::dt)
       .def_prop_ro("steps", &CrowdWorld::steps)
       .def_prop_ro("least_distance", &CrowdWorld::least_distance)
       .def(
@@ -176,10 +181,20 @@ void bind_crowd_world(nb::module_& m) {
           [](const CrowdWorld& w, int robot) {
             const CrowdRobot& r = w.robots()[robot];
             const Vec<3> at = r.place();
-            return std::tuple(w.time(), std::tuple(at[0], at[1], at[2]), wrapped(r.heading - r.turn_lag),
-                              std::tuple(r.velocity[0], r.velocity[1], r.velocity[2]), r.odometry, r.order, r.next);
+            const Vec<3> counted = r.counts * r.velocity;
+            return std::tuple(w.time(), std::tuple(at[0], at[1], at[2]), r.facing(),
+                              std::tuple(counted[0], counted[1], counted[2]), r.odometry, r.order, r.next);
           },
-          "robot"_a, "Time, position, heading, velocity, odometry, order, way points passed.")
+          "robot"_a, "Time, position, heading, velocity as odometry has it, odometry, order, way points passed.")
+      .def(
+          "felt",
+          [](const CrowdWorld& w, int robot) {
+            const Felt felt = w.felt(robot);
+            const Vec<3>& a = felt.acceleration;
+            return std::tuple(std::tuple(a[0], a[1], a[2]), felt.yaw_rate);
+          },
+          "robot"_a,
+          "Acceleration ahead, to the left and up, between the middles of the last two steps; yaw rate of the last.")
       .def(
           "busy", [](const CrowdWorld& w, int robot) { return w.robots()[robot].phase != Phase::idle; }, "robot"_a)
       .def("positions",
@@ -197,7 +212,7 @@ void bind_crowd_world(nb::module_& m) {
            })
       .def("headings",
            [](const CrowdWorld& w) {
-             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(wrapped(r.heading - r.turn_lag)); });
+             return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.facing()); });
            })
       .def("travelled", [](const CrowdWorld& w) {
         return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.travelled); });

@@ -61,11 +61,13 @@ struct CrowdRobot {
   Vec<3> position;  // where it would come to a stand, were it told to now
   Vec<3> velocity;  // of the last step
   double heading = 0.0;
-  Vec<3> lag;             // by which its body is not there yet; 0 where it moves exactly as it is told
-  double turn_lag = 0.0;  // the same of its heading
-  Vec<3> commanded;       // what it drove by: the velocity without noise
-  double ahead = 0.0;     // the same of one that faces its way: speed ahead
-  double yaw_rate = 0.0;  // and how fast it turns
+  Vec<3> lag;                   // by which its body is not there yet; 0 where it moves exactly as it is told
+  double turn_lag = 0.0;        // the same of its heading
+  Vec<3> commanded;             // what it drove by: the velocity without noise
+  double ahead = 0.0;           // the same of one that faces its way: speed ahead
+  double yaw_rate = 0.0;        // and how fast it turns
+  Vec<3> velocity_before;       // of the step before the last
+  double heading_before = 0.0;  // of its body, at the beginning of the last step
 
   std::vector<Waypoint> way;
   std::size_t next = 0;  // of `way`; those before are passed
@@ -95,6 +97,7 @@ struct CrowdRobot {
   Vec<3> looked_at;                 // where it was when they were collected
 
   Vec<3> place() const { return position - lag; }
+  double facing() const;  // its body's heading
   double top_speed() const { return body.speed * slowed; }
   bool under_way() const { return velocity != Vec<3>{}; }
   // It has nothing to do that could not be done elsewhere as well.
@@ -114,5 +117,7 @@ struct CrowdRobot {
 };
 
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }
+
+inline double CrowdRobot::facing() const { return wrapped(heading - turn_lag); }
 
 }  // namespace muster

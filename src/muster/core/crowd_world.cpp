@@ -17,9 +17,9 @@ double normal(Random& random) {
   return radius * std::cos(2.0 * std::acos(-1.0) * random.uniform());
 }
 
-void count(CrowdRobot& robot, double metres) {
+void count(CrowdRobot& robot, double metres, double counted) {
   robot.travelled += metres;
-  robot.odometry += robot.counts * metres;
+  robot.odometry += robot.counts * counted;
 }
 
 }  // namespace
@@ -100,7 +100,8 @@ std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Carried>& afte
     robot.heading = wrapped(after[i].heading + robot.turn_lag);
     robot.velocity = (1.0 / settings_.dt) * (robot.place() - places_before_[i]);
     if (norm(robot.velocity) < still) robot.velocity = {};
-    count(robot, norm(robot.velocity) * settings_.dt);
+    const double metres = norm(robot.velocity) * settings_.dt;
+    count(robot, metres, std::isnan(after[i].counted) ? metres : after[i].counted);
   }
   events_.clear();
   conclude(AgentTree<3>(before_));
@@ -113,7 +114,17 @@ void CrowdWorld::look() {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     before_[i] = robots_[i].position;
     places_before_[i] = robots_[i].place();
+    robots_[i].velocity_before = robots_[i].velocity;
+    robots_[i].heading_before = robots_[i].facing();
   }
+}
+
+Felt CrowdWorld::felt(int i) const {
+  const CrowdRobot& robot = robots_[i];
+  const double turned = wrapped(robot.facing() - robot.heading_before), facing = robot.heading_before + turned / 2.0;
+  const Vec<3> change = (1.0 / settings_.dt) * (robot.velocity - robot.velocity_before);
+  const double c = std::cos(facing), s = std::sin(facing);
+  return {{{c * change[0] + s * change[1], c * change[1] - s * change[0], change[2]}}, turned / settings_.dt};
 }
 
 void CrowdWorld::decide(const AgentTree<3>& tree) {
@@ -200,7 +211,8 @@ void CrowdWorld::disturb(CrowdRobot& robot) const {
 void CrowdWorld::move(CrowdRobot& robot) const {
   robot.position = robot.position + settings_.dt * robot.velocity;
   robot.heading = wrapped(robot.heading + settings_.dt * robot.yaw_rate);
-  count(robot, norm(robot.velocity) * settings_.dt);
+  const double metres = norm(robot.velocity) * settings_.dt;
+  count(robot, metres, metres);
 }
 
 void CrowdWorld::take_note(int i) {

@@ -59,10 +59,18 @@ struct Command {
   double yaw_rate;
 };
 
-// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now.
+// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now; and the metres that
+// its wheels counted in the step, NaN of one without wheels.
 struct Carried {
   Vec<3> place, lag;
-  double heading, turn_lag;
+  double heading, turn_lag, counted;
+};
+
+// What an inertial unit feels: means between the middles of the last two steps, and over the last one. The axes are
+// level, ahead and to the left at its beginning and end on average.
+struct Felt {
+  Vec<3> acceleration;
+  double yaw_rate;
 };
 
 class CrowdWorld {
@@ -85,7 +93,10 @@ class CrowdWorld {
   std::vector<Command> command();
   std::vector<CrowdEvent> carried_out(const std::vector<Carried>& after, double still);
 
+  Felt felt(int i) const;
+
   double time() const { return settings_.dt * static_cast<double>(steps_); }
+  double dt() const { return settings_.dt; }
   long steps() const { return steps_; }
   const std::vector<CrowdRobot>& robots() const { return robots_; }
   double least_distance() const { return least_distance_; }

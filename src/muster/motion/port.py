@@ -33,6 +33,26 @@ class Waypoint:
 
 
 @dataclass(frozen=True)
+class Inertial:
+    """What a robot's inertial unit felt since the last report, as its autopilot gives it: levelled, gravity taken off.
+
+    Parameters
+    ----------
+    seconds
+        for how long: what follows are means.
+    acceleration_mps2
+        ahead, to the left, up: by how much the velocity of this time differs from that of as long a time before, a
+        second.
+    turning_radps
+        how fast the heading grows.
+    """
+
+    seconds: float
+    acceleration_mps2: Place
+    turning_radps: float
+
+
+@dataclass(frozen=True)
 class Telemetry:
     """What a robot last said of itself.
 
@@ -46,6 +66,8 @@ class Telemetry:
         metres travelled since the beginning of the mission.
     order, passed
         the number of the last `send` that it took, and how many of its way points it has passed, holds included.
+    inertial
+        of its inertial unit; None where it has none, or has not moved yet.
     """
 
     time_s: float
@@ -55,6 +77,7 @@ class Telemetry:
     odometry_m: float
     order: int
     passed: int
+    inertial: Inertial | None = None
 
 
 class RobotPort(Protocol):

@@ -1,9 +1,10 @@
-"""Where a drone is, from odometry, inertial data and position fixes: a linear Kalman filter.
+"""Where a drone is, from odometry, inertial data and position fixes: an extended Kalman filter.
 
 TCF thesis, section 2.1.1: odometry and inertial unit give a continuous estimate, fixes from outside one that does not
 drift. The attitude is the autopilot's: what is measured comes here in axes of the map.
 
-The state is (6,): position in metres and velocity in m/s, both in the map frame.
+The state is (7,): position in metres and velocity in m/s, both in the map frame; slip, the share of what odometry
+counts that is not flown. As in `ground_fusion` the velocity is the one that odometry counts.
 """
 
 from __future__ import annotations
@@ -15,16 +16,17 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.perception.errors import AirErrors
-from muster.perception.kalman import Correction, Estimate, corrected, predicted
+from muster.perception.kalman import Correction, Estimate, Floats, corrected, extended_prediction, predicted
 
-_POSITION = np.eye(6)[:3]
-_VELOCITY = np.eye(6)[3:]
+_NUMBERS = 7
+POSITION, VELOCITY, SLIP = slice(0, 3), slice(3, 6), 6
+_POSITION, _VELOCITY = np.eye(_NUMBERS)[POSITION], np.eye(_NUMBERS)[VELOCITY]
 
 
-def hovering_at(position: npt.ArrayLike, deviation_m: float) -> Estimate:
+def hovering_at(position: npt.ArrayLike, deviation_m: float, errors: AirErrors) -> Estimate:
     """A drone at rest at a position (3,), each coordinate of which is known within a standard deviation."""
-    spread = np.array([deviation_m] * 3 + [0.0] * 3)
-    return Estimate(np.array([*np.asarray(position, dtype=np.float64), 0.0, 0.0, 0.0]), np.diag(spread**2))
+    spread = np.array([deviation_m] * 3 + [0.0] * 3 + [errors.odometry_slip])
+    return Estimate(np.array([*np.asarray(position, dtype=np.float64), *[0.0] * 4]), np.diag(spread**2))
 
 
 def moved(
@@ -37,13 +39,42 @@ def moved(
     ParameterError
         if `dt` is not above 0, or for another shape.
     """
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")
-    transition = np.eye(6)
-    transition[:3, 3:] = dt * np.eye(3)
-    effect = np.vstack([dt * dt / 2 * np.eye(3), dt * np.eye(3)])
+    _require(dt)
+    effect = np.vstack([dt * dt / 2 * np.eye(3), dt * np.eye(3), np.zeros((1, 3))])
     process = errors.acceleration_mps2**2 * effect @ effect.T
-    return predicted(estimate, transition, process, effect, acceleration_mps2)
+    push = effect @ np.asarray(acceleration_mps2, dtype=np.float64)
+
+    def motion(state: Floats) -> tuple[Floats, Floats]:
+        after, derivative = _flown(state, dt)
+        return after + push, derivative
+
+    return extended_prediction(estimate, motion, process)
+
+
+def moved_as_counted(
+    estimate: Estimate,
+    dt: float,
+    velocity_mps: npt.ArrayLike,
+    errors: AirErrors,
+    acceleration_mps2: npt.ArrayLike = (0.0, 0.0, 0.0),
+) -> Estimate:
+    """The estimate `dt` seconds later, in which odometry counted a velocity (3,): the mean of that time.
+
+    Parameters
+    ----------
+    acceleration_mps2
+        (3,) by how much this mean differs from that of as long a time before, a second: as it was felt.
+
+    Raises
+    ------
+    ParameterError
+        if `dt` is not above 0, or for another shape.
+    """
+    _require(dt)
+    change = np.diag([0.0] * 3 + [(errors.acceleration_mps2 * dt) ** 2] * 3 + [0.0])
+    before = predicted(estimate, np.eye(_NUMBERS), change, dt * _VELOCITY.T, acceleration_mps2)
+    before = by_odometry(before, velocity_mps, errors).estimate
+    return extended_prediction(before, lambda state: _flown(state, dt), np.zeros((_NUMBERS, _NUMBERS)))
 
 
 def by_odometry(estimate: Estimate, velocity_mps: npt.ArrayLike, errors: AirErrors) -> Correction:
@@ -54,3 +85,17 @@ def by_odometry(estimate: Estimate, velocity_mps: npt.ArrayLike, errors: AirErro
 def by_position(estimate: Estimate, position: npt.ArrayLike, errors: AirErrors) -> Correction:
     """A fix (3,) from outside."""
     return corrected(estimate, _POSITION, position, errors.position_m**2 * np.eye(3))
+
+
+def _flown(state: Floats, dt: float) -> tuple[Floats, Floats]:
+    """The state (7,) `dt` seconds later at even velocity, and its derivative (7, 7)."""
+    kept, after, derivative = 1 - state[SLIP], state.copy(), np.eye(_NUMBERS)
+    after[POSITION] += dt * kept * state[VELOCITY]
+    derivative[POSITION, VELOCITY] = dt * kept * np.eye(3)
+    derivative[POSITION, SLIP] = -dt * state[VELOCITY]
+    return after, derivative
+
+
+def _require(dt: float) -> None:
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")

@@ -108,7 +108,7 @@ def air_drift(
     fixes = positions + random.normal(0, errors.position_m, positions.shape)
 
     def flown(until_fix: int) -> Floats:
-        estimate = Estimate(np.concatenate([positions[0], velocities[0]]), np.zeros((6, 6)))
+        estimate = Estimate(np.concatenate([positions[0], velocities[0], [0.0]]), np.zeros((7, 7)))
         places = [estimate.mean[:3]]
         for step in range(1, len(positions)):
             estimate = air_fusion.moved(estimate, dt, errors, felt[step - 1])

@@ -31,6 +31,8 @@ class GroundErrors(_Deviations):
         of the speed by wheels: a share of it, and what there is at rest; they add as variances.
     odometry_slip
         of the share of what wheels count that is never travelled, at the beginning; fixes tell the filter.
+    climb_share
+        of the metres by which a metre of way rises more or less than odometry has it.
     odometry_radps
         of the yaw rate by wheels.
     gyro_radps, gyro_bias_radps, gyro_walk
@@ -52,6 +54,7 @@ class GroundErrors(_Deviations):
     odometry_share: float = 0.02
     odometry_mps: float = 0.005
     odometry_slip: float = 0.02
+    climb_share: float = 0.05
     odometry_radps: float = 0.05
     gyro_radps: float = 0.01
     gyro_bias_radps: float = 0.01
@@ -70,10 +73,16 @@ class AirErrors(_Deviations):
     ----------
     acceleration_mps2
         of the measured acceleration; where none is measured, of the acceleration itself.
+    unfelt_mps2
+        of the acceleration itself, for a tracker that misses the inertial reading.
     velocity_mps
         of the velocity by odometry, visual or other.
-    position_m
-        of position fixes.
+    odometry_slip
+        of the share of what odometry counts that is never flown, at the beginning; fixes tell the filter.
+    gyro_radps, gyro_bias_radps, gyro_walk
+        as in `GroundErrors`.
+    position_m, heading_rad
+        of fixes.
 
     Raises
     ------
@@ -82,5 +91,11 @@ class AirErrors(_Deviations):
     """
 
     acceleration_mps2: float = 0.2
+    unfelt_mps2: float = 1.0
     velocity_mps: float = 0.05
+    odometry_slip: float = 0.0
+    gyro_radps: float = 0.01
+    gyro_bias_radps: float = 0.01
+    gyro_walk: float = 1e-4
     position_m: float = 0.05
+    heading_rad: float = 0.05

@@ -66,13 +66,19 @@ def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2
 
 
 def moved_as_counted(
-    estimate: Estimate, dt: float, metres: float, heading_rad: float, errors: GroundErrors
+    estimate: Estimate,
+    dt: float,
+    metres: float,
+    heading_rad: float,
+    errors: GroundErrors,
+    turning_radps: float | None = None,
 ) -> Estimate:
     """The estimate `dt` seconds later, by what an odometer counted in between and the heading that the robot then has.
 
     For reports that are rare: odometry makes the prediction itself, as in the thesis. Speed and yaw rate of the state
     are then means of the interval. Who turned before or after it drove is off that arc by up to half the way times the
-    turn; half of this is taken for a standard deviation.
+    turn; half of this is taken for a standard deviation. `turning_radps` is the mean yaw rate by the gyro; None where
+    there is none.
 
     Raises
     ------
@@ -87,11 +93,17 @@ def moved_as_counted(
     change[BIAS, BIAS] = errors.gyro_walk**2 * dt
     before = predicted(estimate, np.eye(_NUMBERS), change)
     spread = math.hypot(errors.odometry_share * metres, errors.odometry_mps * dt) / dt
-    before = _linear(before, np.eye(_NUMBERS)[[SPEED]], [metres / dt], [spread]).estimate
-    turning = np.eye(_NUMBERS)[[HEADING]] + dt * np.eye(_NUMBERS)[[YAW_RATE]]
-    near = float((turning @ before.mean)[0])
+    near = float(before.mean[HEADING] + dt * before.mean[YAW_RATE])
+    if turning_radps is not None:
+        near = float(before.mean[HEADING] + dt * (turning_radps - before.mean[BIAS]))
     facing = near + float(wrapped(heading_rad - near))
-    before = _linear(before, turning, [facing], [errors.heading_rad]).estimate
+    sensor = np.zeros((2 if turning_radps is None else 3, _NUMBERS))
+    sensor[0, SPEED], sensor[1, [HEADING, YAW_RATE]] = 1.0, (1.0, dt)
+    measured, deviations = [metres / dt, facing], [spread, errors.heading_rad]
+    if turning_radps is not None:
+        sensor[2, [YAW_RATE, BIAS]] = 1.0
+        measured, deviations = [*measured, turning_radps], [*deviations, errors.gyro_radps]
+    before = _linear(before, sensor, measured, deviations).estimate
     bulge = metres * abs(before.mean[YAW_RATE]) * dt / 4
     slack = np.diag([bulge**2, bulge**2] + [0.0] * (_NUMBERS - 2))
     return _turned(extended_prediction(before, lambda state: arc(state, dt), slack))
@@ -186,7 +198,7 @@ def _linear(estimate: Estimate, sensor: Floats, measured: npt.ArrayLike, deviati
 def _turned(estimate: Estimate) -> Estimate:
     mean = estimate.mean.copy()
     mean[HEADING] = wrapped(mean[HEADING])
-    return Estimate(mean, estimate.covariance)
+    return estimate.around(mean)
 
 
 def _turned_correction(correction: Correction) -> Correction:

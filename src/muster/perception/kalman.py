@@ -62,6 +62,10 @@ class Estimate:
         """Standard deviations (n,)."""
         return np.sqrt(np.maximum(np.diagonal(self.covariance), 0.0))
 
+    def around(self, mean: npt.ArrayLike) -> Estimate:
+        """The same covariance around another mean (n,)."""
+        return _made(_array("mean", mean, (len(self.mean),)), self.covariance)
+
 
 @dataclass(frozen=True, eq=False)
 class Correction:
@@ -202,15 +206,23 @@ def require_covariance(name: str, value: npt.ArrayLike, size: int) -> Floats:
     if np.abs(matrix - matrix.T).max(initial=0.0) > _SAME * scale:
         raise ParameterError(f"{name}: {matrix.tolist()}; expected a symmetric matrix")
     symmetric: Floats = (matrix + matrix.T) / 2
-    lowest = float(np.linalg.eigvalsh(symmetric)[0]) if size else 0.0
+    lowest = _lowest_eigenvalue(symmetric) if size else 0.0
     if lowest < -_SAME * scale:
         raise ParameterError(f"{name}: eigenvalue {lowest:g}; expected none below 0")
     return symmetric
 
 
+def _lowest_eigenvalue(symmetric: Floats) -> float:
+    """Of a diagonal matrix, which most are, its lowest entry."""
+    diagonal = symmetric.diagonal()
+    if np.count_nonzero(symmetric) == np.count_nonzero(diagonal):
+        return float(diagonal.min())
+    return float(np.linalg.eigvalsh(symmetric)[0])
+
+
 def _spread(estimate: Estimate, mean: Floats, f: Floats, process: npt.ArrayLike) -> Estimate:
     v = require_covariance("process", process, len(mean))
-    return Estimate(mean, _symmetric(f @ estimate.covariance @ f.T + v))
+    return _made(mean, _symmetric(f @ estimate.covariance @ f.T + v))
 
 
 def _taken_in(estimate: Estimate, h: Floats, innovation: Floats, uncertainty: npt.ArrayLike) -> Correction:
@@ -226,7 +238,18 @@ def _taken_in(estimate: Estimate, h: Floats, innovation: Floats, uncertainty: np
     gain: Floats = np.asarray(np.linalg.solve(s, h @ p).T, dtype=np.float64)
     left = np.eye(len(p)) - gain @ h
     covariance = _symmetric(left @ p @ left.T + gain @ w @ gain.T)
-    return Correction(Estimate(estimate.mean + gain @ innovation, covariance), innovation, s, gain)
+    return Correction(_made(estimate.mean + gain @ innovation, covariance), innovation, s, gain)
+
+
+def _made(mean: Floats, covariance: Floats) -> Estimate:
+    """An estimate whose covariance is one by the way it was made: to look at its eigenvalues would cost the most."""
+    if not (np.isfinite(mean).all() and np.isfinite(covariance).all()):
+        raise ParameterError(f"mean: {mean.tolist()}; expected a finite estimate")
+    estimate = object.__new__(Estimate)
+    for name, array in (("mean", mean), ("covariance", covariance)):
+        array.setflags(write=False)
+        object.__setattr__(estimate, name, array)
+    return estimate
 
 
 def _symmetric(matrix: Floats) -> Floats:

@@ -143,6 +143,11 @@ class CrowdedWorld(ABC):
         return self._dt_s
 
     @property
+    def noise(self) -> Noise:
+        """Of all robots."""
+        return self._noise
+
+    @property
     def ports(self) -> Mapping[str, SimulatedPort]:
         """By the robots' ids, in order of the mission; those that joined come last."""
         return MappingProxyType(self._ports)

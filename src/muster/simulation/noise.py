@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from muster.mission.errors import ParameterError
 
@@ -21,10 +21,18 @@ class Noise:
         the most of its way, as a share, that a robot loses in a step though its odometry counts it; evenly from 0.
     odometry
         standard deviation of the share by which odometry errs in a step.
+    motors
+        standard deviation of the share by which the force of a motor or rotor differs from what is asked of it in a
+        step of the world; in the physics world alone, as robots of the kinematic world have no motors.
     position_m, heading_rad
         standard deviations of each coordinate and of the heading that telemetry gives.
     attitude_rad
         standard deviation of the roll and of the pitch that a robot takes itself to have.
+    gyro_radps, gyro_bias_radps
+        standard deviations of the yaw rate that the inertial unit gives in a step, and of what each robot's gives too
+        much all the time.
+    accelerometer_mps2
+        standard deviation of each coordinate of the acceleration that the inertial unit gives in a step.
 
     Raises
     ------
@@ -35,17 +43,32 @@ class Noise:
     velocity: float = 0.0
     slip: float = 0.0
     odometry: float = 0.0
+    motors: float = 0.0
     position_m: float = 0.0
     heading_rad: float = 0.0
     attitude_rad: float = 0.0
+    gyro_radps: float = 0.0
+    gyro_bias_radps: float = 0.0
+    accelerometer_mps2: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "slip", "odometry", "position_m", "heading_rad", "attitude_rad"):
-            value = getattr(self, name)
+        for field in fields(self):
+            value = getattr(self, field.name)
             if not 0 <= value < math.inf:
-                raise ParameterError(f"{name}: {value}; expected a number of at least 0")
+                raise ParameterError(f"{field.name}: {value}; expected a number of at least 0")
         if self.slip > 1:
             raise ParameterError(f"slip: {self.slip}; expected at most 1")
+
+    @property
+    def of_telemetry(self) -> bool:
+        """Whether robots are not where they say, or their inertial units err."""
+        told = self.position_m, self.heading_rad, self.gyro_radps, self.gyro_bias_radps, self.accelerometer_mps2
+        return any(told)
+
+    @property
+    def of_pose(self) -> bool:
+        """Whether robots are not where they say, or not turned so."""
+        return self.position_m > 0 or self.heading_rad > 0
 
 
 NO_NOISE = Noise()

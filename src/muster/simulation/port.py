@@ -12,18 +12,18 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import wrapped
-from muster.motion.port import Telemetry, Waypoint
+from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.simulation.noise import Noise
 
 
 class SimulatedPort:
     """One robot of a world; a `RobotPort`.
 
-    Of a silent robot telemetry stays what it last was; it goes on, and orders still reach it.
+    Of a silent robot telemetry stays what it last was; it goes on, and orders still reach it. `body` is whose it is.
     """
 
     def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
-        self._robot = robot.id
+        self.body = robot
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
         self._number = number
         self._crowd = crowd
@@ -32,10 +32,13 @@ class SimulatedPort:
         self._orders = 0
         self._sent: dict[int, tuple[Waypoint, ...]] = {}
         self._last_word: Telemetry | None = None
+        # A key of its own: what is drawn at each step does not begin with the same numbers.
+        random = np.random.default_rng(np.random.SeedSequence(self._seed, spawn_key=(1,)))
+        self._bias_radps = float(random.normal(0.0, noise.gyro_bias_radps)) if noise.gyro_bias_radps > 0 else 0.0
 
     @property
     def robot(self) -> str:
-        return self._robot
+        return self.body.id
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`. A robot out of order does not take it: the order in its telemetry stays.
@@ -76,14 +79,25 @@ class SimulatedPort:
         return points[passed - 1].label if 0 < passed <= len(points) else ""
 
     def _now(self) -> Telemetry:
-        said = Telemetry(*self._crowd.report(self._number))
-        noise = self._noise
-        if noise.position_m == 0 and noise.heading_rad == 0:
-            return said
+        said = Telemetry(*self._crowd.report(self._number), self._felt())
+        return self._disturbed(said) if self._noise.of_telemetry else said
+
+    def _felt(self) -> Inertial | None:
+        return Inertial(self._crowd.dt, *self._crowd.felt(self._number)) if self._crowd.steps else None
+
+    def _disturbed(self, said: Telemetry) -> Telemetry:
+        """The same errors whenever it is asked in a step."""
+        noise, felt = self._noise, said.inertial
         random = np.random.default_rng((*self._seed, self._crowd.steps))
         off = random.normal(0.0, [noise.position_m] * 3 + [noise.heading_rad])
         x, y, z = np.array(said.position) + off[:3] * self._axes
-        return replace(said, position=(float(x), float(y), float(z)), heading=float(wrapped(said.heading + off[3])))
+        if felt is not None:
+            off_felt = random.normal(0.0, [noise.accelerometer_mps2] * 3 + [noise.gyro_radps])
+            ahead, left, up = np.array(felt.acceleration_mps2) + off_felt[:3] * self._axes
+            turning = felt.turning_radps + float(off_felt[3]) + self._bias_radps
+            felt = Inertial(felt.seconds, (float(ahead), float(left), float(up)), turning)
+        heading = float(wrapped(said.heading + off[3]))
+        return replace(said, position=(float(x), float(y), float(z)), heading=heading, inertial=felt)
 
 
 def _check(point: Waypoint) -> None:

@@ -9,6 +9,7 @@ from typing import Protocol
 from muster.mission.model import Robot
 from muster.motion.grid import Floats
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.simulation.noise import Noise
 from muster.simulation.port import SimulatedPort
 
 Observer = Callable[[float, Floats, Floats, Floats], None]
@@ -59,6 +60,11 @@ class SimulatedWorld(Protocol):
     @property
     def dt_s(self) -> float:
         """Seconds a step."""
+        ...
+
+    @property
+    def noise(self) -> Noise:
+        """Of all robots."""
         ...
 
     @property

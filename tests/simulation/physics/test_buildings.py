@@ -1,12 +1,15 @@
 """What is drawn of an image: just what is blocked."""
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-pytest.importorskip("mujoco")
+if find_spec("mujoco") is None:  # not imported here: first it must be said how it draws
+    pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 from muster.simulation.physics.buildings import rectangles
 
 

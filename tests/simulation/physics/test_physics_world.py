@@ -67,7 +67,7 @@ def test_walls_stop_bodies(build):
         control = Control(stage, keeps_height=True)
         ahead = Commands(np.array([[0.3, 0.0, 0.0, 0.0]]), np.array([0.3]))
         for _ in range(60):
-            poses, _ = control.carry_out(ahead, 20)
+            poses = control.carry_out(ahead, 20).poses
         assert (poses[0, 0] > 1.5) == far
         if not far:
             assert poses[0, 0] == pytest.approx(1.0 - stage.robots[0].body.size_m[0] / 2, abs=0.03)
@@ -77,7 +77,7 @@ def test_wheels_cannot_slide_sideways():
     stage = Stage([standing(Build.WHEELS)], [np.empty((0, 6))], PLAIN, 0.005)
     control = Control(stage, keeps_height=True)
     for _ in range(20):
-        poses, _ = control.carry_out(Commands(np.array([[0.0, 0.2, 0.0, 0.0]]), np.zeros(1)), 20)
+        poses = control.carry_out(Commands(np.array([[0.0, 0.2, 0.0, 0.0]]), np.zeros(1)), 20).poses
     assert abs(poses[0, 1]) < 0.005
 
 

@@ -17,6 +17,9 @@ from muster.motion.kinematics.registry import kinematics_named
 
 WAFFLE_LENGTH_M, WAFFLE_WIDTH_M, WAFFLE_HEIGHT_M, WAFFLE_KG = 0.281, 0.306, 0.141, 1.8
 WHEEL_RADIUS_M, WHEEL_WIDTH_M, WHEEL_KG, TRACK_M = 0.033, 0.018, 0.05, 0.287
+SUNK_M = 0.00019
+"""By how much less than its radius a wheel rolls, whatever its size: MuJoCo's soft contact lies within it. Measured on
+a straight way; odometry counts with what is left, as that of a robot whose wheels were measured by driving."""
 CASTER_RADIUS_M, CASTER_AHEAD_M, CASTER_LIFT_M = 0.01, 0.11, 0.0005
 SLIDER_RADIUS_M = 0.15
 DRONE_RADIUS_M, DRONE_HEIGHT_M, DRONE_KG = 0.31, 0.12, 1.2

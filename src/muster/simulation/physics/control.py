@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build
+from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, Build
 from muster.simulation.physics.model import SERVO_S
 from muster.simulation.physics.stage import Group, Indices, Motion, Stage
 
@@ -44,6 +44,23 @@ class Commands:
         return Commands(self.rates[who], self.ahead[who])
 
 
+@dataclass(frozen=True)
+class Done:
+    """What became of commands, at the end of a step of the world.
+
+    Parameters
+    ----------
+    poses, lags
+        (n, 4): where robots are, and by how much they would go on and turn on, were they told to stand.
+    counted
+        (n,) metres that the encoders of their wheels counted; NaN of those without.
+    """
+
+    poses: Floats
+    lags: Floats
+    counted: Floats
+
+
 class Law(Protocol):
     """Drives the robots of a group, all built in one way.
 
@@ -62,6 +79,14 @@ class Law(Protocol):
         """Set their motors for a step of physics."""
         ...
 
+    def set_strengths(self, shares: Floats) -> None:
+        """Shares (n, 2) of the force asked for that motors give from now on: of both wheels; of push and of turn."""
+        ...
+
+    def odometers(self) -> Floats:
+        """Metres ahead that their wheels have rolled so far (n,); NaN of those without wheels."""
+        ...
+
 
 class Wheels:
     """Differential drives: servos of the wheels."""
@@ -71,7 +96,8 @@ class Wheels:
     def __init__(self, stage: Stage) -> None:
         self.group = stage.group(Build.WHEELS)
         self._lag_s = SERVO_S - stage.step_s  # the sum over steps, not the integral
-        self._motors = stage.motors(self.group.who)
+        self._motors, self._angles = stage.motors(self.group.who), stage.wheels(self.group.who)
+        self._model, self._gains = stage.model, stage.model.actuator_gainprm[self._motors, 0]
         scale = np.array([body.scale for body in self.group.robots])
         self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
 
@@ -82,6 +108,14 @@ class Wheels:
         rims = commands.rates[:, 3] * self._half_track
         self.group.data.ctrl[self._motors[:, 0]] = (commands.ahead - rims) / self._radius
         self.group.data.ctrl[self._motors[:, 1]] = (commands.ahead + rims) / self._radius
+
+    def set_strengths(self, shares: Floats) -> None:
+        self._model.actuator_gainprm[self._motors, 0] = shares * self._gains
+        self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
+
+    def odometers(self) -> Floats:
+        counted: Floats = (self._radius - SUNK_M) * self.group.data.qpos[self._angles].mean(axis=1)
+        return counted
 
 
 class Pushes:
@@ -96,6 +130,7 @@ class Pushes:
         self._lag_s = 1 / self.GAIN - stage.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
+        self.set_strengths(np.ones((len(self.group.who), 2)))
 
     def lags(self, motion: Motion) -> Floats:
         return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
@@ -103,8 +138,14 @@ class Pushes:
     def drive(self, commands: Commands, motion: Motion) -> None:
         missing = commands.rates[:, :2] - motion.velocities[:, :2]
         forces, bodies = self.group.data.xfrc_applied, self.group.bodies
-        forces[bodies, :2] = self.GAIN * self._mass[:, None] * missing
-        forces[bodies, 5] = self.GAIN * self._inertia * (commands.rates[:, 3] - motion.rates[:, 2])
+        forces[bodies, :2] = self.GAIN * self._pushes[:, None] * missing
+        forces[bodies, 5] = self.GAIN * self._turns * (commands.rates[:, 3] - motion.rates[:, 2])
+
+    def set_strengths(self, shares: Floats) -> None:
+        self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1] * self._inertia
+
+    def odometers(self) -> Floats:
+        return _no_wheels(self.group)
 
 
 class Rotors:
@@ -126,6 +167,7 @@ class Rotors:
         self._lag_s, self._yaw_lag_s = 1 / self.VELOCITY - stage.step_s, 1 / self.YAW_RATE - stage.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2 for body in self.group.robots]).reshape(-1, 3)
+        self.set_strengths(np.ones((len(self.group.who), 2)))
 
     def lags(self, motion: Motion) -> Floats:
         tilted, jerk = GRAVITY_MPS2 * self.DAMPING / self.ATTITUDE, GRAVITY_MPS2 / self.ATTITUDE
@@ -148,8 +190,18 @@ class Rotors:
         turn[:, 1] += self.ATTITUDE * (up[:, 2] * x - up[:, 0] * climb) / length
         turn[:, 2] = self.YAW_RATE * (commands.rates[:, 3] - rates[:, 2])
         forces, bodies = self.group.data.xfrc_applied, self.group.bodies
-        forces[bodies, :3] = (self._mass * climb / up[:, 2])[:, None] * up
-        forces[bodies, 3:] = self._inertia * turn
+        forces[bodies, :3] = (self._pushes * climb / up[:, 2])[:, None] * up
+        forces[bodies, 3:] = self._turns * turn
+
+    def set_strengths(self, shares: Floats) -> None:
+        self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1:] * self._inertia
+
+    def odometers(self) -> Floats:
+        return _no_wheels(self.group)
+
+
+def _no_wheels(group: Group) -> Floats:
+    return np.full(len(group.who), np.nan)
 
 
 def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float) -> Floats:
@@ -173,6 +225,7 @@ class Follower:
         self._motion = law.group.motion()
         self._reference = self._motion.poses
         self._free = np.array([True, True, not keeps_height, True])
+        self._odometers = law.odometers()
 
     @property
     def poses(self) -> Floats:
@@ -183,6 +236,11 @@ class Follower:
     def lags(self) -> Floats:
         """See `Law.lags`."""
         return self.law.lags(self._motion)
+
+    def counted(self) -> Floats:
+        """Metres (n,) since this was asked last; NaN of those without wheels."""
+        before, self._odometers = self._odometers, self.law.odometers()
+        return np.abs(self._odometers - before)
 
     def begin(self, commands: Commands) -> None:
         """A step of the world begins: those that move go from where they are."""
@@ -213,17 +271,22 @@ class Control:
         laws: tuple[Law, ...] = (Wheels(stage), Pushes(stage), Rotors(stage))
         self._followers = [Follower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
 
-    def carry_out(self, commands: Commands, count: int) -> tuple[Floats, Floats]:
-        """So many steps of physics; returns poses at the end, and lags: (n, 4) each."""
+    def carry_out(self, commands: Commands, count: int, strengths: Floats | None = None) -> Done:
+        """So many steps of physics; `strengths` (n, 2) as `Law.set_strengths` takes them, None as they are."""
         for follower in self._followers:
-            follower.begin(commands.of(follower.law.group.who))
+            who = follower.law.group.who
+            follower.begin(commands.of(who))
+            if strengths is not None:
+                follower.law.set_strengths(strengths[who])
         for _ in range(count):
             for follower in self._followers:
                 follower.drive()
             self._stage.go_on()
             for follower in self._followers:
                 follower.look(self._stage.step_s)
-        poses, lags = np.empty((2, len(self._stage.robots), 4))
+        robots = len(self._stage.robots)
+        done = Done(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
         for follower in self._followers:
-            poses[follower.law.group.who], lags[follower.law.group.who] = follower.poses, follower.lags
-        return poses, lags
+            who = follower.law.group.who
+            done.poses[who], done.lags[who], done.counted[who] = follower.poses, follower.lags, follower.counted()
+        return done

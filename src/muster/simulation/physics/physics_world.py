@@ -117,11 +117,19 @@ class PhysicsWorld(CrowdedWorld):
         self._set_stage()
         rows = np.array(self._crowd.command()).reshape(-1, 5)
         rates = rows[:, [0, 1, 2, 4]] * self._carried
-        after, lags = self._control.carry_out(Commands(rates, rows[:, 3]), self._count)
+        done = self._control.carry_out(Commands(rates, rows[:, 3]), self._count, self._strengths(len(rows)))
+        after, lags = done.poses, done.lags
         lags *= self._carried
         heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
         after[:, 2] = np.where(self._carried[:, 2] > 0, after[:, 2] - self._standing_m, heights)
-        return self._crowd.carried_out(after, lags, STILL_MPS)
+        return self._crowd.carried_out(after, lags, done.counted, STILL_MPS)
+
+    def _strengths(self, count: int) -> Floats | None:
+        """Shares of the force asked for that the motors of so many robots give in this step; None: all of it."""
+        if self._noise.motors == 0:
+            return None
+        random = np.random.default_rng(np.random.SeedSequence((self._seed, self._crowd.steps), spawn_key=(2,)))
+        return np.maximum(0.0, random.normal(1.0, self._noise.motors, (count, 2)))
 
     def _set_stage(self) -> None:
         """Make the stage, at first and where a robot joined: then all others go on as they were."""

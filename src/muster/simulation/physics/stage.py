@@ -119,6 +119,11 @@ class Stage:
         motors = [[self.model.actuator(f"{side}{k}").id for side in ("left", "right")] for k in who]
         return np.array(motors, dtype=np.intp).reshape(-1, 2)
 
+    def wheels(self, who: Indices) -> Indices:
+        """Of robots on wheels, left and right: (k, 2) numbers of their angles in `data.qpos`."""
+        places = [[place for place, _ in self._wheels[k]] for k in who]
+        return np.array(places, dtype=np.intp).reshape(-1, 2)
+
 
 def _wheels(model: Any, robot: int) -> list[tuple[int, int]]:
     """Where the angles and the speeds of its wheels are."""

@@ -1,0 +1,49 @@
+"""How a robot is turned that does not face its way, from its gyro and headings said: a linear Kalman filter.
+
+The state is (2,): heading in radians of the map frame, kept in [-pi, pi), and bias of the gyro in rad/s. For robots
+that face their way `ground_fusion` has both among more.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.motion.frames import wrapped
+from muster.perception.errors import AirErrors
+from muster.perception.kalman import Correction, Estimate, corrected, predicted
+
+HEADING, BIAS = range(2)
+
+
+def turned_to(heading_rad: float, deviation_rad: float, errors: AirErrors) -> Estimate:
+    """A robot of a heading that is known within a standard deviation."""
+    return _wrapped(Estimate(np.array([heading_rad, 0.0]), np.diag([deviation_rad**2, errors.gyro_bias_radps**2])))
+
+
+def turned(estimate: Estimate, dt: float, yaw_rate_radps: float, errors: AirErrors) -> Estimate:
+    """The estimate `dt` seconds later, in which the gyro gave a mean yaw rate.
+
+    Raises
+    ------
+    ParameterError
+        if `dt` is not above 0.
+    """
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    transition = np.array([[1.0, -dt], [0.0, 1.0]])
+    process = np.diag([(errors.gyro_radps * dt) ** 2, errors.gyro_walk**2 * dt])
+    return _wrapped(predicted(estimate, transition, process, [[dt], [0.0]], [yaw_rate_radps]))
+
+
+def by_heading(estimate: Estimate, heading_rad: float, errors: AirErrors) -> Correction:
+    """A heading from outside, in radians from east."""
+    near = estimate.mean[HEADING] + wrapped(heading_rad - estimate.mean[HEADING])
+    found = corrected(estimate, np.eye(2)[[HEADING]], [near], [[errors.heading_rad**2]])
+    return Correction(_wrapped(found.estimate), found.innovation, found.innovation_covariance, found.gain)
+
+
+def _wrapped(estimate: Estimate) -> Estimate:
+    return estimate.around([wrapped(estimate.mean[HEADING]), estimate.mean[BIAS]])
