@@ -21,6 +21,7 @@ from muster.studies.bench_auction import AUCTION_BENCHES
 from muster.studies.bench_avoidance import compared
 from muster.studies.bench_execution import EXECUTION_BENCHES
 from muster.studies.bench_motion import MOTION_BENCHES
+from muster.studies.bench_perception import PERCEPTION_BENCHES
 from muster.studies.bench_physics import PHYSICS_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
@@ -191,6 +192,7 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     **MOTION_BENCHES,
     **SIMULATION_BENCHES,
     **PHYSICS_BENCHES,
+    **PERCEPTION_BENCHES,
     **EXECUTION_BENCHES,
     **AUCTION_BENCHES,
 }

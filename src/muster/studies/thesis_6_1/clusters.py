@@ -169,9 +169,9 @@ def _thesis(mean_m: float) -> dict[str, Cell]:
 _NOTES = (
     "of tag 1, others: sightings, of the least and of the most seen of the other tags. Errors in metres, matched by "
     "linear sum assignment, however far apart: a centre that is missing goes with one that is too many.",
-    f"physics: as flown, without noise and with that of Table 6.4. scattered: the kinematic world, {RATE_HZ:g} pictures "
-    "a second, noise of 3 degrees and 0.1 m, so that raw estimates scatter by 0.3 m. rare: of these all but the first "
-    f"{KEPT} of tag 1 are left out, as the thesis' flight had few of it; nothing else is changed. 3 tags: of these the "
+    "physics: as flown, without noise and with that of Table 6.4. scattered: the kinematic world, "
+    f"{RATE_HZ:g} pictures a second, noise of 3 degrees and 0.1 m, so that raw estimates scatter by 0.3 m. rare: of "
+    f"these all but the first {KEPT} of tag 1 are left out, as the thesis' flight had few of it. 3 tags: of these the "
     "estimates of tags 1, 24 and 28 alone, as in Figure 6.5b.",
     "k-means: as in the thesis, the number of tags known, means of clusters, the best of 10 starts, and of 100. "
     f"density: at least {LEAST} within {RADIUS_M:g} m. tag: by decoded id. Both filtered by covariance, points of at "

@@ -64,8 +64,8 @@ class Flown:
         what the judge says of the plan, with the ways of its tasks.
     report
         what carrying it out took.
-    in_plane_m
-        how far each robot's body went, heights not counted.
+    ways
+        (steps, robots, 2) where bodies were in the plane, metres.
     raw, points
         what was seen, and what was found of it.
     looks, best
@@ -74,7 +74,7 @@ class Flown:
 
     planned: Verdict
     report: Report
-    in_plane_m: tuple[float, ...]
+    ways: Floats
     raw: RawEstimates
     points: tuple[PointOfInterest, ...]
     looks: int
@@ -84,6 +84,11 @@ class Flown:
     def usages(self) -> tuple[float, ...]:
         """What each robot used, by its odometry."""
         return tuple(robot.usage_flown for robot in self.report.robots)
+
+    @property
+    def in_plane_m(self) -> tuple[float, ...]:
+        """How far each robot's body went, heights not counted."""
+        return tuple(np.linalg.norm(np.diff(self.ways, axis=0), axis=2).sum(axis=0).tolist())
 
     def errors(self, truth: Mapping[str, tuple[float, float]]) -> ErrorTable:
         """What was found beside what is there."""
@@ -114,7 +119,8 @@ def fly(flight: Flight) -> Flown:
         assert lookout is not None  # the mission has tags
         search = lookout.search
         points = tuple(find.point for find in search.finds)
-        return Flown(planned, simulation.result(), ways.lengths, search.raw, points, witness.looks, witness.best)
+        report, places = simulation.result(), np.array(ways.places)
+        return Flown(planned, report, places, search.raw, points, witness.looks, witness.best)
 
 
 def _mission(flight: Flight) -> Mission:
@@ -140,23 +146,13 @@ class _Witness:
 
 
 class _Ways(NoObserver):
-    """How far bodies go in the plane."""
+    """Where bodies are in the plane, ten times a second."""
 
     def __init__(self) -> None:
-        self._at: Floats | None = None
-        self._lengths: Floats = np.zeros(0)
-
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        return tuple(self._lengths.tolist())
+        self.places: list[Floats] = []
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        here = positions[:, :2].copy()
-        if self._at is None:
-            self._lengths = np.zeros(len(here))
-        else:
-            self._lengths = self._lengths + np.linalg.norm(here - self._at, axis=1)
-        self._at = here
+        self.places.append(positions[:, :2].copy())
 
     def on_report(self, report: dict[str, Any]) -> None:
         pass

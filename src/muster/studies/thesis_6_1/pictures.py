@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from muster.report import save_figure
 from muster.report.camera_view import with_sightings
+from muster.report.canvas import frame_of_map, limits
 from muster.report.found import plot_found
+from muster.report.styles import FRAME
 from muster.studies.effort import Effort
 from muster.studies.thesis_6_1.clusters import SCATTERED, decoded, errors, k_means, near, seen_rarely
 from muster.studies.thesis_6_1.flights import Flight, Flown, fly
 from muster.studies.thesis_6_1.published import FLIGHTS, NOISE, truth
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MARGIN = 0.06
 
 FIGURES = {"6.4": "6.4", "6.5": "6.7"}
 """The published map, by table of tags."""
@@ -39,8 +49,18 @@ def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
 def _map(number: str, flight: Flight, noise: str, path: Path) -> Path:
     flown, there = fly(flight), dict(truth(number))
     title = f"Tags found in the physics world, {noise}"
-    save_figure(plot_found(flown.raw, flown.points, flown.errors(there), there, title), path)
+    axes = plot_found(flown.raw, flown.points, flown.errors(there), there, title)
+    _draw_ways(axes, flown)
+    save_figure(axes, path)
     return path
+
+
+def _draw_ways(axes: Axes, flown: Flown) -> None:
+    """Where the drones flew, under all else."""
+    for way in np.moveaxis(flown.ways, 1, 0):
+        axes.plot(*way.T, color=FRAME, linewidth=0.6, zorder=1)
+    places = np.concatenate([flown.raw.positions[:, :2], flown.ways.reshape(-1, 2)])
+    frame_of_map(axes, *limits(places, _MARGIN, on_ground=False))
 
 
 def _picture(flown: Flown, path: Path) -> Path:

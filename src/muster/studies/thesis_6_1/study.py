@@ -29,9 +29,9 @@ _TABLES: tuple[Reproduction[Flight, Flown], ...] = (
 )
 
 _LEGEND = (
-    "Three drones carry the corrected plans of Table 6.2 out among the tags of Table 6.4 (16T-3R-tags), one flies to the "
-    "views of Table A.10 (six-tags). physics: bodies move in MuJoCo, pictures of 640 x 480 are drawn, and AprilTags "
-    "looked for in them. kinematic: bodies keep their velocities, and tags are seen by geometry.",
+    "Three drones carry the corrected plans of Table 6.2 out among the tags of Table 6.4 (16T-3R-tags), one flies to "
+    "the views of Table A.10 (six-tags). physics: bodies move in MuJoCo, pictures of 640 x 480 are drawn, and "
+    "AprilTags looked for in them. kinematic: bodies keep their velocities, and tags are seen by geometry.",
     "Sightings are put together by tag and filtered by covariance; what was seen three times and is known to 0.15 m is "
     "found.",
 )
