@@ -1,6 +1,9 @@
 """Tags in pictures drawn here, in perspective, with noise and blur."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -135,3 +138,11 @@ def test_how_small_a_tag_may_be(decimate, least_px):
     tags = [(k, lying((k % 3 - 1) * 0.7, (k // 3 - 1) * 0.9, k)) for k in range(9)]
     found = detector.detect(drawn(view, tags, size, noise=3, blur=0.7))
     assert [s.tag for s in found.all] == list(range(9))
+
+
+def test_detectors_can_be_given_back():
+    """Those of pupil-apriltags free what they have yet to use, and the process dies sooner or later."""
+    code = "from muster.perception.detection import TagDetector as T; from muster.perception.tags import tag_image as i"
+    detect = "[T().detect(i(k, cell_px=8)) for k in range(60)]"
+    ended = subprocess.run([sys.executable, "-c", f"{code}; {detect}"], env={**os.environ, "MALLOC_PERTURB_": "165"})
+    assert ended.returncode == 0
