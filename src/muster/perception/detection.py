@@ -106,7 +106,7 @@ class TagDetector:
             quad_decimate=self._parameters.decimate,
             quad_sigma=self._parameters.blur_px,
         )
-        # when it is given back, pupil-apriltags (1.0.4) frees families that the detector has yet to use: it may forget them
+        # given back, pupil-apriltags (1.0.4) frees families that its detector has yet to use: it shall know none
         self._detector.tag_families.clear()
 
     def detect(self, image: Image, intrinsics: Intrinsics | None = None) -> Sightings:

@@ -72,7 +72,7 @@ def _filtered(raw: RawEstimates, labels: Labels) -> tuple[PointOfInterest, ...]:
 
 METHODS: Mapping[str, Method] = {
     "k-means": k_means,
-    "k-means, 100": lambda raw, count: k_means(raw, count, starts=100),
+    "k-means, 50": lambda raw, count: k_means(raw, count, starts=50),
     "density": density,
     "tag": decoded,
 }
@@ -173,7 +173,7 @@ _NOTES = (
     f"{RATE_HZ:g} pictures a second, noise of 3 degrees and 0.1 m, so that raw estimates scatter by 0.3 m. rare: of "
     f"these all but the first {KEPT} of tag 1 are left out, as the thesis' flight had few of it. 3 tags: of these the "
     "estimates of tags 1, 24 and 28 alone, as in Figure 6.5b.",
-    "k-means: as in the thesis, the number of tags known, means of clusters, the best of 10 starts, and of 100. "
+    "k-means: as in the thesis, the number of tags known, means of clusters, the best of 10 starts, and of 50. "
     f"density: at least {LEAST} within {RADIUS_M:g} m. tag: by decoded id. Both filtered by covariance, points of at "
     f"least {LEAST} sightings.",
 )
