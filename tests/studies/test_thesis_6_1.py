@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -12,7 +11,6 @@ import pytest
 
 import muster as package
 from muster.cli.main import run as muster
-from muster.mission.errors import MissingExtraError
 from muster.perception.estimates import RawEstimates
 from muster.studies import Effort, study_named
 from muster.studies.thesis_6_1 import clusters
@@ -187,9 +185,8 @@ def test_pictures(tmp_path, six_tags, capsys):
     ]  # fmt: skip
 
 
-def test_without_the_extra_one_line_says_so(monkeypatch):
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    for module in [name for name in sys.modules if name.startswith("muster.simulation.physics")]:
-        monkeypatch.delitem(sys.modules, module)
-    with pytest.raises(MissingExtraError, match="physics"):
-        fly.__wrapped__(six())
+def test_without_the_extra_one_line_says_so(monkeypatch, capsys):
+    monkeypatch.setattr("muster.perception.extra.find_spec", lambda name: None if name == "mujoco" else True)
+    assert muster(["study", "thesis-6.1", "--quick", "-q"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "muster-robotics[physics]" in line

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from muster.studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from collections.abc import Iterable
+
+from muster.perception.extra import require_physics
+from muster.studies.effort import Effort
+from muster.studies.repetition import IllustratedRepetition, OnDone, Performed, Performer, Reproduction, one_by_one
 from muster.studies.thesis_6_1.clusters import Clusterings
 from muster.studies.thesis_6_1.errors import TagErrors
 from muster.studies.thesis_6_1.flights import Flight, Flown, fly
@@ -36,13 +40,23 @@ _LEGEND = (
     "found.",
 )
 
+
+def _fly_all(
+    jobs: Iterable[Flight], effort: Effort, workers: int, on_done: OnDone | None = None
+) -> Performed[Flight, Flown]:
+    """All flights, one by one; what they need is asked for before the first."""
+    require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
+    perform: Performer[Flight, Flown] = one_by_one(fly)
+    return perform(jobs, effort, workers, on_done)
+
+
 THESIS_6_1 = IllustratedRepetition(
     name="thesis-6.1",
     summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5",
     document="TCF thesis, section 6.1",
     legend=_LEGEND,
     reproductions=_TABLES,
-    perform=one_by_one(fly),
+    perform=_fly_all,
     seeds=seed_count,
     pictures=draw,
 )
