@@ -11,10 +11,11 @@ import pytest
 
 import muster as package
 from muster.cli.main import run as muster
+from muster.perception.clusters import by_means, inertia
 from muster.perception.estimates import RawEstimates
 from muster.studies import Effort, study_named
 from muster.studies.thesis_6_1 import clusters
-from muster.studies.thesis_6_1.clusters import CALM, METHODS, NOISY, SCATTERED, Clusterings, seen_rarely
+from muster.studies.thesis_6_1.clusters import CALM, METHODS, NOISY, SCATTERED, Clusterings, near, seen_rarely
 from muster.studies.thesis_6_1.errors import TagErrors
 from muster.studies.thesis_6_1.flights import fly
 from muster.studies.thesis_6_1.published import NOISE, points, six, tags, thirty, truth
@@ -159,6 +160,11 @@ def test_k_means_loses_a_tag_that_is_seen_rarely_and_decoded_tags_mend_it(cluste
         assert by["tag"]["tag 1"] < 0.6
         assert (by["tag"]["points"], by["tag"]["missed"]) == (3 if "3 tags" in sample else 30, 0)
         assert by["tag"]["mean error"] < by["k-means"]["mean error"] / 3
+
+
+def test_the_least_sum_of_squares_is_the_wrong_answer():
+    raw = near(seen_rarely(FOUND[SCATTERED].raw)).raw
+    assert inertia(raw.positions, by_means(raw.positions, 3)) < inertia(raw.positions, raw.tags) - 1.0
 
 
 def test_only_late_sightings_of_one_tag_are_left_out():
