@@ -24,6 +24,7 @@ COUNTS = {  # robots, tasks
     "11T-2R-actions": (2, 11),
     "16T-3R": (3, 16),
     "16T-3R-actions": (3, 16),
+    "16T-3R-tags": (3, 16),
     "24T-5R": (5, 24),
     "31T-2R65-4R25": (6, 31),
     "31T-2R65-4R25-as-run": (6, 31),
@@ -53,6 +54,7 @@ COUNTS = {  # robots, tasks
     "market-rescue": (3, 5),
     "market-rescue-20": (5, 20),
     "market-rescue-arena": (3, 5),
+    "six-tags": (1, 18),
     "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]

@@ -104,7 +104,9 @@ def by_tag(raw: RawEstimates, apart_m: float) -> Labels:
     count = 0
     for tag in np.unique(raw.tags[raw.tags != NO_TAG]):
         of_tag = np.flatnonzero(raw.tags == tag)
-        labels[of_tag] = by_density(raw.positions[of_tag], apart_m, least=1) + count
+        places = raw.positions[of_tag]
+        near = float(np.linalg.norm(np.ptp(places, axis=0))) <= apart_m  # all of them: no need to look closer
+        labels[of_tag] = count if near else by_density(places, apart_m, least=1) + count
         count = int(labels.max()) + 1
     return labels
 

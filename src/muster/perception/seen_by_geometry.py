@@ -37,7 +37,9 @@ def sightings_of(
     tags: Sequence[LyingTag], view: View, random: np.random.Generator, corner_px: float = 0.2
 ) -> Sightings:
     """The tags that a camera sees, with corners that are off by `corner_px` (standard deviation, each axis)."""
-    seen = [sighting for tag in tags if (sighting := _sighting(tag, view, random, corner_px)) is not None]
+    in_picture = view.sees([tag.pose[:3, 3] for tag in tags])  # quick, as most are not
+    near = [tag for tag, inside in zip(tags, in_picture, strict=True) if inside]
+    seen = [sighting for tag in near if (sighting := _sighting(tag, view, random, corner_px)) is not None]
     seen.sort(key=lambda sighting: (sighting.tag, *sighting.centre))
     times = Counter(sighting.tag for sighting in seen)
     return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))

@@ -62,7 +62,7 @@ def plot_found(
     _frame(ax, raw, truth)
     add_title(ax, title, _facts(table, len(truth)))
     if raw.robots:
-        ax.legend(loc="upper right", fontsize=7, frameon=False, markerscale=4)
+        ax.legend(loc="best", fontsize=7, frameon=False, markerscale=4)
     return ax
 
 

@@ -22,6 +22,7 @@ from muster.studies.bench_avoidance import compared
 from muster.studies.bench_execution import EXECUTION_BENCHES
 from muster.studies.bench_lasers import LASER_BENCHES
 from muster.studies.bench_motion import MOTION_BENCHES
+from muster.studies.bench_perception import PERCEPTION_BENCHES
 from muster.studies.bench_physics import PHYSICS_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
@@ -193,6 +194,7 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     **SIMULATION_BENCHES,
     **PHYSICS_BENCHES,
     **LASER_BENCHES,
+    **PERCEPTION_BENCHES,
     **EXECUTION_BENCHES,
     **AUCTION_BENCHES,
 }

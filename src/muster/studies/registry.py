@@ -22,6 +22,7 @@ from muster.studies.rvo import RVO
 from muster.studies.tables import Report
 from muster.studies.thesis_3_3 import THESIS_3_3
 from muster.studies.thesis_6 import THESIS_6
+from muster.studies.thesis_6_1 import THESIS_6_1
 
 
 class Study(Protocol):
@@ -49,6 +50,7 @@ class Illustrated(Protocol):
 _IMPLEMENTATIONS: tuple[Study, ...] = (
     THESIS_3_3,
     THESIS_6,
+    THESIS_6_1,
     AUCTION_5,
     MARKET_RESCUE,
     Allocators(),
