@@ -29,8 +29,8 @@ def perception(runs: int) -> list[Measurement]:
         if the extra `physics` is not installed.
     """
     from muster.simulation.physics import PhysicsWorld
+    from muster.simulation.physics.drawn_sight import DrawnSight
     from muster.simulation.physics.rendering import Lens, Renderer
-    from muster.simulation.physics.sight import RenderedSight
 
     mission = load(MISSION)
     camera = mission.robots[0].camera
@@ -41,7 +41,7 @@ def perception(runs: int) -> list[Measurement]:
     world = PhysicsWorld(mission)
     world.step()  # the model is made
     size = lens.width, lens.height
-    with closing(RenderedSight(world)) as sight, Renderer(world, *size) as renderer:
+    with closing(DrawnSight(world)) as sight, Renderer(world, *size) as renderer:
         look = sight.look(drone, view, OVER_TAGS, 0.0)
         image = look.image
         assert image is not None

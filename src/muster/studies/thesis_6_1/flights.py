@@ -21,7 +21,7 @@ from muster.perception.estimates import RawEstimates
 from muster.perception.interest import PointOfInterest
 from muster.perception.matching import ErrorTable, error_table
 from muster.simulation import NO_NOISE, Noise
-from muster.simulation.sight import Look
+from muster.simulation.cameras import Look
 from muster.studies.runs import accepted, mission_named
 from muster.verification import Verdict
 
