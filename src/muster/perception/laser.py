@@ -96,6 +96,12 @@ class Scanner:
         return np.where(stray, random.uniform(0.0, self.reach_m, ranges.shape), noisy)
 
 
+def require_scan(ranges: Floats, bearings: Floats) -> None:
+    """Raise ParameterError unless ranges and bearings are those of one scan: (n,) each, n at least 2."""
+    if ranges.ndim != 1 or ranges.shape != bearings.shape or len(ranges) < 2:
+        raise ParameterError(f"ranges, bearings: shapes {ranges.shape}, {bearings.shape}; expected (n,) twice, n >= 2")
+
+
 def points_of(ranges: Floats, bearings: Floats) -> Floats:
     """(2.8) of the TCF thesis: the points that were hit, (m, 2) in the scanner's frame; infinite ranges hit nothing."""
     hit = np.isfinite(ranges)

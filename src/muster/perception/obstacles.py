@@ -14,7 +14,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.perception.kalman import Floats
-from muster.perception.laser import points_of
+from muster.perception.laser import points_of, require_scan
 from muster.perception.shapes import Shape, shape_of
 
 
@@ -101,8 +101,7 @@ def obstacles(ranges: Floats, bearings: Floats, detection: Detection | None = No
     ParameterError
         if the shapes differ.
     """
-    if ranges.ndim != 1 or ranges.shape != bearings.shape or len(ranges) < 2:
-        raise ParameterError(f"ranges, bearings: shapes {ranges.shape}, {bearings.shape}; expected (n,) twice, n >= 2")
+    require_scan(ranges, bearings)
     detection = detection or Detection()
     smooth = median(ranges, detection.window)
     return tuple(

@@ -20,6 +20,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.perception.kalman import Floats
+from muster.perception.laser import require_scan
 
 _INNER = 0.8
 """Share of a circle's radius within which beams count: nearer its rim, half a beam off is centimetres of range."""
@@ -124,8 +125,7 @@ def landmarks(ranges: Floats, bearings: Floats, search: Search | None = None) ->
     ParameterError
         if the shapes differ.
     """
-    if ranges.ndim != 1 or ranges.shape != bearings.shape or len(ranges) < 2:
-        raise ParameterError(f"ranges, bearings: shapes {ranges.shape}, {bearings.shape}; expected (n,) twice, n >= 2")
+    require_scan(ranges, bearings)
     search = search or Search()
     step = float(bearings[1] - bearings[0])
     seen = (_circle(ranges[run], bearings[run], step, search.radius_m) for run in spikes(ranges, search.depth_m))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.report import save_figure
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
+from muster.studies.drawing import draw_figures
 from muster.studies.effort import Effort
 from muster.studies.rescue.flights import Flown, repetitions
 from muster.studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
@@ -24,13 +24,7 @@ if TYPE_CHECKING:
 
 def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
     """The pictures of these tables that have one; the files made."""
-    makers: dict[str, Callable[[Effort], Figure]] = {"Figure 7": _tracking, "Figure 8": _metrics}
-    made = []
-    for number in (number for number in numbers if number in makers):
-        path = folder / f"{number.lower().replace(' ', '-')}.png"
-        save_figure(makers[number](effort), path)
-        made.append(path)
-    return made
+    return draw_figures(folder, effort, numbers, {"Figure 7": _tracking, "Figure 8": _metrics})
 
 
 def _tracking(effort: Effort) -> Figure:
