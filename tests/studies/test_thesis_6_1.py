@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from importlib.util import find_spec
@@ -196,3 +197,11 @@ def test_without_the_extra_one_line_says_so(monkeypatch, capsys):
     assert muster(["study", "thesis-6.1", "--quick", "-q"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "muster-robotics[physics]" in line
+
+
+def test_only_fixes_bound_the_drift_of_a_drone(capsys):
+    assert muster(["study", "thesis-6.1", "--tables", "A6.1", "--format", "json", "-q"]) == 0
+    (table,) = json.loads(capsys.readouterr().out)["tables"]
+    odometry, inertial, fixes, thesis = table["rows"]
+    assert fixes["greatest"] < 0.15 < inertial["greatest"] <= odometry["greatest"] < 1.0
+    assert thesis["greatest"] == "0.15 to 0.5"

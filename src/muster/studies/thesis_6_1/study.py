@@ -8,6 +8,7 @@ from muster.perception.extra import require_physics
 from muster.studies.effort import Effort
 from muster.studies.repetition import IllustratedRepetition, OnDone, Performed, Performer, Reproduction, one_by_one
 from muster.studies.thesis_6_1.clusters import Clusterings
+from muster.studies.thesis_6_1.drifts import Drifts
 from muster.studies.thesis_6_1.errors import TagErrors
 from muster.studies.thesis_6_1.flights import Flight, Flown, fly
 from muster.studies.thesis_6_1.pictures import draw
@@ -30,6 +31,7 @@ _TABLES: tuple[Reproduction[Flight, Flown], ...] = (
         thesis={"error_real": "real", "error": "Gazebo"},
     ),
     Clusterings(),
+    Drifts(),
 )
 
 _LEGEND = (
@@ -52,7 +54,7 @@ def _fly_all(
 
 THESIS_6_1 = IllustratedRepetition(
     name="thesis-6.1",
-    summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5",
+    summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5, A6.1",
     document="TCF thesis, section 6.1",
     legend=_LEGEND,
     reproductions=_TABLES,
