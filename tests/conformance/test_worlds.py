@@ -52,7 +52,7 @@ def test_robots_reach_way_points_turn_and_hold(world_of, kind):
     assert math.dist(world.positions[0], way[1].position) < 0.02
     assert world.distances_m["r"] == pytest.approx(math.hypot(1, 0.5) + math.hypot(1, 0.5), rel=0.02)
     said = port.telemetry()
-    assert said.odometry_m == pytest.approx(world.distances_m["r"])
+    assert said.odometry_m == pytest.approx(world.distances_m["r"], rel=0.01)  # wheels count how far they roll
     assert said.velocity == (0.0, 0.0, 0.0)
 
 

@@ -42,6 +42,8 @@ def test_it_prints_what_the_command_promises():
         "ends_s",
         "objective",
         "tasks",
+        "found",
+        "remarks",
     ]
     assert data["tasks_done"] == ["x", "y"]
     assert data["tasks_lost"] == [{"task": "z", "reason": "left out by the plan"}]

@@ -54,6 +54,7 @@ COUNTS = {  # robots, tasks
     "market-rescue": (3, 5),
     "market-rescue-20": (5, 20),
     "market-rescue-arena": (3, 5),
+    "scout-and-deliver": (5, 5),
     "six-tags": (1, 18),
     "yard": (4, 18),
 }
