@@ -11,8 +11,6 @@ from muster._carrying_out import Simulation, carry_out
 from muster.mission.model import Action, Camera, Event, Found, Mission, MovedTask, Robot, Tag, Task, Work
 from muster.simulation import Noise
 
-pytest.importorskip("scipy")
-
 WORLDS = ["kinematic", pytest.param("physics", marks=pytest.mark.skipif(not find_spec("mujoco"), reason="no MuJoCo"))]
 CAMERA = Camera(fov_deg=60, tilt_deg=45, rate_hz=4)
 DRONE = Robot(
@@ -62,6 +60,23 @@ def test_found_becomes_done(world):
     assert {find.tag: find.task for find in report.found} == {4: "found-4", 9: "found-9"}
     assert all(find.error_m < 0.02 and find.robots == ("drone",) for find in report.found)
     assert report.remarks == ()
+
+
+def test_what_is_found_happens_when_it_is_found():
+    simulation = simulated(mission())
+    found = {event.data["task"]: event.at_s for event in kinds(simulation, "found")}
+    assert found == {find.task: find.found_s for find in simulation.lookout.found}
+    assert found == {event.data["task"]["id"]: event.at_s for event in kinds(simulation, "new_task")}
+
+
+def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_goes_on():
+    late = Found(becomes=Work(only_robots=("late",)))
+    joins = Event(at_s=60.0, robot_joins=replace(ROVER, id="late"))
+    simulation = simulated(mission(found=(late,), events=(joins,)))
+    reasons = [event.data["reason"] for event in kinds(simulation, "event_refused")]
+    assert reasons == [f'new_task: found-{tag}: "late"; expected the id of a robot' for tag in (9, 4)]
+    assert simulation.result().tasks_done == ("search",)
+    assert [find.task for find in simulation.lookout.found] == [None, None]
 
 
 @pytest.mark.parametrize("world", WORLDS)

@@ -20,7 +20,6 @@ from muster.motion.frames import angles
 from muster.motion.port import RobotPort
 from muster.perception.camera import Intrinsics, View, mount_of_mission
 from muster.perception.detection import TagDetector
-from muster.perception.extra import require_physics
 from muster.perception.interest import remarks
 from muster.perception.localisation import Uncertainty
 from muster.perception.observer import Observer
@@ -146,6 +145,10 @@ class Lookout:
                 event = self._event(find, now)  # first: it names the task
                 yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
 
+    def refused(self, task: str) -> None:
+        """What was found did not become this task after all."""
+        self._tasks = {find: name for find, name in self._tasks.items() if name != task}
+
     def close(self) -> None:
         """Give back what cameras hold."""
         self._sight.close()
@@ -194,7 +197,6 @@ class Lookout:
 
 def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight, TagDetector | None]:
     """How the cameras of a world see, and what looks for tags in their pictures, if they have any."""
-    require_physics("finding tags", "scipy")
     if isinstance(world, KinematicWorld):
         return GeometricSight(mission.tags, seed), None
     from muster.simulation.physics.drawn_sight import DrawnSight
