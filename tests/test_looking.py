@@ -1,6 +1,7 @@
 """Robots that look while a plan is carried out: what they find becomes tasks, in both worlds."""
 
 import math
+from contextlib import closing
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -131,6 +132,15 @@ def test_a_tag_twice_is_said_and_becomes_two_tasks():
 def test_a_robot_that_failed_sees_nothing():
     broken = mission(events=(Event(at_s=0.5, robot_fails="drone"),))
     assert flown(broken).found == ()
+
+
+@pytest.mark.parametrize(("unheard", "looked"), [((), 1), (("drone",), 0)])
+def test_of_who_cannot_tell_what_it_sees_nobody_hears(unheard, looked):
+    of, looks = mission(), []
+    with closing(Simulation(of, muster.solve(of, iterations=50), on_look=looks.append)) as simulation:
+        assert list(simulation.lookout.look(0.0, unheard)) == []
+        assert simulation.lookout.due_s == 0.25
+    assert len(looks) == looked
 
 
 def test_a_robot_that_joins_looks_too():

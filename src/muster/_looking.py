@@ -7,7 +7,7 @@ tilted as its inertial unit says, both with the world's noise. Of a robot that i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -118,8 +118,15 @@ class Lookout:
         number = list(self._world.ports).index(robot.id)
         self._eyes[robot.id] = _Eye(number, eye, 1 / robot.camera.rate_hz, self._world.time_s)
 
-    def look(self, now: float) -> Iterator[tuple[dict[str, Any], Event | None]]:
+    def look(self, now: float, unheard: Collection[str] = ()) -> Iterator[tuple[dict[str, Any], Event | None]]:
         """Let those look whose time has come.
+
+        Parameters
+        ----------
+        now
+            the mission's clock, seconds.
+        unheard
+            robots that cannot tell what they see, beside those whose telemetry is old.
 
         Yields
         ------
@@ -131,7 +138,7 @@ class Lookout:
             if eye.due_s > now + 1e-9:
                 continue
             eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
-            said = self._ports[robot].telemetry()
+            said = None if robot in unheard else self._ports[robot].telemetry()
             if said is None or said.time_s < now - self._world.dt_s / 2:
                 continue
             k = eye.number
