@@ -81,7 +81,7 @@ class Lookout:
         self._sight, self._detector = _sight_of(world, mission, seed)
         self._eyes: dict[str, _Eye] = {}
         self._tasks: dict[tuple[int, int], str] = {}
-        self._remarks: list[str] = []
+        self._remarks: dict[tuple[str, str], str] = {}
         self.search = Search(proof)
         for robot in mission.robots:
             self.join(robot)
@@ -99,7 +99,7 @@ class Lookout:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a person should hear of."""
-        return (*self._remarks, *remarks(tuple(find.point for find in self.search.finds)))
+        return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds)))
 
     def join(self, robot: Robot) -> None:
         """A robot that is in the world looks from now on, if it has a camera."""
@@ -147,7 +147,8 @@ class Lookout:
             believed = [*(np.array(said.position) + frames[k] - positions[k]), roll, pitch, said.heading]
             look = self._sight.look(eye.observer, view, believed, now)
             self._on_look(look)
-            self._remarks += look.observation.remarks
+            for remark in look.observation.remarks:  # what is so in many images is said once
+                self._remarks.setdefault((robot, remark.partition(": ")[2]), remark)
             for find in self.search.take(look.observation.estimates, now):
                 event = self._event(find, now)  # first: it names the task
                 yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
