@@ -1,6 +1,7 @@
 """Robots that look while a plan is carried out: what they find becomes tasks, in both worlds."""
 
 import math
+from contextlib import closing
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -10,8 +11,6 @@ import muster
 from muster._carrying_out import Simulation, carry_out
 from muster.mission.model import Action, Camera, Event, Found, Mission, MovedTask, Robot, Tag, Task, Work
 from muster.simulation import Noise
-
-pytest.importorskip("scipy")
 
 WORLDS = ["kinematic", pytest.param("physics", marks=pytest.mark.skipif(not find_spec("mujoco"), reason="no MuJoCo"))]
 CAMERA = Camera(fov_deg=60, tilt_deg=45, rate_hz=4)
@@ -64,6 +63,23 @@ def test_found_becomes_done(world):
     assert report.remarks == ()
 
 
+def test_what_is_found_happens_when_it_is_found():
+    simulation = simulated(mission())
+    found = {event.data["task"]: event.at_s for event in kinds(simulation, "found")}
+    assert found == {find.task: find.found_s for find in simulation.lookout.found}
+    assert found == {event.data["task"]["id"]: event.at_s for event in kinds(simulation, "new_task")}
+
+
+def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_goes_on():
+    late = Found(becomes=Work(only_robots=("late",)))
+    joins = Event(at_s=60.0, robot_joins=replace(ROVER, id="late"))
+    simulation = simulated(mission(found=(late,), events=(joins,)))
+    reasons = [event.data["reason"] for event in kinds(simulation, "event_refused")]
+    assert reasons == [f'new_task: found-{tag}: "late"; expected the id of a robot' for tag in (9, 4)]
+    assert simulation.result().tasks_done == ("search",)
+    assert [find.task for find in simulation.lookout.found] == [None, None]
+
+
 @pytest.mark.parametrize("world", WORLDS)
 def test_runs_are_the_same_by_seed(world):
     noise = Noise(position_m=0.03, heading_rad=math.radians(1), attitude_rad=math.radians(1))
@@ -110,12 +126,21 @@ def test_a_tag_twice_is_said_and_becomes_two_tasks():
     report = flown(mission(tags=(Tag(id=4, position=(6, 0.6, 0)), Tag(id=4, position=(6, -0.6, 0)))))
     assert set(report.tasks_done) == {"search", "found-4", "found-4-2"}
     assert "tag 4 is at 2 places" in report.remarks
-    assert any("twice in one image" in remark for remark in report.remarks)
+    assert sum("twice in one image" in remark for remark in report.remarks) == 1  # once, of many images
 
 
 def test_a_robot_that_failed_sees_nothing():
     broken = mission(events=(Event(at_s=0.5, robot_fails="drone"),))
     assert flown(broken).found == ()
+
+
+@pytest.mark.parametrize(("unheard", "looked"), [((), 1), (("drone",), 0)])
+def test_of_who_cannot_tell_what_it_sees_nobody_hears(unheard, looked):
+    of, looks = mission(), []
+    with closing(Simulation(of, muster.solve(of, iterations=50), on_look=looks.append)) as simulation:
+        assert list(simulation.lookout.look(0.0, unheard)) == []
+        assert simulation.lookout.due_s == 0.25
+    assert len(looks) == looked
 
 
 def test_a_robot_that_joins_looks_too():

@@ -192,9 +192,12 @@ class Simulation:
         if self._lookout is None:
             return
         for found, event in self._lookout.look(self.time_s):
+            self._executor.come_to(self.time_s)
             self._executor.tell("found", found)
-            if event is not None and (event.new_task or self._is_open(event)):
-                self._executor.report(event)
+            if event is None or not (event.new_task or self._is_open(event)):
+                continue
+            if not self._executor.report_if_it_fits(event) and event.new_task is not None:
+                self._lookout.refused(event.new_task.id)
 
     def _is_open(self, event: Event) -> bool:
         return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}

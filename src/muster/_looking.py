@@ -7,7 +7,7 @@ tilted as its inertial unit says, both with the world's noise. Of a robot that i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -20,7 +20,6 @@ from muster.motion.frames import angles
 from muster.motion.port import RobotPort
 from muster.perception.camera import Intrinsics, View, mount_of_mission
 from muster.perception.detection import TagDetector
-from muster.perception.extra import require_physics
 from muster.perception.interest import remarks
 from muster.perception.localisation import Uncertainty
 from muster.perception.observer import Observer
@@ -82,7 +81,7 @@ class Lookout:
         self._sight, self._detector = _sight_of(world, mission, seed)
         self._eyes: dict[str, _Eye] = {}
         self._tasks: dict[tuple[int, int], str] = {}
-        self._remarks: list[str] = []
+        self._remarks: dict[tuple[str, str], str] = {}
         self.search = Search(proof)
         for robot in mission.robots:
             self.join(robot)
@@ -100,7 +99,7 @@ class Lookout:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a person should hear of."""
-        return (*self._remarks, *remarks(tuple(find.point for find in self.search.finds)))
+        return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds)))
 
     def join(self, robot: Robot) -> None:
         """A robot that is in the world looks from now on, if it has a camera."""
@@ -119,8 +118,15 @@ class Lookout:
         number = list(self._world.ports).index(robot.id)
         self._eyes[robot.id] = _Eye(number, eye, 1 / robot.camera.rate_hz, self._world.time_s)
 
-    def look(self, now: float) -> Iterator[tuple[dict[str, Any], Event | None]]:
+    def look(self, now: float, unheard: Collection[str] = ()) -> Iterator[tuple[dict[str, Any], Event | None]]:
         """Let those look whose time has come.
+
+        Parameters
+        ----------
+        now
+            the mission's clock, seconds.
+        unheard
+            robots that cannot tell what they see, beside those whose telemetry is old.
 
         Yields
         ------
@@ -132,7 +138,7 @@ class Lookout:
             if eye.due_s > now + 1e-9:
                 continue
             eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
-            said = self._ports[robot].telemetry()
+            said = None if robot in unheard else self._ports[robot].telemetry()
             if said is None or said.time_s < now - self._world.dt_s / 2:
                 continue
             k = eye.number
@@ -141,10 +147,15 @@ class Lookout:
             believed = [*(np.array(said.position) + frames[k] - positions[k]), roll, pitch, said.heading]
             look = self._sight.look(eye.observer, view, believed, now)
             self._on_look(look)
-            self._remarks += look.observation.remarks
+            for remark in look.observation.remarks:  # what is so in many images is said once
+                self._remarks.setdefault((robot, remark.partition(": ")[2]), remark)
             for find in self.search.take(look.observation.estimates, now):
                 event = self._event(find, now)  # first: it names the task
                 yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
+
+    def refused(self, task: str) -> None:
+        """What was found did not become this task after all."""
+        self._tasks = {find: name for find, name in self._tasks.items() if name != task}
 
     def close(self) -> None:
         """Give back what cameras hold."""
@@ -194,7 +205,6 @@ class Lookout:
 
 def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight, TagDetector | None]:
     """How the cameras of a world see, and what looks for tags in their pictures, if they have any."""
-    require_physics("finding tags", "scipy")
     if isinstance(world, KinematicWorld):
         return GeometricSight(mission.tags, seed), None
     from muster.simulation.physics.drawn_sight import DrawnSight

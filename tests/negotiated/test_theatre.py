@@ -140,8 +140,10 @@ class OneFind:
 
     def __init__(self, event):
         self._events = [event]
+        self.unheard = []
 
-    def look(self, now):
+    def look(self, now, unheard):
+        self.unheard.append(set(unheard))
         if now >= 0.1 and self._events:
             yield {"tag": 4}, self._events.pop()
 
@@ -154,6 +156,16 @@ def test_of_what_cameras_find_one_robot_is_told(tmp_path):
         theatre.go_on(1.0)
     assert [(robot, word.event) for robot, word in theatre.team.told if isinstance(word, Befalls)] == [("a", new)]
     assert [(h.kind, h.data) for h in log.happenings if h.kind == "found"] == [("found", {"tag": 4})]
+
+
+def test_what_a_robot_sees_that_is_cut_off_or_gone_nobody_hears(tmp_path):
+    silent, fails = Event(at_s=0.1, robot_silent="a"), Event(at_s=0.3, robot_fails="b")
+    theatre, _ = theatre_of([silent, fails, Event(at_s=0.5, robot_returns="a")], tmp_path)
+    theatre.lookout = OneFind(None)
+    while theatre.time_s < 0.6:
+        theatre.go_on(1.0)
+    ways = [unheard for k, unheard in enumerate(theatre.lookout.unheard) if theatre.lookout.unheard[k - 1] != unheard]
+    assert ways == [set(), {"a"}, {"a", "b"}, {"b"}]
 
 
 def test_robots_that_err_about_their_poses_are_told_the_fused_ones(tmp_path):

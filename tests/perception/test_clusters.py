@@ -11,7 +11,7 @@ from muster.library import as_printed, published
 from muster.mission.errors import MissingExtraError, ParameterError
 
 pytest.importorskip("scipy")
-from muster.perception.clusters import LONE, by_density, by_means, by_tag, inertia
+from muster.perception.clusters import LONE, by_density, by_means, by_tag, inertia, linked
 from muster.perception.estimates import NO_TAG, RawEstimates
 from muster.perception.interest import points_of_interest
 from muster.perception.matching import error_table
@@ -110,6 +110,12 @@ def test_by_density_is_what_its_definition_says(positions, radius, least):
         assert reached == set(members)
 
 
+@given(places, st.floats(0.5, 4), st.integers(0, 40))
+def test_linked_is_density_without_rims_however_many_are_taken_in_before(positions, apart, known):
+    labels = linked(positions, apart, linked(positions[:known], apart))
+    assert np.unique(labels, return_inverse=True)[1].tolist() == by_density(positions, apart, 1).tolist()
+
+
 def test_by_tag_a_tag_at_two_places_is_two_things():
     raw = RawEstimates.at([[0, 0], [5, 5], [0.1, 0], [5, 5.1], [0.2, 0.1]], [3, 3, 3, 3, 4])
     assert by_tag(raw, 1.0).tolist() == [0, 1, 0, 1, 2]
@@ -133,6 +139,7 @@ def test_nothing_gives_no_clusters():
         (lambda p: by_means(p, 1, starts=0), "starts: 0; expected at least 1"),
         (lambda p: by_density(p, 0.0), "radius_m: 0.0; expected metres above 0"),
         (lambda p: by_density(p, 1.0, 0), "least: 0; expected at least 1"),
+        (lambda p: by_tag(RawEstimates.at(p, [1, 1]), 0.0), "apart_m: 0.0; expected metres above 0"),
     ],
 )
 def test_numbers_out_of_range_are_refused(cluster, message):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy")
 from muster.mission.errors import ParameterError
 from muster.perception.estimates import RawEstimates
 from muster.perception.search import Proof, Search
@@ -60,6 +59,21 @@ def test_a_tag_at_two_places_is_two_points():
     assert (first.number, second.number) == (0, 1)
     assert [find.point.position.tolist() for find in search.finds] == [[0, 0], [9, 0]]
     assert search.take(seen(4, (9, 0), (0, 0), at_s=9.0), 9.0) == ()
+
+
+def test_a_stray_sighting_beside_a_find_does_not_take_its_place():
+    search = Search(Proof(sightings=2, apart_m=1.0))
+    (find,) = search.take(seen(4, (0, 0.5), (0, -0.5)), 0.0)
+    assert search.take(seen(4, (0.95, 0), at_s=9.0), 9.0) == ()  # farther than 1 m from each, not from their mean
+    assert [found.point.position.tolist() for found in search.finds] == [find.point.position.tolist()]
+
+
+def test_places_between_make_one_point_of_two_that_were_not_found():
+    search = Search(Proof(sightings=3, deviation_m=1.0, apart_m=1.0))
+    assert search.take(seen(4, (0, 0), (1.6, 0)), 0.0) == ()
+    (find,) = search.take(seen(4, (0.8, 0), at_s=9.0), 9.0)
+    assert find.point.position == pytest.approx([0.8, 0.0])
+    assert find.point.sightings == 3
 
 
 def test_all_estimates_are_kept():

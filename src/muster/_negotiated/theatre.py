@@ -120,7 +120,8 @@ class Theatre:
         """Let cameras look; of what becomes of what they find one robot is told, which tells the others."""
         if self.lookout is None:
             return
-        for found, event in self.lookout.look(self.time_s):
+        unheard = self._world.ports.keys() - self._connected
+        for found, event in self.lookout.look(self.time_s, unheard):
             self._log.tell(self.time_s, "found", found)
             if event is not None:
                 self._befalls(event)

@@ -50,9 +50,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
-@click.option(
-    "--world", type=click.Choice(["kinematic", "physics"]), default="kinematic", show_default=True, help="Where."
-)
+@click.option("--world", type=click.Choice(_WORLDS), default="kinematic", show_default=True, help="Where.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."

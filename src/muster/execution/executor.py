@@ -168,6 +168,15 @@ class Executor:
         if not changes and event.robot_silent is None:
             self.tell("without_effect", plain(event))
 
+    def report_if_it_fits(self, event: Event) -> bool:
+        """`report` where nobody is there to hear of an error: what does not fit is refused, and that is told."""
+        try:
+            self.report(event)
+        except ParameterError as error:
+            self.tell("event_refused", {"reason": str(error)})
+            return False
+        return True
+
     def plan_again(self, kind: str, data: Mapping[str, Any]) -> None:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask([Change(kind, data)])
@@ -183,9 +192,8 @@ class Executor:
 
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
-        if now < self.now_s:
-            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
-        first, self.now_s = len(self.happenings), now
+        first = len(self.happenings)
+        self.come_to(now)
         self._hear()
         for hand in self._present:
             self._dispatch.advance(hand, now)
@@ -195,6 +203,12 @@ class Executor:
         self._notice_standstill()
         self._end_if_over()
         return self.happenings[first:]
+
+    def come_to(self, now: float) -> None:
+        """Let the clock go on without a look at anybody: what is reported or told next happens then."""
+        if now < self.now_s:
+            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
+        self.now_s = now
 
     @property
     def _present(self) -> list[Hand]:
@@ -211,11 +225,7 @@ class Executor:
     def _follow_script(self) -> None:
         """Let those events of the mission file happen that are due."""
         while self._script and self._script[0].at_s <= self.now_s:
-            event = self._script.pop(0)
-            try:
-                self.report(event)
-            except ParameterError as error:
-                self.tell("event_refused", {"reason": str(error)})
+            self.report_if_it_fits(self._script.pop(0))
 
     def _capacity(self, hand: Hand) -> float | None:
         return None if "capacity" in self.planned.ignored else hand.robot.work_capacity

@@ -8,6 +8,7 @@ Each gives labels (n,): the number of each estimate's cluster, from 0, or `LONE`
 - `by_density`: DBSCAN (Ester, Kriegel, Sander and Xu, KDD 1996). The number follows, and how often a thing was seen
   does not matter. Things nearer to each other than their estimates scatter become one.
 - `by_tag`: those of one id are one thing, unless they lie apart: then the id is there more than once.
+- `linked` is how it tells what lies apart; it takes new places in without a look at how the others belong together.
 """
 
 from __future__ import annotations
@@ -97,17 +98,38 @@ def by_tag(raw: RawEstimates, apart_m: float) -> Labels:
 
     Raises
     ------
-    ParameterError, MissingExtraError
-        as `by_density`.
+    ParameterError
+        if `apart_m` is not above 0.
     """
     labels = np.full(len(raw), LONE, dtype=np.int64)
-    count = 0
     for tag in np.unique(raw.tags[raw.tags != NO_TAG]):
         of_tag = np.flatnonzero(raw.tags == tag)
-        places = raw.positions[of_tag]
-        near = float(np.linalg.norm(np.ptp(places, axis=0))) <= apart_m  # all of them: no need to look closer
-        labels[of_tag] = count if near else by_density(places, apart_m, least=1) + count
         count = int(labels.max()) + 1
+        labels[of_tag] = count + np.unique(linked(raw.positions[of_tag], apart_m), return_inverse=True)[1]
+    return labels
+
+
+def linked(places: Floats, apart_m: float, before: Labels | None = None) -> Labels:
+    """Places (n, d) are of one cluster if steps no longer than `apart_m`, each to another place, lead across.
+
+    Each cluster has the number of its first place for a label. `before` (m,) are the labels of the first m places.
+
+    Raises
+    ------
+    ParameterError
+        if `apart_m` is not above 0.
+    """
+    if not apart_m > 0:
+        raise ParameterError(f"apart_m: {apart_m}; expected metres above 0")
+    labels, known = np.arange(len(places)), 0 if before is None else len(before)
+    labels[:known] = before if before is not None else ()
+    for k in range(known, len(places)):
+        near = np.linalg.norm(places[:k] - places[k], axis=1) <= apart_m
+        met = np.unique(labels[:k][near])
+        if len(met):
+            labels[k] = met[0]
+        if len(met) > 1:
+            labels[:k][np.isin(labels[:k], met)] = met[0]
     return labels
 
 

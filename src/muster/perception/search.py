@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.perception.clusters import by_tag
+from muster.perception.clusters import Labels, linked
 from muster.perception.estimates import RawEstimates
 from muster.perception.interest import PointOfInterest, points_of_interest
 
@@ -30,7 +30,7 @@ class Proof:
     moved_m
         by which a place must differ from the one that was told before it is told again.
     apart_m, independent_after_s
-        see `by_tag` and `points_of_interest`.
+        see `linked` and `points_of_interest`.
 
     Raises
     ------
@@ -71,6 +71,7 @@ class Search:
     def __init__(self, proof: Proof | None = None) -> None:
         self._proof = proof or Proof()
         self._seen: dict[int, list[RawEstimates]] = defaultdict(list)
+        self._labels: dict[int, Labels] = {}
         self._finds: dict[int, list[Find]] = defaultdict(list)
         self._told: dict[tuple[int, int], PointOfInterest] = {}
 
@@ -99,10 +100,13 @@ class Search:
         proof, finds = self._proof, self._finds[tag]
         raw = RawEstimates.joined(self._seen[tag])
         self._seen[tag] = [raw]
-        labels = by_tag(raw, proof.apart_m)
-        for point in points_of_interest(raw, labels, independent_after_s=proof.independent_after_s):
-            known = _nearest(finds, point, proof.apart_m)
+        labels = self._labels[tag] = linked(raw.positions, proof.apart_m, self._labels.get(tag))
+        points = points_of_interest(raw, labels, independent_after_s=proof.independent_after_s)
+        free = list(finds)  # a find is one point: that which was seen most often, should more be near
+        for point in sorted(points, key=lambda point: -point.sightings):
+            known = _nearest(free, point, proof.apart_m)
             if known is not None:
+                free.remove(known)
                 finds[known.number] = Find(tag, known.number, known.at_s, point)
             elif proof.holds(point):
                 finds.append(Find(tag, len(finds), now, point))
@@ -122,6 +126,6 @@ def _of_tag(estimates: RawEstimates, tag: int) -> RawEstimates:
 
 def _nearest(finds: list[Find], point: PointOfInterest, apart_m: float) -> Find | None:
     """The find that this point is, if any."""
-    near = [(float(np.linalg.norm(find.point.position - point.position)), find.number) for find in finds]
-    distance, number = min(near, default=(np.inf, -1))
-    return finds[number] if distance <= apart_m else None
+    away = [float(np.linalg.norm(find.point.position - point.position)) for find in finds]
+    nearest = int(np.argmin(away)) if away else 0
+    return finds[nearest] if away and away[nearest] <= apart_m else None

@@ -30,7 +30,7 @@ NEAR_M, FAR_M = 0.02, 300.0
 _COSTLY = (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION, mujoco.mjtRndFlag.mjRND_HAZE)
 
 
-class Scenery(Protocol):
+class Drawable(Protocol):
     """A model of MuJoCo's with its state."""
 
     model: Any
@@ -41,7 +41,7 @@ class Shown(Protocol):
     """What can be drawn: a `PhysicsWorld`, whose stage is another one after a robot has joined, or a `Tableau`."""
 
     @property
-    def stage(self) -> Scenery: ...
+    def stage(self) -> Drawable: ...
 
 
 @dataclass(frozen=True)

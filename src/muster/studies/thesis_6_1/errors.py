@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import Any
 
+from muster._carrying_out import WORLDS
 from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL
 from muster.studies.tables import Cell, Table, row
@@ -14,7 +15,6 @@ from muster.studies.thesis_6_1.flights import Flight, Flown
 from muster.studies.thesis_6_1.published import calm, noisy, points, seed_count, tags, truth
 
 ALL = "all"
-WORLDS = ("kinematic", "physics")
 
 
 @dataclass(frozen=True, eq=False)

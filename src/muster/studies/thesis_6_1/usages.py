@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from muster._carrying_out import WORLDS
 from muster.studies.effort import Effort
 from muster.studies.marks import EQUAL, ERRATUM, differences, equal
 from muster.studies.misprints import corrected, errata, printed
@@ -14,8 +15,6 @@ from muster.studies.thesis_6.published import PublishedPlan, excess, plans, tabl
 from muster.studies.thesis_6.totals import total_and_greatest
 from muster.studies.thesis_6_1.flights import Flight, Flown
 from muster.studies.thesis_6_1.published import flown_plan, thirty
-
-WORLDS = ("kinematic", "physics")
 
 
 def _flights(effort: Effort, plan: PublishedPlan) -> dict[str, Flight]:
