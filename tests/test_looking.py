@@ -194,3 +194,12 @@ def test_every_look_is_told():
     assert len(looks) == pytest.approx(4 * report.mission_time_s, abs=3)
     assert {look.robot for look in looks} == {"drone"}
     assert all(look.image is None for look in looks)
+
+
+def test_tags_that_were_seen_too_rarely_are_named():
+    """The drone passes by at once: one look at 4 Hz."""
+    brief = replace(DRONE, camera=Camera(fov_deg=60, tilt_deg=45, rate_hz=0.01), position=(0, 0, 3))
+    there = mission(robots=(brief, ROVER), tags=(Tag(id=4, position=(4, 0, 0)),))
+    report = flown(there)
+    assert report.found == ()
+    assert report.remarks == ("no point of interest: seen, but too rarely or from too far, tag 4",)

@@ -99,7 +99,7 @@ class Lookout:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a person should hear of."""
-        return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds)))
+        return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds), self.search.seen))
 
     def join(self, robot: Robot) -> None:
         """A robot that is in the world looks from now on, if it has a camera."""

@@ -82,7 +82,7 @@ def test_what_landmarks_and_team_mates_are_is_no_target(found):
 
 
 def test_landmarks_mend_odometry(found):
-    """In the physics world small wheels roll a little less than they count, which slip makes good: odometry is lucky."""
+    """In the physics world odometry is lucky: small wheels roll a little less than they count, slip makes that good."""
     for search, one in found.items():
         for robot in TEAM:
             if search.world == "kinematic":

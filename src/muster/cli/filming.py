@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import click
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.perception.extra import require_physics
 
 if TYPE_CHECKING:
     from muster.report.film import Footage
@@ -24,6 +24,7 @@ def require_filmable(world: str, film: Path | None, speed: float | None, still: 
     if world != "physics":
         option = "--film" if film is not None else "--still"
         raise ParameterError(f"{option} given; expected it together with --world physics: only there are bodies to see")
+    require_physics("a film or a still", "mujoco", "cv2")
     from muster.report.film import check_film, check_still
 
     if film is not None:
@@ -46,7 +47,7 @@ def draw_footage(footage: Footage, film: Path | None, speed: float | None, still
     if still is not None:
         write_still(still, footage)
     if film is not None:
-        if not quiet and sys.stderr.isatty():
+        if not quiet:
             click.echo(f"drawing {film}; Ctrl-C leaves it as long as it is then", err=True)
         made = write_film(film, footage, speed=speed)
         if not quiet:

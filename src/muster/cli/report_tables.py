@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import click
 
 from muster.cli.tables import counted, number, print_table
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Tag
 
+_NEAR_M = 1.0
+"""What was found farther from a tag is another one."""
 Report = Mapping[str, Any]
 """As `muster.execution.Report.as_dict` makes it, or as a record has it: what an older or other program wrote may lack
 all but the ids."""
@@ -51,28 +54,32 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
 
 def _print_found(report: Report, mission: Mission) -> None:
     """What cameras found, and what they did not."""
-    found = report.get("found", ())
+    found = [row for row in report.get("found", ()) if "tag" in row and len(row.get("position", ())) >= 2]
     if found:
         columns = ("tag", "x [m]", "y [m]", "sure to [m]", "off by [m]", "seen", "by", "found [s]", "became")
         rows = [
             (
                 str(row["tag"]),
-                *(number(value) for value in row["position"]),
-                f"{row['deviation_m']:.3f}",
-                "-" if row["error_m"] is None else f"{row['error_m']:.3f}",
-                counted(row["sightings"], "time"),
-                ", ".join(row["robots"]),
-                number(row["found_s"]),
-                row["task"] or "-",
+                *(number(value) for value in row["position"][:2]),
+                *("-" if row.get(key) is None else f"{row[key]:.3f}" for key in ("deviation_m", "error_m")),
+                counted(row.get("sightings", 0), "time"),
+                ", ".join(row.get("robots", ())),
+                number(row.get("found_s")),
+                row.get("task") or "-",
             )
             for row in found
         ]
         print_table(columns, rows, title="found by cameras", right=columns[1:6])
-    missed = sorted({tag.id for tag in mission.tags} - {row["tag"] for row in found})
-    if found and missed:
-        click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(map(str, missed))}")
+    missed = [str(tag.id) for tag in mission.tags if not any(_is(row, tag) for row in found)]
+    if missed:
+        click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(missed)}")
     for remark in report.get("remarks", ()):
         click.echo(f"{'cameras':<17} {remark}")
+
+
+def _is(row: Report, tag: Tag) -> bool:
+    """Whether what was found is this tag."""
+    return bool(row["tag"] == tag.id and math.dist(row["position"][:2], tag.position[:2]) < _NEAR_M)
 
 
 def _objective(objective: Report | None, unit: str) -> str:

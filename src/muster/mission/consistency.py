@@ -9,7 +9,10 @@ from muster.mission.hints import did_you_mean
 from muster.mission.kinds import Fault, Path, shown
 
 if TYPE_CHECKING:
-    from muster.mission.model import Mission, Point, Robot, Task, Work
+    from muster.mission.model import Found, Mission, Point, Robot, Task, Work
+
+_FLAT_M = 0.01
+"""A tag lies on the ground that is no farther from it."""
 
 
 def inconsistencies(mission: Mission) -> Iterator[Fault]:
@@ -23,6 +26,7 @@ def inconsistencies(mission: Mission) -> Iterator[Fault]:
     yield from _travel(mission)
     yield from _events(mission)
     yield from _found(mission)
+    yield from _tags_on_the_ground(mission)
 
 
 def _repeated_ids(mission: Mission) -> Iterator[Fault]:
@@ -49,7 +53,7 @@ def _robots_that_join(mission: Mission) -> list[tuple[Path, Robot]]:
 
 def _all_work(mission: Mission) -> list[tuple[Path, Work]]:
     """Tasks, those that come later, and what becomes of tags."""
-    becomes = [(("found", k, "becomes"), found.becomes) for k, found in enumerate(mission.found)]
+    becomes = [(("found", k, "becomes"), found.becomes) for k, found in _rules(mission)]
     return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission), *becomes]
 
 
@@ -150,7 +154,7 @@ def positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
             yield ("events", k, "move_task", "position"), event.move_task.position
     for k, tag in enumerate(mission.tags):
         yield ("tags", k, "position"), tag.position
-    for k, found in enumerate(mission.found):
+    for k, found in _rules(mission):
         if found.becomes.action is not None and found.becomes.action.pickup is not None:
             yield ("found", k, "becomes", "action", "pickup"), found.becomes.action.pickup
 
@@ -256,14 +260,32 @@ def _events(mission: Mission) -> Iterator[Fault]:
                 yield Fault(("events", k, group, "id"), shown(name), "an id of its own")
 
 
+def _rules(mission: Mission) -> list[tuple[int, Found]]:
+    """What becomes of tags, by number; one without a task is on the list of faults already."""
+    return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]
+
+
 def _found(mission: Mission) -> Iterator[Fault]:
     cameras = any(robot.camera is not None for _, robot in _all_robots(mission))
-    for k in range(len(mission.found)):
+    for_all: int | None = None
+    for k, found in _rules(mission):
+        at: Path = ("found", k)
         if not cameras:
-            yield Fault(
-                ("found", k), "no robot has a camera", "camera of at least one robot, where tags are to be found"
-            )
+            yield Fault(at, "no robot has a camera", "camera of at least one robot, where tags are to be found")
         if mission.travel_rule == "matrix":
-            yield Fault(
-                ("found", k), "a task at any place", "another rules.travel: travel tables know robots and tasks alone"
-            )
+            expected = "another rules.travel: travel tables know robots and tasks alone"
+            yield Fault(at, "a task at any place", expected)
+        if for_all is not None:
+            yield Fault(at, "a rule that never holds", f"it before found[{for_all}], which holds for all tags")
+        elif found.tags is None:
+            for_all = k
+
+
+def _tags_on_the_ground(mission: Mission) -> Iterator[Fault]:
+    """Robots take what they see to lie on the ground: 0, or the lowest place of the mission."""
+    heights = [place[2] for path, place in positions(mission) if len(place) == 3 and path[0] != "tags"]
+    ground = min([0.0, *heights])
+    for k, tag in enumerate(mission.tags):
+        if len(tag.position) == 3 and abs(tag.position[2] - ground) > _FLAT_M:
+            expected = f"a height of {ground:g}, the ground: robots take what they see to lie on it"
+            yield Fault(("tags", k, "position"), shown(list(tag.position)), expected)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,12 +70,19 @@ def points_of_interest(
     return tuple(_point(raw, members, independent_after_s) for members in clusters if len(members) >= least)
 
 
-def remarks(points: tuple[PointOfInterest, ...]) -> tuple[str, ...]:
-    """What a person should hear of: nothing found, or a tag at more than one place."""
+def remarks(points: tuple[PointOfInterest, ...], seen: Collection[int] = ()) -> tuple[str, ...]:
+    """What a person should hear of: nothing found, or a tag at more than one place; `seen` are tags that were seen."""
     if not points:
-        return ("no point of interest: no tag was seen",)
+        if not seen:
+            return ("no point of interest: no tag was seen",)
+        tags = ", ".join(map(str, sorted(seen)))
+        return (f"no point of interest: seen, but too rarely or from too far, {_tags(len(seen))} {tags}",)
     places = Counter(point.tag for point in points if point.tag is not None)
     return tuple(f"tag {tag} is at {count} places" for tag, count in sorted(places.items()) if count > 1)
+
+
+def _tags(count: int) -> str:
+    return "tag" if count == 1 else "tags"
 
 
 def _point(raw: RawEstimates, members: npt.NDArray[np.intp], independent_after_s: float) -> PointOfInterest:

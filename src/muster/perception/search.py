@@ -81,6 +81,11 @@ class Search:
         return RawEstimates.joined([part for tag in sorted(self._seen) for part in self._seen[tag]])
 
     @property
+    def seen(self) -> frozenset[int]:
+        """The tags that were seen at all."""
+        return frozenset(self._seen)
+
+    @property
     def finds(self) -> tuple[Find, ...]:
         """All that was found, in order of time, with what is known of it now."""
         return tuple(sorted((find for of in self._finds.values() for find in of), key=lambda find: find.at_s))

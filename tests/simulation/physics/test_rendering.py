@@ -1,6 +1,7 @@
 """Pictures: what lies where is drawn where a pinhole camera has it."""
 
 import math
+import os
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -91,3 +92,13 @@ def test_nothing_of_it_comes_with_muster():
     assert (
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "False\n"
     )
+
+
+def test_a_backend_that_there_is_not_is_one_line():
+    program = (
+        "from muster.mission.errors import ParameterError\n"
+        "try:\n    import muster.simulation.physics\n"
+        "except ParameterError as error:\n    print(error)\n"
+    )
+    said = printed_by(program, env={**os.environ, "MUJOCO_GL": "nonsense"})
+    assert said.startswith("MUJOCO_GL: nonsense; expected it unset, or one of egl, osmesa")

@@ -44,6 +44,7 @@ def caption(told: Happening) -> str | None:
         "new_task": f"new: task {_name(task)}",
         "cancel_task": f"task {task} is cancelled",
         "move_task": f"task {task} is elsewhere",
+        "found": f"tag {told.data.get('tag')} found by {' '.join(told.data.get('robots', ()))}",
     }
     return shortened(words.get(told.kind) or event_line(told.kind, told.data))
 

@@ -117,8 +117,18 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
     """An event in a line for people: `starts: robot r_0, task 7`."""
     if kind == "replanned":
         return _replanned(data)
+    if kind == "found":
+        return found_line(data)
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
+
+
+def found_line(data: Mapping[str, Any]) -> str:
+    """`found: tag 5 at 4.02, 0.31 by r_0, sure to 0.05 m; becomes found-5`."""
+    place = ", ".join(f"{value + 0.0:.2f}" for value in data.get("position", ()))
+    robots, task = " ".join(data.get("robots", ())), data.get("task")
+    line = f"found: tag {data.get('tag')} at {place} by {robots}, sure to {data.get('deviation_m', 0.0):.2f} m"
+    return f"{line}; becomes {task}" if task else line
 
 
 def _replanned(data: Mapping[str, Any]) -> str:

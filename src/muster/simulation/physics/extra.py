@@ -11,6 +11,25 @@ from muster.mission.errors import MissingExtraError, ParameterError
 
 BACKENDS = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
 """How MuJoCo may draw without a screen, and the library of each; the first is the faster."""
+_KNOWN = (
+    "",
+    *BACKENDS,
+    "glfw",
+    "glx",
+    "wgl",
+    "cgl",
+    "on",
+    "true",
+    "1",
+    "enable",
+    "enabled",
+    "off",
+    "false",
+    "0",
+    "disable",
+    "disabled",
+)
+"""What MuJoCo itself takes for `MUJOCO_GL`, on one system or another."""
 
 
 def require_physics_extra() -> None:
@@ -29,7 +48,9 @@ def choose_backend() -> str | None:
     ParameterError
         if `MUJOCO_GL` names one whose library is not there: MuJoCo could not be imported.
     """
-    said = os.environ.get("MUJOCO_GL")
+    said = os.environ.get("MUJOCO_GL", "").lower().strip()
+    if said not in _KNOWN:
+        raise ParameterError(f"MUJOCO_GL: {said}; expected it unset, or one of {', '.join(filter(None, _KNOWN))}")
     if said in BACKENDS and not _is_there(BACKENDS[said]):
         raise ParameterError(
             f"MUJOCO_GL: {said}, but there is no {BACKENDS[said]}; expected it unset, or this installed"

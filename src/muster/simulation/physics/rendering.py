@@ -192,7 +192,15 @@ class Renderer:
         try:
             self._renderer: Any = mujoco.Renderer(self._stage.model, height, width)
         except (mujoco.FatalError, ImportError, AttributeError, RuntimeError):  # of MuJoCo or of PyOpenGL
-            raise RenderingError(
-                f"pictures: nothing draws here (MUJOCO_GL={os.environ.get('MUJOCO_GL', '')}); expected "
-                f"{' or '.join(BACKENDS.values())}, on Debian of the packages libegl1 and libegl-mesa0, or libosmesa6"
-            ) from None
+            raise RenderingError(_nothing_draws()) from None
+
+
+def _nothing_draws() -> str:
+    said = os.environ.get("MUJOCO_GL", "")
+    if said and said not in BACKENDS:
+        return f"pictures: MUJOCO_GL is {said}, with which nothing draws here; expected it unset"
+    libraries = " or ".join(BACKENDS.values())
+    return (
+        f"pictures: nothing draws here (MUJOCO_GL={said}); expected {libraries}, on Debian of the packages libegl1 and "
+        "libegl-mesa0, or libosmesa6"
+    )
