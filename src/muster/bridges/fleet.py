@@ -1,0 +1,41 @@
+"""What a bridge is to whoever carries a plan out: robots behind ports, and a clock that goes on by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+from muster.mission.model import Event
+from muster.motion.port import RobotPort
+
+
+class Fleet(Protocol):
+    """Robots that are reached through one bridge. Frames and units are converted in the bridge and nowhere else."""
+
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """By the robots' ids; those that are discovered later are in it as soon as they are."""
+        ...
+
+    @property
+    def time_s(self) -> float:
+        """Seconds of the mission's clock, which never goes back; telemetry is stamped by it."""
+        ...
+
+    def advance(self, until_s: float) -> Sequence[Event]:
+        """Hear and speak until a time of the mission's clock; may return before, where something was heard.
+
+        Returns
+        -------
+        what has happened that concerns the plan, as in a mission file: a robot that was discovered (`robot_joins`), one
+        that says that it cannot go on (`robot_fails`).
+        """
+        ...
+
+    def stop(self) -> None:
+        """Let every robot stay where it is, safely: hold, hover; nothing lands and nothing is disarmed."""
+        ...
+
+    def close(self) -> None:
+        """Give back connections. Robots are left as they are."""
+        ...

@@ -1,0 +1,90 @@
+"""A plan carried out by a fleet behind a bridge: here a simulated world stands behind it, in virtual time."""
+
+import threading
+
+import pytest
+
+import muster
+from muster._live import carry_out_live
+from muster.mission.model import Event, Mission, Robot, Task
+from muster.simulation import KinematicWorld
+
+
+class WorldAsFleet:
+    """A bridge to a world."""
+
+    def __init__(self, mission, events=()):
+        self.world, self.stopped, self._events = KinematicWorld(mission), 0, list(events)
+
+    @property
+    def ports(self):
+        return self.world.ports
+
+    @property
+    def time_s(self):
+        return self.world.time_s
+
+    def advance(self, until_s):
+        self.world.advance(max(until_s, self.time_s + self.world.dt_s))
+        due = [event for event in self._events if event.at_s <= self.time_s]
+        self._events = [event for event in self._events if event.at_s > self.time_s]
+        for event in due:
+            if event.robot_joins is not None:
+                self.world.join(event.robot_joins)
+            elif event.robot_fails is not None:
+                self.world.fail(event.robot_fails)
+        return due
+
+    def stop(self):
+        self.stopped += 1
+
+    def close(self):
+        pass
+
+
+def mission(count=2):
+    robots = tuple(Robot(id=f"r_{k}", position=(0.0, 3.0 * k), radius_m=0.2) for k in range(count))
+    return Mission(robots=robots, tasks=tuple(Task(id=f"t_{k}", position=(8.0, 2.0 * k)) for k in range(4)))
+
+
+def flown(there, fleet, **how):
+    return carry_out_live(there, muster.solve(there, iterations=50), fleet, **how)
+
+
+def test_a_fleet_carries_a_plan_out():
+    there = mission()
+    fleet, heard = WorldAsFleet(there), []
+    report = flown(there, fleet, on_happening=heard.append)
+    assert set(report.tasks_done) == {"t_0", "t_1", "t_2", "t_3"}
+    assert heard[-1].kind == "mission_ended"
+    assert fleet.stopped == 0
+
+
+def test_who_fails_is_planned_for_and_who_is_discovered_helps():
+    there = mission()
+    joins = Robot(id="new", position=(9.0, 9.0), radius_m=0.2)
+    fleet = WorldAsFleet(there, [Event(at_s=2, robot_fails="r_0"), Event(at_s=3, robot_joins=joins)])
+    report = flown(there, fleet)
+    assert len(report.tasks_done) == 4
+    assert {row.robot for row in report.tasks} <= {"r_1", "new"}
+    assert report.reallocations >= 2
+
+
+def test_halted_it_stops_the_robots():
+    there, halt = mission(), threading.Event()
+    fleet = WorldAsFleet(there)
+    report = flown(there, fleet, halt=halt, on_happening=lambda happening: halt.set())
+    assert fleet.stopped == 1
+    assert len(report.tasks_done) < 4
+
+
+def test_an_error_stops_the_robots():
+    there = mission()
+    fleet = WorldAsFleet(there)
+
+    def broken(happening):
+        raise RuntimeError("broken")
+
+    with pytest.raises(RuntimeError):
+        flown(there, fleet, on_happening=broken)
+    assert fleet.stopped == 1
