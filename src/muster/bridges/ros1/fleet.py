@@ -1,0 +1,222 @@
+"""Robots on ROS 1 as a fleet: those of a mission, and those that are discovered while it goes on.
+
+Three kinds of threads: ROS' own hear poses, one steers the robots, which goes on while planning takes its time, and one
+looks for robots. What they share is behind one lock; to the executor's thread `advance` tells what has happened.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from muster.bridges.ros1.clock import MissionClock
+from muster.bridges.ros1.described import described
+from muster.bridges.ros1.discovery import NAME, robots_in
+from muster.bridges.ros1.map_frame import MapFrame
+from muster.bridges.ros1.port import Drive, Ros1Port
+from muster.bridges.ros1.ros import rospy
+from muster.bridges.ros1.steering import STILL, Steering
+from muster.mission.errors import MissionError, ParameterError
+from muster.mission.kinds import shown
+from muster.mission.model import Event, Mission, Robot
+
+_LOOK_S = 0.5
+_HEARD_S = 0.5
+"""A robot that was not heard for longer is told to stand."""
+
+
+class Ros1Fleet:
+    """A `Fleet` over the topics of robots; this process is a node by then (`become_node`).
+
+    Parameters
+    ----------
+    mission
+        its robots are looked for by their ids: robot `r_0` at `/r_0/odom`, or `/r_0/pose`.
+    drive
+        `cmd_vel`: by velocities; `goals`: robots that find their way themselves are told where to.
+    namespace
+        in which the robots' own are; "" for the root.
+    frame
+        of the mission, in tf's words.
+    arrival_m
+        from a way point, where a robot counts as there.
+    rate_hz
+        how often velocities are told.
+    joins
+        whether robots that the mission does not name may join.
+    clock
+        the mission's.
+
+    Raises
+    ------
+    ParameterError
+        if a robot's id is no name for ROS, or a number is out of range.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        *,
+        drive: Drive = "cmd_vel",
+        namespace: str = "",
+        frame: str = "map",
+        arrival_m: float = 0.1,
+        rate_hz: float = 20.0,
+        joins: bool = True,
+        clock: MissionClock | None = None,
+    ) -> None:
+        for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
+            if not number > 0:
+                raise ParameterError(f"{name}: {number}; expected a number above 0")
+        self.clock = MissionClock() if clock is None else clock
+        self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
+        self._namespace = namespace.strip("/")
+        self._flat = mission.dimensions == 2
+        self._frame = MapFrame(frame)
+        self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._lock = threading.RLock()
+        self._news = threading.Event()
+        self._closed = threading.Event()
+        self._known: set[str] = set()
+        self._ports: dict[str, Ros1Port] = {}
+        self._strangers: dict[str, Ros1Port] = {}  # discovered, and not yet heard
+        self._events: list[Event] = []
+        for robot in mission.robots:
+            self._ports[robot.id] = self._reached(robot)
+        tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
+        self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
+        for thread in self._threads:
+            thread.start()
+
+    @property
+    def ports(self) -> Mapping[str, Ros1Port]:
+        """See `Fleet`."""
+        return self._ports
+
+    @property
+    def time_s(self) -> float:
+        """See `Fleet`. It stands still while the fleet pauses."""
+        return self.clock.time_s
+
+    def advance(self, until_s: float) -> Sequence[Event]:
+        """See `Fleet`."""
+        self._news.wait(max(0.0, until_s - self.time_s))
+        self._news.clear()
+        with self._lock:
+            events, self._events = self._events, []
+        return events
+
+    def report(self, event: Event) -> None:
+        """Let `advance` tell of an event that somebody else knows of."""
+        with self._lock:
+            self._events.append(event)
+        self._news.set()
+
+    def pause(self) -> None:
+        """Robots stand, and the mission's clock too, until `resume`."""
+        with self._lock:
+            self.clock.pause()
+            for port in self._ports.values():
+                port.stand()
+
+    def resume(self) -> None:
+        """Robots go on."""
+        with self._lock:
+            self.clock.resume()
+
+    def unheard(self) -> dict[str, str]:
+        """Robots of the mission that have not said where they are, and why that may be."""
+        return {
+            name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
+            if port.untied
+            else f"nothing on {self.topics(name)}/odom or {self.topics(name)}/pose"
+            for name, port in self._ports.items()
+            if port.telemetry() is None
+        }
+
+    def stop(self) -> None:
+        """See `Fleet`."""
+        for port in list(self._ports.values()):
+            port.cancel()
+
+    def close(self) -> None:
+        """See `Fleet`."""
+        self._closed.set()
+        for thread in self._threads:
+            thread.join(timeout=2.0)
+        for port in [*self._ports.values(), *self._strangers.values()]:
+            port.close()
+
+    def topics(self, robot: str) -> str:
+        """The namespace of a robot's topics, such as `/r_0`."""
+        return "/".join(["", *filter(None, [self._namespace]), robot])
+
+    def _reached(self, robot: Robot) -> Ros1Port:
+        if not NAME.fullmatch(robot.id):
+            raise ParameterError(f"robot {shown(robot.id)}; expected a name for ROS: a letter, then letters, digits, _")
+        self._known.add(robot.id)
+        return Ros1Port(
+            robot,
+            self.topics(robot.id),
+            drive=self._drive,
+            frame=self._frame,
+            flat=self._flat,
+            arrival_m=self._arrival_m,
+            lock=self._lock,
+            time_s=lambda: self.time_s,
+            real_s=time.monotonic,
+            on_pass=self._news.set,
+        )
+
+    def _steer_on(self) -> None:
+        """Tell robots their velocities, again and again."""
+        reported_s = 0.0
+        while not self._closed.wait(self._interval_s):
+            with self._lock:
+                ports = dict(self._ports)
+                drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in ports.values()]
+                team = [driven for driven in drivens if driven is not None]
+                told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
+                for driven in team:
+                    ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
+            if time.monotonic() - reported_s > 2 * self._interval_s:
+                reported_s = time.monotonic()
+                for port in ports.values():
+                    port.report()
+
+    def _look_on(self) -> None:
+        """Look for robots that nobody knows, again and again; robots go on where the master does not answer."""
+        while not self._closed.wait(_LOOK_S):
+            try:
+                topics = rospy.get_published_topics()
+            except Exception as error:  # rospy raises whatever the network does
+                rospy.logwarn_throttle(10.0, f"the ROS master does not answer: {error}")
+                continue
+            for name in robots_in(topics, self._namespace):
+                if name not in self._known:
+                    self._meet(name)
+            self._welcome()
+
+    def _meet(self, name: str) -> None:
+        """Listen to a robot that was discovered; where it is, it says next."""
+        nowhere = (0.0, 0.0) if self._flat else (0.0, 0.0, 0.0)
+        try:
+            port = self._reached(described(self.topics(name), Robot(id=name, position=nowhere)))
+        except MissionError as error:
+            self._known.add(name)
+            rospy.logwarn(f"{name} does not join: {error}")
+            return
+        self._strangers[name] = port
+
+    def _welcome(self) -> None:
+        """Those who have said where they are join."""
+        for name, port in list(self._strangers.items()):
+            said = port.telemetry()
+            if said is not None:
+                port.body = replace(port.body, position=said.position[: 2 if self._flat else 3])
+                with self._lock:
+                    self._ports[name] = port
+                del self._strangers[name]
+                self.report(Event(at_s=self.time_s, robot_joins=port.body))

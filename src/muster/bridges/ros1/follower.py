@@ -1,0 +1,83 @@
+"""Follows way points for a robot that only says where it is: which is next, and how many it has passed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from muster.motion.frames import wrapped
+from muster.motion.port import Place, Waypoint
+
+MOVED_M = 0.01
+"""Less than this is trembling of what measures, not travel."""
+
+
+class Follower:
+    """Way points of one robot, in order, with headings and holds.
+
+    Parameters
+    ----------
+    arrival_m, turned_rad
+        from a place and from a heading, where a robot counts as there.
+    flat
+        whether height is of no account: in the plane, and on the ground.
+    """
+
+    def __init__(self, *, arrival_m: float, turned_rad: float, flat: bool) -> None:
+        self._arrival_m = arrival_m
+        self._turned_rad = turned_rad
+        self._flat = flat
+        self._waypoints: tuple[Waypoint, ...] = ()
+        self._held_since: float | None = None
+        self._counted: Place | None = None
+        self.order = 0
+        self.passed = 0
+        self.odometry_m = 0.0
+
+    @property
+    def aim(self) -> Waypoint | None:
+        """The way point that it is to pass next, or where it stays; None if it has none."""
+        return self._waypoints[self.passed] if self.passed < len(self._waypoints) else None
+
+    @property
+    def stays(self) -> bool:
+        """Whether it is at a way point, for its hold."""
+        return self._held_since is not None
+
+    def take(self, waypoints: Sequence[Waypoint]) -> int:
+        """Follow these from now on; returns the number of this order, from 1."""
+        self._waypoints, self.passed, self._held_since = tuple(waypoints), 0, None
+        self.order += 1
+        return self.order
+
+    def hear(self, now: float, place: Place, heading: float) -> bool:
+        """The robot is there now; returns whether it has passed a way point."""
+        self._count(place)
+        before = self.passed
+        while self.aim is not None and self._has_passed(self.aim, now, place, heading):
+            self.passed += 1
+            self._held_since = None
+        return self.passed > before
+
+    def is_at(self, place: Place, aim: Waypoint) -> bool:
+        """Whether a place counts as the way point's."""
+        return self._distance(place, aim.position) <= self._arrival_m
+
+    def _has_passed(self, aim: Waypoint, now: float, place: Place, heading: float) -> bool:
+        if self._held_since is None:
+            turned = aim.heading is None or abs(float(wrapped(aim.heading - heading))) <= self._turned_rad
+            if not (self.is_at(place, aim) and turned):
+                return False
+            self._held_since = now
+        return now - self._held_since >= aim.hold_s
+
+    def _count(self, place: Place) -> None:
+        if self._counted is None:
+            self._counted = place
+        gone = self._distance(place, self._counted)
+        if gone >= MOVED_M:
+            self.odometry_m += gone
+            self._counted = place
+
+    def _distance(self, one: Place, other: Place) -> float:
+        return math.dist(one[:2], other[:2]) if self._flat else math.dist(one, other)

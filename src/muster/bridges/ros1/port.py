@@ -1,0 +1,224 @@
+"""The port of a robot on ROS 1: it hears poses, and gives goals or velocities (TCF thesis, section 5.2, Figure 5.6).
+
+A robot only says where it is: whether it has passed a way point the port itself finds out (`follower`).
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
+from muster.bridges.ros1.follower import Follower
+from muster.bridges.ros1.map_frame import MapFrame
+from muster.bridges.ros1.messages import matrix_of, place_and_heading, pose_stamped, tf_of, twist_of
+from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
+from muster.bridges.ros1.steering import STILL, Driven, Velocity
+from muster.mission.errors import ParameterError
+from muster.mission.model import Robot
+from muster.motion.frames import flu_to_enu
+from muster.motion.port import Place, Telemetry, Waypoint
+
+Drive = Literal["cmd_vel", "goals"]
+_TOLD_STILL_S = 1.0
+"""For how long a robot without way points is told to stand; after that a person may drive it."""
+_AGAIN_S = 1.0
+"""After which a goal is given again, for those that did not hear it."""
+
+
+class Ros1Port:
+    """One robot: a `RobotPort`.
+
+    Parameters
+    ----------
+    robot
+        who it is, with its limits.
+    topics
+        its namespace, such as `/r_0`.
+    flat
+        whether the mission is in the plane: heights are then what the robot says.
+    lock
+        held wherever what the port knows is read or changed: ROS calls from threads of its own.
+    time_s
+        of the mission's clock, and of one that never stands still.
+    on_pass
+        called when a way point is passed.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        topics: str,
+        *,
+        drive: Drive,
+        frame: MapFrame,
+        flat: bool,
+        arrival_m: float,
+        lock: threading.RLock,
+        time_s: Callable[[], float],
+        real_s: Callable[[], float],
+        on_pass: Callable[[], None],
+    ) -> None:
+        self.body = robot
+        self._drive, self._frame, self._flat, self._lock = drive, frame, flat, lock
+        self._time_s, self._real_s, self._on_pass = time_s, real_s, on_pass
+        self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
+        self._last_word: Telemetry | None = None
+        self._height = 0.0
+        self._heard_s, self._stood_s, self._given_s = -math.inf, real_s(), -math.inf
+        self._given: tuple[int, int] | None = None
+        self._localised = False
+        self.untied = ""  # a frame in which it gives poses that nothing ties to the map
+        self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
+        self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=100)
+        self._heard = [
+            rospy.Subscriber(f"{topics}/odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
+            rospy.Subscriber(f"{topics}/pose", PoseStamped, self._hear_pose, queue_size=1, tcp_nodelay=True),
+        ]
+
+    @property
+    def robot(self) -> str:
+        return self.body.id
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`.
+
+        Raises
+        ------
+        ParameterError
+            if a number of a way point is not finite.
+        """
+        for point in waypoints:
+            if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
+                raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
+        with self._lock:
+            self._stood_s = self._real_s()
+            order = self._follower.take(waypoints)
+            if not waypoints:
+                self._stand_still()
+        return order
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self.send(())
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        return self._last_word
+
+    def driven(self, *, within_s: float, paused: bool) -> Driven | None:
+        """How it is to be steered; None if nothing is known of it. One that was not heard for a while stands."""
+        said = self._last_word
+        if said is None:
+            return None
+        aim = None if paused or self._real_s() - self._heard_s > within_s else self._follower.aim
+        arrived = aim is not None and self._follower.is_at(said.position, aim)
+        return Driven(self.body, said.position, said.heading, said.velocity, aim, arrived)
+
+    def speak(self, driven: Driven, velocity: Velocity) -> None:
+        """Tell the robot what it is to do now, and others where it goes."""
+        now = self._real_s()
+        if driven.aim is not None:
+            self._stood_s = now
+        if self._drive == "cmd_vel":
+            if now - self._stood_s <= _TOLD_STILL_S:
+                self._velocities.publish(twist_of(velocity))
+        elif driven.aim is None:
+            if self._follower.aim is not None and self._given is not None:  # paused, or not heard
+                self._stand_still()
+        elif self._given != (self._follower.order, self._follower.passed) or now - self._given_s > _AGAIN_S:
+            self._give(driven.aim, driven, now)
+
+    def report(self) -> None:
+        """Say to tf where the robot is, and its next way point."""
+        said, aim = self._last_word, self._follower.aim
+        if said is None:
+            return
+        height = self._height if self._flat else said.position[2]
+        place = (*said.position[:2], height)
+        self._tf.publish(tf_of(self._frame.name, f"muster/{self.robot}", place, said.heading))
+        if aim is not None:
+            goal = self._goal(aim)
+            self._tf.publish(tf_of(self._frame.name, f"muster/{self.robot}/goal", goal, aim.heading or 0.0))
+
+    def stand(self) -> None:
+        """Stand where it is, at once."""
+        with self._lock:
+            self._stood_s = self._real_s()
+            self._stand_still()
+
+    def close(self) -> None:
+        """Hear and say no more."""
+        for link in (*self._heard, self._goals, self._velocities, self._tf):
+            link.unregister()
+
+    def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
+        if self._given is None or self._given != (self._follower.order, self._follower.passed):
+            east, north = aim.position[0] - driven.position[0], aim.position[1] - driven.position[1]
+            self._facing = math.atan2(north, east) if math.hypot(east, north) > 0 else driven.heading
+        heading = self._facing if aim.heading is None else aim.heading
+        self._goals.publish(pose_stamped(self._frame.name, self._goal(aim), heading))
+        self._given, self._given_s = (self._follower.order, self._follower.passed), now
+
+    def _stand_still(self) -> None:
+        """A zero velocity, or where it is as its goal."""
+        self._given = None
+        if self._drive == "cmd_vel":
+            self._velocities.publish(twist_of(STILL))
+        elif self._last_word is not None:
+            here = Waypoint(self._last_word.position)
+            self._goals.publish(pose_stamped(self._frame.name, self._goal(here), self._last_word.heading))
+
+    def _goal(self, aim: Waypoint) -> Place:
+        """In the plane the height is the robot's own affair."""
+        x, y, z = aim.position
+        return (x, y, self._height if self._flat else z)
+
+    def _hear_odometry(self, message: Any) -> None:
+        if self._localised:
+            return
+        twist = message.twist.twist
+        self._hear(message, message.pose.pose, (twist.linear.x, twist.linear.y, twist.linear.z))
+
+    def _hear_pose(self, message: Any) -> None:
+        """Who is localised does not go by odometry any more."""
+        self._localised = True
+        self._hear(message, message.pose, None)
+
+    def _hear(self, message: Any, pose: Any, ahead: Place | None) -> None:
+        """A pose, and the body's velocity if that is known; by way of the pose before, if not."""
+        found = matrix_of(pose)
+        if found is None:
+            rospy.logwarn_throttle(10.0, f"{self.robot}: a pose that is none; expected finite numbers, a unit quaternion")
+            return
+        matrix = self._frame.to_map(message.header.frame_id, found)
+        self.untied = message.header.frame_id if matrix is None else ""
+        if matrix is None:
+            return
+        place, heading = place_and_heading(matrix)
+        with self._lock:
+            self._height = place[2]
+            place = (*place[:2], 0.0) if self._flat else place
+            real = self._real_s()
+            velocity = self._gone(place, real) if ahead is None else _turned(ahead, heading)
+            self._heard_s = real
+            now = self._time_s()
+            passed = self._follower.hear(now, place, heading)
+            told = self._follower
+            self._last_word = Telemetry(now, place, heading, velocity, told.odometry_m, told.order, told.passed)
+        if passed:
+            self._on_pass()
+
+    def _gone(self, place: Place, real: float) -> Place:
+        took = real - self._heard_s
+        if self._last_word is None or not 0 < took < 1:
+            return (0.0, 0.0, 0.0)
+        x, y, z = ((b - a) / took for a, b in zip(self._last_word.position, place, strict=True))
+        return (x, y, z)
+
+
+def _turned(ahead: Place, heading: float) -> Place:
+    x, y, z = map(float, flu_to_enu(ahead, heading))
+    return (x, y, z)
