@@ -14,7 +14,7 @@ from muster.mission.yaml_writer import plain
 
 
 def described(topics: str, robot: Robot) -> Robot:
-    """A robot with what its parameter `muster` says: a mapping with a robot's keys of a mission file, such as speed_mps.
+    """A robot with what its parameter `muster` says: keys of a robot in a mission file, such as speed_mps.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""This process as a node of ROS: there is one a process."""
+"""A process as a node of ROS: there is one a process."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class SimulatedRobot:
         place, heading = self._pose
         velocity = self._told if now - self._told_s <= _DEAF_S else self._towards_goal(now, place, heading)
         inputs = self._kinematics.limited(self._as_inputs(velocity, heading), self._limits, self._inputs, dt)
-        rates = self._kinematics.velocities(self._state, inputs)[0]
+        rates: Floats = self._kinematics.velocities(self._state, inputs)[0]
         self._state = self._kinematics.step(self._state, inputs, dt)
         self._inputs = inputs
         return rates

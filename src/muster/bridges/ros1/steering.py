@@ -24,6 +24,8 @@ from muster.motion.port import Place, Waypoint
 
 _TO_THE_RIGHT = math.radians(1.0)
 """By which everybody aims aside: two that meet head on then pass each other on one side."""
+SETTLES_S = 0.4
+"""How fast robots come to their way points at the end: several times the delay from a pose to what is done about it."""
 _STANDS = 1e9
 """Priority of who stands: the others go around."""
 
@@ -75,7 +77,7 @@ class Steering:
         self._interval_s = interval_s
         self._space = space
         self._margin_m = margin_m
-        self._orca = Orca(Parameters(horizon_s=3.0, wall_horizon_s=3.0))
+        self._orca = Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0))
         self._before: dict[str, Floats] = {}
 
     def velocities(self, team: Sequence[Driven]) -> dict[str, Velocity]:
@@ -93,11 +95,17 @@ class Steering:
         self._before.pop(robot, None)
 
     def _chosen(self, crowd: Sequence[Driven], size: int) -> Floats:
-        """Velocities (n, 3) on which nobody meets anybody."""
+        """Velocities (n, 3) on which nobody meets anybody.
+
+        ORCA starts from what robots would do, not from what they do (van den Berg et al. 2011, section 5.2): the latter
+        lags behind, and where a robot alone must give way it would forbid it to brake beside one that is far away.
+        """
         preferred = np.array([self._preferred(driven, size) for driven in crowd])
         agents = Agents(
             positions=np.array([driven.position[:size] for driven in crowd]),
-            velocities=np.array([driven.velocity[:size] for driven in crowd]),
+            velocities=np.where(
+                [[driven.goes] for driven in crowd], preferred, np.array([driven.velocity[:size] for driven in crowd])
+            ),
             preferred=preferred,
             radii=np.array([self._radius(driven.robot) for driven in crowd]),
             max_speeds=np.array([driven.robot.speed_mps for driven in crowd]),
@@ -117,8 +125,9 @@ class Steering:
             return np.zeros(size)
         limits = limits_of(driven.robot)
         offset = np.subtract(driven.aim.position[:size], driven.position[:size])
-        brakes = math.sqrt(2 * limits.acceleration_mps2 * float(np.linalg.norm(offset)))
-        wanted = approach(offset[None], max(min(limits.speed_mps, brakes), 1e-6), 3 * self._interval_s)[0]
+        far = float(np.linalg.norm(offset))
+        brakes = math.sqrt(2 * limits.acceleration_mps2 * far)
+        wanted = approach(offset[None], min(limits.speed_mps, brakes), SETTLES_S)[0]
         c, s = math.cos(_TO_THE_RIGHT), math.sin(_TO_THE_RIGHT)
         wanted[:2] = (c * wanted[0] + s * wanted[1], c * wanted[1] - s * wanted[0])
         return np.asarray(wanted)
