@@ -191,9 +191,7 @@ class Ros1Port:
         """A pose, and the body's velocity if that is known; by way of the pose before, if not."""
         found = matrix_of(pose)
         if found is None:
-            rospy.logwarn_throttle(
-                10.0, f"{self.robot}: a pose that is none; expected finite numbers"
-            )
+            rospy.logwarn_throttle(10.0, f"{self.robot}: a pose that is none; expected finite numbers")
             return
         matrix = self._frame.to_map(message.header.frame_id, found)
         self.untied = message.header.frame_id if matrix is None else ""

@@ -126,6 +126,8 @@ class Steering:
         limits = limits_of(driven.robot)
         offset = np.subtract(driven.aim.position[:size], driven.position[:size])
         far = float(np.linalg.norm(offset))
+        if far == 0:
+            return np.zeros(size)
         brakes = math.sqrt(2 * limits.acceleration_mps2 * far)
         wanted = approach(offset[None], min(limits.speed_mps, brakes), SETTLES_S)[0]
         c, s = math.cos(_TO_THE_RIGHT), math.sin(_TO_THE_RIGHT)
