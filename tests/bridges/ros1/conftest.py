@@ -44,10 +44,13 @@ class Ros:
         return self.start("-m", "muster.bridges.ros1.simulated", name, "--at", x, y, *own)
 
     def listener(self, *topics):
-        """Independent of Muster: prints a line of JSON for each message of these topics=types."""
-        heard = self.start(Path(__file__).with_name("listener.py"), *topics)
-        assert heard.stdout.readline() == "ready\n", heard.stderr.read()
-        return heard
+        """Independent of Muster: keeps each message of these TOPIC=PACKAGE/TYPE."""
+        file = self.folder / "heard.jsonl"
+        heard = self.start(Path(__file__).with_name("listener.py"), file, *topics)
+        while not file.exists():
+            assert heard.poll() is None, heard.stderr.read()
+            time.sleep(0.05)
+        return Listener(heard, file)
 
     def close(self):
         for process in self._processes:
@@ -55,10 +58,17 @@ class Ros:
             process.communicate()
 
 
-def lines_of(listener):
-    """What a listener heard, ended: (topic, data) in order."""
-    listener.send_signal(signal.SIGTERM)
-    return [json.loads(line) for line in listener.communicate(timeout=10)[0].splitlines()]
+class Listener:
+    """A process that keeps what it hears."""
+
+    def __init__(self, process, file):
+        self._process, self._file = process, file
+
+    def heard(self):
+        """All of it, by (topic, data) in order; the listener ends with that."""
+        self._process.send_signal(signal.SIGTERM)
+        self._process.communicate(timeout=10)
+        return [json.loads(line) for line in self._file.read_text(encoding="utf-8").splitlines()]
 
 
 @pytest.fixture(scope="session")

@@ -1,9 +1,10 @@
-"""A node that knows nothing of Muster: prints what it hears on the topics that it is given, as TOPIC=PACKAGE/TYPE."""
+"""A node that knows nothing of Muster: FILE, and TOPIC=PACKAGE/TYPE for each topic; writes what it hears there."""
 
 import importlib
 import json
 import sys
 import time
+from pathlib import Path
 
 if "/usr/lib/python3/dist-packages" not in sys.path:
     sys.path.append("/usr/lib/python3/dist-packages")
@@ -17,16 +18,15 @@ def plain(message):
 
 
 def tell(message, topic):
-    sys.stdout.write(json.dumps([topic, plain(message)], default=str) + "\n")
-    sys.stdout.flush()
+    file.write(json.dumps([topic, plain(message)], default=str) + "\n")
+    file.flush()
 
 
 rospy.init_node("listener", anonymous=True)
-for argument in sys.argv[1:]:
+file = Path(sys.argv[1]).open("w", encoding="utf-8")  # noqa: SIM115 - to the end of the process
+for argument in sys.argv[2:]:
     topic, _, kind = argument.partition("=")
     package, _, name = kind.partition("/")
     rospy.Subscriber(topic, getattr(importlib.import_module(f"{package}.msg"), name), tell, callback_args=topic)
-sys.stdout.write("ready\n")
-sys.stdout.flush()
 while not rospy.is_shutdown():
     time.sleep(0.05)

@@ -6,7 +6,6 @@ import signal
 import time
 
 import pytest
-from tests.bridges.ros1.conftest import lines_of
 
 MISSION = """
 schema: muster/1
@@ -41,9 +40,7 @@ def test_robots_are_discovered_driven_and_one_that_dies_is_planned_for(ros, miss
         "/tf=tf2_msgs/TFMessage",
     )
     carried = ros.muster(mission, *QUICK)
-    told = []
     for line in carried.stderr:
-        told.append(line)
         if "sets out: robot r_1" in line:
             robots["r_1"].kill()  # in the middle of its way
             break
@@ -52,7 +49,7 @@ def test_robots_are_discovered_driven_and_one_that_dies_is_planned_for(ros, miss
     report = json.loads(out)
     assert set(report["tasks_done"]) == {f"t_{k}" for k in range(1, 7)}
     assert {row["robot"] for row in report["tasks"]} <= {"r_0", "r_2"}
-    said = lines_of(heard)
+    said = heard.heard()
     events = [json.loads(data["data"]) for topic, data in said if topic == "/muster/events"]
     kinds = [event["kind"] for event in events]
     assert {"robot_joins", "robot_silent", "replanned", "mission_ended"} <= set(kinds)
@@ -77,7 +74,7 @@ def test_goals_are_given_to_robots_that_find_their_way(ros, mission):
     out, err = carried.communicate(timeout=40)
     assert carried.returncode == 0, err
     done = [row for row in json.loads(out)["tasks"] if row["robot"] == "r_0"]
-    said = lines_of(heard)
+    said = heard.heard()
     goals = [data["pose"]["position"] for topic, data in said if topic == "/r_0/WP"]
     places = {"t_1": (4, 0), "t_2": (8, 0), "t_3": (8, 3), "t_4": (4, 3), "t_5": (4, 6), "t_6": (8, 6)}
     assert done
@@ -98,7 +95,7 @@ def test_ctrl_c_lets_robots_stand(ros, mission):
     time.sleep(0.5)
     carried.send_signal(signal.SIGINT)
     assert carried.wait(timeout=20) == 130
-    said = lines_of(heard)
+    said = heard.heard()
     for robot in ("r_0", "r_1"):
         last = [data for topic, data in said if topic == f"/{robot}/cmd_vel"][-1]
         assert not any(last["linear"].values())
