@@ -43,6 +43,10 @@ class Ros:
         own = ("--kinematics", "differential-drive", "--speed", 3, "--yaw-rate", 6, *more)
         return self.start("-m", "muster.bridges.ros1.simulated", name, "--at", x, y, *own)
 
+    def call(self, *asked):
+        """Calls services, and publishes tasks, in turn; prints what services answer."""
+        return self.start(Path(__file__).with_name("caller.py"), *asked)
+
     def listener(self, *topics):
         """Independent of Muster: keeps each message of these TOPIC=PACKAGE/TYPE."""
         file = self.folder / "heard.jsonl"

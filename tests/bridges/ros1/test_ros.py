@@ -67,8 +67,8 @@ def test_robots_are_discovered_driven_and_one_that_dies_is_planned_for(ros, miss
 
 
 def test_goals_are_given_to_robots_that_find_their_way(ros, mission):
-    ros.robot("r_0", 0, 0)
-    ros.robot("r_1", 0, 3)
+    ros.robot("r_0", 0, 0, "--kinematics", "holonomic")
+    ros.robot("r_1", 0, 3, "--kinematics", "holonomic")
     heard = ros.listener("/r_0/WP=geometry_msgs/PoseStamped", "/r_0/cmd_vel=geometry_msgs/Twist")
     carried = ros.muster(mission, *QUICK, "--drive", "goals", "--known-only")
     out, err = carried.communicate(timeout=40)
@@ -100,6 +100,27 @@ def test_ctrl_c_lets_robots_stand(ros, mission):
         last = [data for topic, data in said if topic == f"/{robot}/cmd_vel"][-1]
         assert not any(last["linear"].values())
         assert not any(last["angular"].values())
+
+
+def test_it_begins_pauses_goes_on_and_takes_a_task_when_told(ros, mission):
+    ros.robot("r_0", 0, 0)
+    ros.robot("r_1", 0, 3)
+    heard = ros.listener("/muster/status=std_msgs/String", "/r_0/cmd_vel=geometry_msgs/Twist")
+    carried = ros.muster(mission, *QUICK, "--on-start")
+    task = json.dumps({"id": "extra", "position": [2, 2]})
+    wrong = json.dumps({"id": "wrong", "position": "here"})
+    asked = ros.call("/command_interface/start", f"add_task={wrong}", f"add_task={task}", "/command_interface/pause")
+    assert asked.communicate(timeout=20)[0].splitlines()[-1] == "paused"
+    time.sleep(1.0)
+    assert carried.poll() is None
+    again = ros.call("/command_interface/start")
+    assert again.communicate(timeout=20)[0] == "carrying-out\n"
+    out, err = carried.communicate(timeout=40)
+    assert carried.returncode == 0, err
+    assert set(json.loads(out)["tasks_done"]) == {*(f"t_{k}" for k in range(1, 7)), "extra"}
+    states = [json.loads(data["data"])["state"] for topic, data in heard.heard() if topic == "/muster/status"]
+    order = [state for k, state in enumerate(states) if state != (states[k - 1] if k else None)]
+    assert order == ["waiting", "carrying-out", "paused", "carrying-out", "ended"]
 
 
 def test_a_robot_without_a_pose_is_one_line(ros, mission):

@@ -142,7 +142,8 @@ class Ros1Fleet:
             port.cancel()
 
     def close(self) -> None:
-        """See `Fleet`."""
+        """See `Fleet`. What was said last has time to arrive."""
+        self._closed.wait(0.2)
         self._closed.set()
         for thread in self._threads:
             thread.join(timeout=2.0)

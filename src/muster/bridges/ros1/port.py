@@ -68,6 +68,7 @@ class Ros1Port:
         self._height = 0.0
         self._heard_s, self._stood_s, self._given_s = -math.inf, real_s(), -math.inf
         self._given: tuple[int, int] | None = None
+        self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
         self._localised = False
         self.untied = ""  # a frame in which it gives poses that nothing ties to the map
         self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
