@@ -28,6 +28,7 @@ VERBS = (
     "path",
     "simulate",
     "replay",
+    "export",
     "study",
     "bench",
 )
@@ -80,6 +81,7 @@ _SUMMARIES = {
     "path": "Find a way over the map of a mission, from one point to another.",
     "simulate": "Carry a plan out with moving robots, and say what it took.",
     "replay": "Show a record of a mission that was carried out.",
+    "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
     "study": "Repeat a published experiment beside its published numbers.",
     "bench": "Measure speed on this machine, or quality against other solvers.",
 }
