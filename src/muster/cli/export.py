@@ -183,7 +183,7 @@ def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: fl
 
 
 def _file_names(ids: list[str]) -> list[str]:
-    """A name for each robot's file: its id, where a file can be called so; no two differ by the case of letters alone."""
+    """A name for each robot's file: its id, where files can be called so; no two differ by case alone."""
     names: list[str] = []
     for robot in ids:
         stem = "".join(c if c.isalnum() or c in "_-." else "_" for c in robot).lstrip(".") or "robot"

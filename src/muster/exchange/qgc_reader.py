@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from muster.exchange import qgc_format as qgc
 from muster.mission.errors import Finding, MissionError
@@ -214,6 +214,6 @@ class _Reading:
         return MissionError([Finding(str(self._file), None, field, told, expected)])
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: Any) -> TypeGuard[float]:
     """Whether a value of JSON is a finite number."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300

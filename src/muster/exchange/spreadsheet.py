@@ -36,7 +36,7 @@ def _rows(mission: Mission, verdict: Verdict, earth: Earth | None) -> Iterator[t
 def _places(mission: Mission, earth: Earth | None) -> dict[str, tuple[object, ...]]:
     """For each task x, y, z, latitude and longitude; empty is what is not known."""
     spots = [] if earth is None else earth.spots(task.position for task in mission.tasks)
-    degrees = [(spot.lat, spot.lon) for spot in spots] or [("", "")] * len(mission.tasks)
+    degrees: list[tuple[object, object]] = [(spot.lat, spot.lon) for spot in spots] or [("", "")] * len(mission.tasks)
     return {task.id: (*_metres(task), *pair) for task, pair in zip(mission.tasks, degrees, strict=True)}
 
 
