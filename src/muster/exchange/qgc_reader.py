@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeGuard
@@ -17,7 +17,7 @@ from muster.exchange import qgc_format as qgc
 from muster.mission.errors import Finding, MissionError
 from muster.mission.geodesy import wgs84_to_enu
 from muster.mission.kinds import shown
-from muster.mission.model import SCHEMA, Mission, Point
+from muster.mission.model import SCHEMA, Mission
 from muster.mission.plan import tie_order
 from muster.mission.reading import mission_from
 from muster.mission.source import Source
@@ -91,7 +91,7 @@ def _files(path: Path) -> list[Path]:
     return [found[k] for k in tie_order([file.stem for file in found])]
 
 
-def _robot(vehicle: _Vehicle, position: list[float], metres: Any) -> dict[str, Any]:
+def _robot(vehicle: _Vehicle, position: list[float], metres: Callable[[Degrees], list[float]]) -> dict[str, Any]:
     data: dict[str, Any] = {
         "id": vehicle.name,
         "position": position,
@@ -100,9 +100,16 @@ def _robot(vehicle: _Vehicle, position: list[float], metres: Any) -> dict[str, A
     }
     if vehicle.returns:
         return data | {"return_to_start": True}
-    end: Point | None = None if vehicle.lands_at is None else metres(vehicle.lands_at)
-    last = metres(vehicle.stops[-1][1]) if vehicle.stops else position
-    return data if end is None or math.dist(end[:2], last[:2]) < _SAME_PLACE_M else data | {"end_position": end}
+    here = vehicle.stops[-1][1] if vehicle.stops else vehicle.home
+    if vehicle.lands_at is None or _over(vehicle.lands_at, here):
+        return data
+    return data | {"end_position": metres(vehicle.lands_at)}
+
+
+def _over(a: Degrees, b: Degrees) -> bool:
+    """Whether two places differ in height alone."""
+    (apart,) = wgs84_to_enu([(*a[:2], b[2])], b)
+    return math.hypot(*apart[:2]) < _SAME_PLACE_M
 
 
 class _Reading:
