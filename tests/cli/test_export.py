@@ -69,7 +69,7 @@ def test_a_plan_of_another_mission(export, muster, plan):
     code, out, err = muster("export", "bay.yaml", plan, "--to", "csv")
     assert (code, out) == (2, "")
     warning, error = err.splitlines()
-    assert warning.startswith("warning: plan.json: mission: 'yard'; expected 'bay'")
+    assert warning.startswith('warning: plan.json: mission: "yard"; expected "bay"')
     assert error.startswith("plan.json: unknown-")
     assert error.endswith("expected an admissible plan of mission bay; muster verify says what is wrong")
 
@@ -111,7 +111,8 @@ def test_plan_files_that_were_read_are_not_replaced(export, muster):
     before = Path("plans/d2.plan").read_bytes()
     assert muster("solve", "plans", "--iterations", 5, "-o", "again.json")[0] == 0
     code, _, err = muster("export", "plans", "again.json", "--to", "qgc", "-o", "plans")
-    assert (code, err.splitlines()[-1][-54:]) == (2, "given twice; expected a folder whose files are not read")
+    assert code == 2
+    assert err.splitlines()[-1].endswith(": given twice; expected a folder whose files are not read")
     assert Path("plans/d2.plan").read_bytes() == before
 
 

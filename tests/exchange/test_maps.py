@@ -14,6 +14,7 @@ from muster.exchange.gpx import gpx_text
 from muster.exchange.kml import kml_text
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.survey import survey
+from muster.exchange.xml_text import add, text_of
 from muster.mission.geodesy import wgs84_to_enu
 
 ROBOTS = list(ROUTES)
@@ -36,7 +37,9 @@ def metres(lon, lat, alt=ALT):
 
 def positions(geometry):
     found = geometry["coordinates"]
-    return {"Point": [found], "LineString": found, "Polygon": [p for ring in found for p in ring]}[geometry["type"]]
+    if geometry["type"] == "Point":
+        return [found]
+    return found if geometry["type"] == "LineString" else [place for ring in found for place in ring]
 
 
 def test_geojson_has_longitude_first(seen):
@@ -130,9 +133,15 @@ def test_kml_has_longitude_first_and_its_elements_in_order(seen):
 
 @pytest.mark.parametrize("write", [gpx_text, kml_text])
 def test_xml_survives_odd_ids(write, tmp_path):
-    text = BAY.replace("id: left", r'id: "<&\">\u0007é日"')
+    text = BAY.replace("id: left", r'id: "<&\">é日"')
     root = Tree.fromstring(write(seen_in(tmp_path, text)))
-    assert '<&">\ufffdé日' in {element.text for element in root.iter()}
+    assert '<&">é日' in {element.text for element in root.iter()}
+
+
+def test_what_xml_cannot_hold_is_replaced():
+    root = Tree.Element("a")
+    add(root, "b", "x\u0007\ufffe\ty")
+    assert Tree.fromstring(text_of(root))[0].text == "x\ufffd\ufffd\ty"
 
 
 def test_csv_has_a_line_for_each_visit_and_each_task_left_out(tmp_path):

@@ -235,12 +235,12 @@ def test_rovers_alone_are_a_mission_in_the_plane(files, tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda p: p.update(fileType="Mission"), "fileType: 'Mission'; expected \"Plan\""),
+        (lambda p: p.update(fileType="Mission"), 'fileType: "Mission"; expected "Plan"'),
         (lambda p: p.pop("mission"), "mission: missing; expected a mapping"),
         (lambda p: p["mission"].update(version=1), "mission.version: 1; expected 2"),
         (lambda p: p["mission"].update(plannedHomePosition=[LON, LAT, 0]), "expected a latitude from -90 to 90"),
         (lambda p: p["mission"].pop("plannedHomePosition"), "mission.plannedHomePosition: missing"),
-        (lambda p: items(p)[2].update(type="ComplexItem", complexItemType="survey"), "mission.items[2].type: 'survey'"),
+        (lambda p: items(p)[2].update(type="ComplexItem", complexItemType="survey"), 'mission.items[2].type: "survey"'),
         (lambda p: items(p)[2].update(command=17), "mission.items[2].command: 17; expected one of 16, 19"),
         (lambda p: items(p)[2].update(frame=10), "mission.items[2].frame: 10; expected one of 0, 3, 5, 6"),
         (lambda p: items(p)[2].update(params=[0] * 6), "mission.items[2].params"),
@@ -270,5 +270,5 @@ def test_no_plan_file_at_all(text, tmp_path):
 
 
 def test_a_folder_without_plan_files(tmp_path):
-    with pytest.raises(MissionError, match=r"no \.plan file in it"):
+    with pytest.raises(MissionError, match=r"Is a directory; expected a file to read, or a folder of \.plan files"):
         load(tmp_path)

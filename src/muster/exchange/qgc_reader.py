@@ -87,7 +87,9 @@ def _files(path: Path) -> list[Path]:
         return [path]
     found = [file for file in path.iterdir() if file.suffix.lower() == ".plan"]
     if not found:
-        raise MissionError([Finding(str(path), None, "", "no .plan file in it", "a folder of .plan files")])
+        raise MissionError(
+            [Finding(str(path), None, "", "Is a directory", "a file to read, or a folder of .plan files")]
+        )
     return [found[k] for k in tie_order([file.stem for file in found])]
 
 
