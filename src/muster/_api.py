@@ -34,12 +34,12 @@ def load(
     salesmen: int | None = None,
     depot: str = "1",
 ) -> Mission:
-    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, or the name of a shipped mission.
+    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, QGroundControl plans, or a shipped name.
 
     Parameters
     ----------
     path_or_name
-        a file, or one of `muster missions`; a file of that name comes first.
+        a file, a folder of QGroundControl `.plan` files, or one of `muster missions`; a file of that name comes first.
     robots, suitability
         the CSV files that go with a task-list CSV.
     salesmen, depot
@@ -63,6 +63,10 @@ def load(
         from muster.mission.tsplib import read_tsplib
 
         return read_tsplib(path, salesmen or 0, depot)
+    if suffix == ".plan" or path.is_dir():
+        from muster.exchange.qgc_reader import read_plan_files
+
+        return read_plan_files(path)
     from muster.mission.yaml_reader import read_yaml
 
     return read_yaml(path)
@@ -71,7 +75,7 @@ def load(
 def _found(path_or_name: str | Path) -> Path:
     path = Path(path_or_name)
     shipped = mission_path(str(path_or_name))
-    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp")
+    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp", ".plan")
     if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
         return path
     if shipped is None:

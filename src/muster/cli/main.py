@@ -29,6 +29,7 @@ VERBS = (
     "simulate",
     "ros",
     "replay",
+    "export",
     "study",
     "bench",
 )
@@ -82,6 +83,7 @@ _SUMMARIES = {
     "simulate": "Carry a plan out with moving robots, and say what it took.",
     "ros": "Carry a plan out with real robots on ROS 1.",
     "replay": "Show a record of a mission that was carried out.",
+    "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
     "study": "Repeat a published experiment beside its published numbers.",
     "bench": "Measure speed on this machine, or quality against other solvers.",
 }
