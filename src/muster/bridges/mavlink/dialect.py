@@ -15,6 +15,8 @@ try:
 except ImportError:
     raise MissingExtraError("mavlink", "a drone that speaks MAVLink") from None
 
+__all__ = ["GROUND_STATION", "PLANNER", "Codec", "Message", "mavlink"]
+
 Message = Any
 """A message of pymavlink: `get_type()` is its name, its fields are attributes."""
 

@@ -40,7 +40,7 @@ class UdpLine:
         return int(self._socket.getsockname()[1])
 
     def read(self) -> bytes:
-        parts = []
+        parts: list[bytes] = []
         while True:
             try:
                 data, self._peer = self._socket.recvfrom(65535)

@@ -91,7 +91,7 @@ class MavlinkFleet:
 
     @property
     def remaining(self) -> dict[str, float | None]:
-        """For each robot the work capacity that its battery leaves, in the mission's unit; without a capacity the share.
+        """For each robot the work capacity that its battery leaves, in the mission's unit; without one the share.
 
         None before its battery was heard of.
         """

@@ -1,7 +1,7 @@
 """What is asked of an autopilot, step by step: modes, arming, the upload of a mission, its start.
 
-Sources: mavlink.io, services `mission` and `command`; PX4 and ArduCopter say in their heartbeat what mode they are in and
-whether they are armed, which is the answer that counts: an acknowledgement may be lost, or be of an earlier request.
+Sources: mavlink.io, services `mission` and `command`; PX4 and ArduCopter say in their heartbeat in what mode they are
+and whether they are armed, which is the answer that counts: an acknowledgement may be lost, or be an earlier one.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ class Seen:
     Parameters
     ----------
     start
-        where it stands in the map frame when it is switched on: its local frame begins there, where there is no `earth`.
+        where it stands in the map frame when it is switched on; without `earth` its local frame begins there.
     earth
         the map frame on Earth; None in a mission without an origin.
     """

@@ -52,7 +52,7 @@ class Session:
         self.autopilot: Autopilot | None = None
         self.fault: Fault | None = None
         self.order, self.passed = 0, 0
-        self._fence, self._height_m = fence, height_m
+        self.fence, self._height_m = fence, height_m
         self._outbox: list[Message] = []
         self._talk: Conversation | None = None
         self._route: Route | None = None  # the mission that it flies
@@ -93,7 +93,7 @@ class Session:
             raise ParameterError(f"{self.robot.id}: way points; expected none without leave to arm")
         self._take_order()
         if self.fault is None:
-            self._try(lambda: self._set_out([self._flown(waypoint) for waypoint in waypoints], now), now)
+            self._try(lambda: self._set_out([self.flown(waypoint) for waypoint in waypoints], now), now)
         return self.order
 
     def hold(self, now: float) -> int:
@@ -162,7 +162,7 @@ class Session:
         self.order, self.passed = self.order + 1, 0
         self._route = self._follower = None
 
-    def _flown(self, waypoint: Waypoint) -> Waypoint:
+    def flown(self, waypoint: Waypoint) -> Waypoint:
         """A way point at the height at which it is flown."""
         x, y, z = waypoint.position
         ground = self.seen.start[2]
@@ -173,7 +173,7 @@ class Session:
         here, target = self.seen.place, self.seen.heartbeat
         if here is None or target is None or not self.located:
             raise FaultError(Kind.NO_ANSWER, "it has not said where it is")
-        refusal = self._fence(here, waypoints)
+        refusal = self.fence(here, waypoints)
         if refusal:
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:
