@@ -9,7 +9,8 @@ from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot, origin_at
 from muster.mission.clock import VirtualClock
-from muster.mission.model import Mission, Origin, Robot, Task
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission, Origin, Robot, Rules, Task
 
 ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06, alt_m=100.0)
 
@@ -19,7 +20,7 @@ def mission(count=1, tasks=None, **more):
         Robot(id=f"r_{k}", position=(0.0, 6.0 * k, 0.0), kind="air", radius_m=0.3, speed_mps=5.0) for k in range(count)
     )
     tasks = tasks or tuple(Task(id=f"t_{k}", position=(20.0 + k, 4.0 * k, 10.0)) for k in range(2 * count))
-    return Mission(robots=robots, tasks=tasks, **{"origin_wgs84": ORIGIN, **more})
+    return Mission(robots=robots, tasks=tasks, **{"origin_wgs84": ORIGIN, "rules": Rules(objective="max"), **more})
 
 
 class Sky:
@@ -69,7 +70,11 @@ class Sky:
             clock=self.clock,
             wait=self.wait,
         )
-        made.connect(5.0)
+        try:
+            made.connect(5.0)
+        except MusterError:
+            made.close()
+            raise
         return made
 
     def close(self):

@@ -1,10 +1,10 @@
-"""Fleets of simulated autopilots on loopback: missions flown, every fault in its documented state, nothing sent unasked."""
+"""Fleets of simulated autopilots: missions flown, every fault in its documented state, nothing sent unasked."""
 
 import math
 import os
 
 import pytest
-from drones import ORIGIN, Sky, flown, mission
+from tests.bridges.mavlink.drones import ORIGIN, Sky, flown, mission
 
 import muster
 from muster.bridges.mavlink import Kind, MavlinkFleet

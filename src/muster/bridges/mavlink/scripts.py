@@ -25,7 +25,16 @@ def command(target: Message, number: int, *params: float) -> Message:
     return mavlink.MAVLink_command_long_message(target.get_srcSystem(), target.get_srcComponent(), number, 0, *seven)
 
 
-def obeyed(target: Message, number: int, params: Sequence[float], shows: str, value: int, kind: Kind) -> Script:
+def obeyed(
+    target: Message,
+    number: int,
+    params: Sequence[float],
+    shows: str,
+    value: int,
+    kind: Kind,
+    *,
+    takes_ack: bool = False,
+) -> Script:
     """Give a command until the heartbeat shows that it was obeyed.
 
     Parameters
@@ -34,6 +43,8 @@ def obeyed(target: Message, number: int, params: Sequence[float], shows: str, va
         `mode`: the heartbeat's custom mode must be this; `armed`: it must be armed.
     kind
         of the fault if it is refused.
+    takes_ack
+        whether an acknowledgement is enough: a short mission may be over before the next heartbeat.
     """
 
     def answer(message: Message) -> Message | None:
@@ -41,14 +52,14 @@ def obeyed(target: Message, number: int, params: Sequence[float], shows: str, va
             is_mode = shows == "mode" and message.custom_mode == value
             is_armed = shows == "armed" and message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
             return message if is_mode or is_armed else None
-        refused = message.get_type() == "COMMAND_ACK" and message.command == number
-        fine = (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
-        return message if refused and message.result not in fine else None
+        answered = message.get_type() == "COMMAND_ACK" and message.command == number
+        waits = (mavlink.MAV_RESULT_IN_PROGRESS, *(() if takes_ack else (mavlink.MAV_RESULT_ACCEPTED,)))
+        return message if answered and message.result not in waits else None
 
     name = mavlink.enums["MAV_CMD"][number].name
     for _ in range(_AGAIN):
         said = yield Ask([command(target, number, *params)], answer, name)
-        if said.get_type() == "HEARTBEAT":
+        if said.get_type() == "HEARTBEAT" or said.result == mavlink.MAV_RESULT_ACCEPTED:
             return
         if said.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
             break
@@ -76,7 +87,7 @@ def started(target: Message, autopilot: Autopilot, first: int) -> Script:
 
     yield Ask([mavlink.MAVLink_mission_set_current_message(*to, first)], at_first, "MISSION_SET_CURRENT")
     number = mavlink.MAV_CMD_MISSION_START
-    yield from obeyed(target, number, (), "mode", autopilot.mission, Kind.COMMAND_REFUSED)
+    yield from obeyed(target, number, (), "mode", autopilot.mission, Kind.COMMAND_REFUSED, takes_ack=True)
 
 
 def upload(target: Message, route: Route) -> Script:

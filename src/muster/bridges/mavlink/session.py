@@ -136,7 +136,8 @@ class Session:
             self._say(mavlink.MAVLink_heartbeat_message(*kind, 0, 0, mavlink.MAV_STATE_ACTIVE, 3))
         if self.autopilot is None:
             return
-        if now - max(self.seen.place_s, self._asked_s) >= _ASK_AGAIN_S:
+        silent = now - max(self.seen.place_s, self._asked_s) >= _ASK_AGAIN_S
+        if silent or self._asked_s < 0:
             self._ask_for_telemetry(now)
         self._try(lambda: self._go_on(now), now)
 
@@ -245,6 +246,7 @@ class Session:
     def _answer(self, message: Message, now: float) -> None:
         if self._talk is not None:
             self._talk.hear(message, now)
+            self._talk = None if self._talk.done else self._talk
         elif message.get_type() == "HEARTBEAT" and self.fault is None and self._flew:
             self._look_at_mode()
         self._see_progress(message)
