@@ -1,0 +1,69 @@
+"""What drones would be told, if all went as planned: way points of routes, checked against the fence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from muster.bridges.mavlink.fleet import MavlinkFleet
+from muster.bridges.mavlink.frames import DEGREES_E7
+from muster.bridges.mavlink.session import Session
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot, Task
+from muster.mission.plan import Plan
+from muster.motion import actions
+from muster.motion.actions import Impossible
+from muster.motion.port import Waypoint
+
+
+@dataclass(frozen=True)
+class Line:
+    """One way point: degrees (None in a mission without an origin), metres above home, seconds."""
+
+    robot: str
+    task: str
+    lat_deg: float | None
+    lon_deg: float | None
+    above_home_m: float
+    hold_s: float
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet) -> list[Line]:
+    """Every way point of a plan's works, robot by robot. Ways around zones between works are found in flight.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a work lies outside the fence.
+    """
+    tasks, robots = {task.id: task for task in mission.tasks}, {robot.id: robot for robot in mission.robots}
+    lines: list[Line] = []
+    for route in plan.routes:
+        for name in route.tasks:
+            if route.robot not in robots or name not in tasks:
+                raise ParameterError(f"plan: {route.robot} does {name}; expected robots and tasks of the mission")
+            lines += _work(tasks[name], robots[route.robot], fleet.sessions[route.robot])
+    return lines
+
+
+def _work(task: Task, robot: Robot, session: Session) -> Iterator[Line]:
+    doing = actions.plan(task, robot)
+    if isinstance(doing, Impossible):
+        raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
+    waypoints = [session.flown(waypoint) for waypoint in doing.waypoints]
+    refusal = session.fence(waypoints[0].position, waypoints)
+    if refusal:
+        raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")
+    yield from (_line(robot.id, task.id, waypoint, session) for waypoint in waypoints)
+
+
+def _line(robot: str, task: str, waypoint: Waypoint, session: Session) -> Line:
+    earth = session.seen.earth
+    if earth is None:
+        return Line(robot, task, None, None, waypoint.position[2] - session.seen.start[2], waypoint.hold_s)
+    lat, lon, above = earth.to_drone(waypoint.position)
+    return Line(robot, task, lat / DEGREES_E7, lon / DEGREES_E7, above, waypoint.hold_s)
