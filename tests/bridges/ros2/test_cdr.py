@@ -77,7 +77,7 @@ def theirs(message, ros):
 
 
 def in_both(message, ros):
-    return ros == ROS2 or not message.PRIMITIVE and type_name(message, ROS2) in store(ROS1).types
+    return ros == ROS2 or (not message.PRIMITIVE and type_name(message, ROS2) in store(ROS1).types)
 
 
 @pytest.mark.parametrize("message", SENT, ids=lambda message: message.NAME)
@@ -124,7 +124,7 @@ def test_what_is_cut_off_is_refused(message, data):
 def test_other_encodings_and_values_that_do_not_fit_are_refused():
     with pytest.raises(ParameterError, match="begins with 00 00 00 00; expected CDR, little endian"):
         from_cdr(Time, bytes(12))
-    with pytest.raises(ParameterError, match="builtin_interfaces/Time.*expected values that fit"):
+    with pytest.raises(ParameterError, match=r"builtin_interfaces/Time.*expected values that fit"):
         to_cdr(Time(2**31, 0))
 
 

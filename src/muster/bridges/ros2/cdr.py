@@ -45,9 +45,8 @@ def from_cdr(message: type[M], data: bytes) -> M:
         if they hold no such message, or are not CDR version 1, little endian.
     """
     if data[:2] != CDR_HEADER[:2]:
-        raise ParameterError(
-            f"{message.NAME}: begins with {data[:4].hex(' ')}; expected CDR, little endian: 00 01 00 00"
-        )
+        begins = data[:4].hex(" ")
+        raise ParameterError(f"{message.NAME}: begins with {begins}; expected CDR, little endian: 00 01 00 00")
     return _read(message, data[4:], ROS2)
 
 
@@ -67,7 +66,7 @@ def _written(message: Message, ros: int) -> bytes:
 
 def _read(message: type[M], data: bytes, ros: int) -> M:
     try:
-        return cast(M, _Reader(data, ros).message(message))
+        return cast("M", _Reader(data, ros).message(message))
     except (struct.error, UnicodeDecodeError) as error:
         raise ParameterError(f"{message.NAME}: {len(data)} bytes: {error}; expected such a message") from None
 
