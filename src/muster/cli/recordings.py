@@ -50,11 +50,9 @@ def require_recordings(
         raise ParameterError("--begins given; expected it together with --reference, --ros2 or --ros1")
 
 
-def show_recording(file: Path, plot: Path | None, form: str) -> int:
+def show_recording(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
     """Print and draw the tracks in a recording of others."""
-    from muster.report.recordings import read_poses
-
-    tracks = read_poses(file)
+    tracks = _tracks(file, quiet=quiet)
     if plot is not None:
         from muster.report.files import save_figure
         from muster.report.recordings.picture import plot_tracks
@@ -76,6 +74,15 @@ def show_recording(file: Path, plot: Path | None, form: str) -> int:
     ]
     print_table(columns, cells, title=f"{file}: {counted(len(rows), 'track')}", right=columns[3:])
     return DONE
+
+
+def _tracks(file: Path, *, quiet: bool) -> Mapping[str, PoseTrack]:
+    from muster.report.recordings import read_poses
+
+    recording = read_poses(file)
+    if not recording.complete and not quiet:
+        click.echo(f"warning: {file}: breaks off; what is whole counts", err=True)
+    return recording.tracks
 
 
 def _row(track: PoseTrack) -> dict[str, Any]:
@@ -107,12 +114,12 @@ def write_for_ros(
 
 
 def errors_against(
-    recording: Recording, file: Path, topics: tuple[str, ...], begins: float | None
+    recording: Recording, file: Path, topics: tuple[str, ...], begins: float | None, *, quiet: bool
 ) -> Mapping[str, Any]:
     """How far robots were from what a recording has: its file, its clock and a row a robot."""
-    from muster.report.recordings import Reference, deviations, read_poses
+    from muster.report.recordings import Reference, deviations
 
-    reference = Reference.of(recording, read_poses(file), _topics(topics), begins)
+    reference = Reference.of(recording, _tracks(file, quiet=quiet), _topics(topics), begins)
     rows = [
         {
             "robot": off.robot,

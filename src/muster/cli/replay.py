@@ -29,7 +29,7 @@ _FILE = click.Path(path_type=Path)
 @click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap).")
 @click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag).")
 @click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has.")
-@click.option("--topic", "topics", multiple=True, metavar="ROBOT=TOPIC", help="Of the reference.  [default: /ROBOT/odom]")
+@click.option("--topic", "topics", multiple=True, metavar="ROBOT=TOPIC", help="Of it.  [default: /ROBOT/odom, or pose]")
 @click.option("--begins", type=Finite(-1e11, 1e11), metavar="S", help="When the mission began, on the clock of ROS.")
 @format_option
 @quiet_option
@@ -58,14 +58,14 @@ def command(
     require_drawable(plot, gantt)
     require_recordings(record, html, gantt, ros2, ros1, reference, topics, begins)
     if is_recording(record):
-        return show_recording(record, plot, form)
+        return show_recording(record, plot, form, quiet=quiet)
     recording = read_record(record)
     if not recording.complete and not quiet:
         until = f"breaks off at {recording.duration_s:.1f} s"
         click.echo(f"warning: {record}: {until}; what is whole is shown", err=True)
     _show(recording, html, plot, gantt)
     write_for_ros(recording, ros2, ros1, begins, quiet=quiet)
-    off = None if reference is None else errors_against(recording, reference, topics, begins)
+    off = None if reference is None else errors_against(recording, reference, topics, begins, quiet=quiet)
     if form == "json":
         from muster.mission.plan import json_text
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _LONG_SIDE_IN = 6.6
 _MARGIN = 0.05
+_NARROW, _STEPS = 1.2, 6
+"""Lines become narrower from track to track, so that of those that lie on each other all are seen."""
 
 
 def plot_tracks(name: str, tracks: Sequence[PoseTrack]) -> Axes:
@@ -38,7 +40,12 @@ def plot_tracks(name: str, tracks: Sequence[PoseTrack]) -> Axes:
     entries = []
     for k, track in enumerate(tracks):
         color = robot_style(k).color
-        (line,) = ax.plot(*track.positions[:, :2].T, color=color, linewidth=1.2, gid=f"track-{track.topic}")
+        (line,) = ax.plot(
+            *track.positions[:, :2].T,
+            color=color,
+            linewidth=_NARROW + min(len(tracks) - 1 - k, _STEPS),
+            gid=f"track-{track.topic}",
+        )
         ax.plot(*track.positions[0, :2], "o", color=color, markersize=4)
         entries.append((line, f"{track.topic} ({track.frame})" if track.frame else track.topic))
     add_legend(ax, entries)

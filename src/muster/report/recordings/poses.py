@@ -59,6 +59,14 @@ class PoseTrack:
     positions: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class PoseRecording:
+    """The tracks in a recording, by topic, and whether it is whole: of one that breaks off all until there."""
+
+    tracks: Mapping[str, PoseTrack]
+    complete: bool
+
+
 @dataclass(frozen=True)
 class _Raw:
     topic: str
@@ -85,8 +93,8 @@ def is_recording(path: str | Path) -> bool:
     return str(getattr(first, "profile", "")).startswith("ros")
 
 
-def read_poses(path: str | Path) -> dict[str, PoseTrack]:
-    """The tracks in a recording, by topic.
+def read_poses(path: str | Path) -> PoseRecording:
+    """The tracks in a recording.
 
     Raises
     ------
@@ -98,8 +106,9 @@ def read_poses(path: str | Path) -> dict[str, PoseTrack]:
     file = Path(path)
     found: dict[str, list[tuple[float, Header, Point | Vector3]]] = {}
     kinds: dict[str, str] = {}
+    ended: list[bool] = []
     try:
-        for raw in _raw_messages(file):
+        for raw in _raw_messages(file, ended):
             for name, header, place in _places(raw.topic, raw.decode(_POSES[raw.kind], raw.data)):
                 found.setdefault(name, []).append((header.stamp.seconds or raw.time_ns * 1e-9, header, place))
                 kinds[name] = raw.kind
@@ -109,7 +118,8 @@ def read_poses(path: str | Path) -> dict[str, PoseTrack]:
         raise _refusal(file, str(error)) from None
     if not found:
         raise _refusal(file, "holds no poses")
-    return {name: _track(name, kinds[name], told) for name, told in sorted(found.items())}
+    tracks = {name: _track(name, kinds[name], told) for name, told in sorted(found.items())}
+    return PoseRecording({name: track for name, track in tracks.items() if len(track.times_s)}, bool(ended))
 
 
 def _refusal(file: Path, value: str) -> InputError:
@@ -139,30 +149,32 @@ def _track(topic: str, kind: str, told: list[tuple[float, Header, Point | Vector
     return PoseTrack(topic, kind, told[0][1].frame_id.lstrip("/"), times[order], positions[order])
 
 
-def _raw_messages(file: Path) -> Iterator[_Raw]:
-    """The messages with poses."""
+def _raw_messages(file: Path, ended: list[bool]) -> Iterator[_Raw]:
+    """The messages with poses; `ended` gets an item if none is missing."""
     if file.is_dir():
         yield from _from_bag(file, "rosbag2", from_cdr)
+        ended.append(True)
         return
     with file.open("rb") as stream:
         begin = stream.read(len(_BAG))
         if begin == _BAG:
             yield from _from_bag(file, "rosbag1", from_ros1)
+            ended.append(True)
         elif begin.startswith(_MCAP):
             stream.seek(0)
-            yield from _from_mcap(stream)
+            yield from _from_mcap(stream, ended)
         else:
             raise ParameterError("no recording")
 
 
-def _from_mcap(stream: Any) -> Iterator[_Raw]:
+def _from_mcap(stream: Any, ended: list[bool]) -> Iterator[_Raw]:
     require_mcap()
     from mcap.records import Channel, Message, Schema
 
     decoders = {"cdr": from_cdr, "ros1": from_ros1}
     schemas: dict[int, str] = {}
     channels: dict[int, tuple[str, str, Callable[..., Any]]] = {}
-    for record in whole_records(stream, []):
+    for record in whole_records(stream, ended):
         if isinstance(record, Schema):
             schemas[record.id] = record.name.replace("/msg/", "/")
         elif isinstance(record, Channel) and record.message_encoding in decoders:

@@ -63,9 +63,7 @@ class Reference:
         return cls(chosen, begins_s)
 
 
-def _topics(
-    recording: Recording, tracks: Mapping[str, PoseTrack], topics: Mapping[str, str]
-) -> Mapping[str, str]:
+def _topics(recording: Recording, tracks: Mapping[str, PoseTrack], topics: Mapping[str, str]) -> Mapping[str, str]:
     chosen = {}
     for robot, topic in topics.items():
         if robot not in recording.tracks.robots:
@@ -103,7 +101,7 @@ class Deviation:
     error
         (7): total, mean, most, in metres.
     risk
-        (8), 1/m, over the same moments, by the distance to what the map has; None in a mission without a map of polygons.
+        (8), 1/m, over the same moments, by the distance to what the map has; None in a mission without a map.
     travelled_m, reference_m
         along both over these moments.
     """
@@ -152,10 +150,10 @@ def _deviation(recording: Recording, robot: str, track: PoseTrack, begins_s: flo
 
 
 def _risk(recording: Recording, robot: str, places: Floats) -> float | None:
-    if recording.mission.map is None or recording.mission.map.boundary is None:
+    if recording.mission.map is None:
         return None
     from muster.motion.world import World
 
     kind = next(one for one in recording.robots if one.id == robot)
-    world = World.of(recording.mission)
+    world = World.of(recording.mission, recording.image)
     return risk_factor(world.clearance(places[:, : recording.mission.dimensions], kind.kind, kind.radius_m))
