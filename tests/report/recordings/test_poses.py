@@ -1,11 +1,14 @@
 """Recordings that others made, and how far a record is from them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.report.recordings.conftest import odometry, pose, told_of, write
 
 from muster.bridges.ros2.messages import Header, String, TFMessage, Time, Transform, TransformStamped, Vector3
 from muster.mission.errors import InputError, ParameterError
+from muster.mission.model import Map
 from muster.report.recordings import Reference, deviations, is_recording, read_poses
 
 FORMS = ("mcap", "rosbag1", "rosbag2", "rosbag2-mcap")
@@ -113,3 +116,15 @@ def test_robots_topics_and_times_that_are_not_there(recording, tmp_path):
             Reference.of(recording, tracks, topics)
     with pytest.raises(ParameterError, match="expected a time in which the record has poses of 'r_0'"):
         deviations(recording, Reference.of(recording, tracks, {"r_0": "/car"}, -1e6))
+
+
+def test_risk_is_by_the_distance_to_the_map(recording, tmp_path):
+    chart = Map(boundary=((-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)))
+    within = replace(recording, mission=replace(recording.mission, map=chart))
+    tracks = read_poses(write("mcap", tmp_path / "r", told_of(recording, "r_0", "/r_0/odom"))).tracks
+    reference = Reference.of(within, tracks, {})
+    (off,) = deviations(within, reference)
+    assert off.risk == pytest.approx(
+        float((1 / (9.0 - np.abs(recording.tracks.positions[:, 0, :2]).max(axis=1))).sum())
+    )
+    assert deviations(recording, reference)[0].risk is None

@@ -63,7 +63,7 @@ class Field:
 
 
 @cache
-def fields_of(message: type[Message], ros: int) -> tuple[Field, ...]:
+def fields_of(message: type[Any], ros: int) -> tuple[Field, ...]:
     """The fields that a message has in ROS 1 or ROS 2, in order."""
     hints = get_type_hints(message, include_extras=True)
     found = []
@@ -96,7 +96,7 @@ def type_name(message: type[Message], ros: int) -> str:
 
 
 @cache
-def md5_sum(message: type[Message]) -> str:
+def md5_sum(message: type[Any]) -> str:
     """By which ROS 1 knows a message: of its definition, with the sums of its parts for their names."""
     lines = [message.CONSTANTS[ROS1]] if ROS1 in message.CONSTANTS else []
     for field in fields_of(message, ROS1):

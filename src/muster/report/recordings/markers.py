@@ -50,8 +50,8 @@ class Markers:
 
 
 def _shapes(entity: Entity) -> Iterator[Marker]:
-    for kind, word in (("spheres", "SPHERE"), ("cylinders", "CYLINDER")):
-        for solid in entity[kind]:
+    for solids, word in (("spheres", "SPHERE"), ("cylinders", "CYLINDER")):
+        for solid in entity[solids]:
             size = Vector3(**solid["size"])
             yield Marker(type=SHAPES[word], pose=_pose(solid["pose"]), scale=size, color=ColorRGBA(**solid["color"]))
     for line in entity["lines"]:

@@ -39,11 +39,11 @@ def plot_tracks(name: str, tracks: Sequence[PoseTrack]) -> Axes:
     frame_of_map(ax, low, high)
     entries = []
     for k, track in enumerate(tracks):
-        color = robot_style(k).color
+        color, wide_pt = robot_style(k).color, _NARROW + min(len(tracks) - 1 - k, _STEPS)
         (line,) = ax.plot(
             *track.positions[:, :2].T,
             color=color,
-            linewidth=_NARROW + min(len(tracks) - 1 - k, _STEPS),
+            linewidth=wide_pt,
             gid=f"track-{track.topic}",
         )
         ax.plot(*track.positions[0, :2], "o", color=color, markersize=4)

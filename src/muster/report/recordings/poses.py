@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.bridges.ros2.cdr import from_cdr, from_ros1
+from muster.bridges.ros2.description import Message
 from muster.bridges.ros2.messages import (
     Header,
-    Message,
     Odometry,
     Point,
     PoseStamped,

@@ -84,10 +84,10 @@ def _topics(recording: Recording, tracks: Mapping[str, PoseTrack], topics: Mappi
 
 def _first_s(recording: Recording, chosen: Mapping[str, PoseTrack]) -> float:
     columns = [recording.tracks.robots.index(robot) for robot in chosen]
-    there = np.isfinite(recording.tracks.positions[:, columns]).all(axis=2).any(axis=1)
-    if not there.any():
+    there = np.flatnonzero(np.isfinite(recording.tracks.positions[:, columns, 0]))
+    if not len(there):
         raise ParameterError(f"{recording.file}: no poses of {', '.join(chosen)}; expected where they were")
-    return float(recording.tracks.times_s[there][0])
+    return float(recording.tracks.times_s[there[0] // len(columns)])
 
 
 @dataclass(frozen=True)

@@ -40,9 +40,10 @@ def write_ros2(file: str | Path, recording: Recording, *, begins_s: float = 0.0)
     require_mcap()
     from mcap.writer import Writer
 
+    open_writer: Any = Writer
     sent = ros_messages(recording, begins_s)
     with Path(file).open("wb") as stream:
-        writer = Writer(stream)
+        writer = open_writer(stream)
         writer.start(profile="ros2", library="muster")
         schemas: dict[type[Message], int] = {}
         channels: dict[str, int] = {}
