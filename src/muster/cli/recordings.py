@@ -148,7 +148,7 @@ def _topics(texts: tuple[str, ...]) -> dict[str, str]:
 
 
 def print_errors(off: Mapping[str, Any]) -> None:
-    columns = ("robot", "topic", "samples", "error (7) [m]", "mean [m]", "most [m]", "risk (8) [1/m]", "travelled [m]")
+    columns = ("robot", "topic", "samples", "(7) [m]", "mean [m]", "most [m]", "(8) [1/m]", "way [m]")
     rows = [
         (
             *(row["robot"], row["topic"], str(row["samples"])),

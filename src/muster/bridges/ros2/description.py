@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from functools import cache
 from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
 
 ROS1, ROS2 = 1, 2
@@ -62,17 +61,24 @@ class Field:
         return self.length is not None
 
 
-@cache
-def fields_of(message: type[Any], ros: int) -> tuple[Field, ...]:
+def fields_of(message: type[Message], ros: int) -> tuple[Field, ...]:
     """The fields that a message has in ROS 1 or ROS 2, in order."""
+    if (message, ros) not in _READ:
+        _READ[message, ros] = tuple(_fields(message, ros))
+    return _READ[message, ros]
+
+
+_READ: dict[tuple[type[Message], int], tuple[Field, ...]] = {}
+"""Fields that were read before: reading annotations is slow, and they do not change."""
+
+
+def _fields(message: type[Message], ros: int) -> Iterator[Field]:
     hints = get_type_hints(message, include_extras=True)
-    found = []
     for field in fields(message):  # type: ignore[arg-type]
         hint = hints[field.name]
         marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
         if all(mark.ros == ros for mark in marks if isinstance(mark, Only)):
-            found.append(_field(field.name, get_args(hint)[0] if marks else hint, marks))
-    return tuple(found)
+            yield _field(field.name, get_args(hint)[0] if marks else hint, marks)
 
 
 def _field(name: str, kind: Any, marks: tuple[Any, ...]) -> Field:
@@ -95,8 +101,7 @@ def type_name(message: type[Message], ros: int) -> str:
     return message.NAME if ros == ROS1 else message.NAME.replace("/", "/msg/")
 
 
-@cache
-def md5_sum(message: type[Any]) -> str:
+def md5_sum(message: type[Message]) -> str:
     """By which ROS 1 knows a message: of its definition, with the sums of its parts for their names."""
     lines = [message.CONSTANTS[ROS1]] if ROS1 in message.CONSTANTS else []
     for field in fields_of(message, ROS1):
