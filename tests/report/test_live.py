@@ -2,7 +2,9 @@
 
 import json
 import struct
+from contextlib import contextmanager
 
+import numpy as np
 import pytest
 from tests.report.voyages import carry_out
 
@@ -18,9 +20,8 @@ client = pytest.importorskip("websockets.sync.client")
 class Viewer:
     """Connects, takes the channels in, and subscribes to topics."""
 
-    def __init__(self, address, *topics):
-        self.socket = client.connect(address, subprotocols=["foxglove.sdk.v1"], max_size=None)
-        self.channels = {}
+    def __init__(self, socket, *topics):
+        self.socket, self.channels = socket, {}
         while len(self.channels) < len(TOPICS):
             told = json.loads(self.socket.recv(timeout=5))
             self.channels |= {channel["topic"]: channel for channel in told.get("channels", ())}
@@ -36,6 +37,12 @@ class Viewer:
                 number, time = struct.unpack_from("<IQ", told, 1)
                 if self.topics[number] == topic:
                     return time * 1e-9, json.loads(told[13:])
+
+
+@contextmanager
+def viewing(server, *topics):
+    with client.connect(server.address, subprotocols=["foxglove.sdk.v1"], max_size=None) as socket:
+        yield Viewer(socket, *topics)
 
 
 @pytest.fixture
@@ -55,8 +62,8 @@ def until_asked(server, *topics):
 
 
 def test_topics_and_schemas_are_those_of_a_record(mission):
-    with FoxgloveServer(mission, 0) as server:
-        channels = Viewer(server.address).channels
+    with FoxgloveServer(mission, 0) as server, viewing(server) as viewer:
+        channels = viewer.channels
     assert server.address.startswith("ws://127.0.0.1:")
     assert {topic: channel["schemaName"] for topic, channel in channels.items()} == TOPICS
     assert {channel["encoding"] for channel in channels.values()} == {"json"}
@@ -64,21 +71,23 @@ def test_topics_and_schemas_are_those_of_a_record(mission):
 
 
 def test_who_connects_late_is_told_what_holds(mission):
+    topics = ("/scene", "/muster/plan", "/muster/state")
     with FoxgloveServer(mission, 0) as server:
-        plan = muster.solve(mission, "greedy")
-        carry_out(mission, plan, server, until=5.0)
-        viewer = Viewer(server.address, "/scene", "/muster/plan", "/muster/state")
-        until_asked(server, "/scene", "/muster/plan", "/muster/state")
-        carry_out(mission, plan, server, until=0.0)
-        server._next_s = 0.0
-        carry_out(mission, plan, server, until=0.0)
-        names = {entity["id"] for entity in viewer.hear("/scene")[1]["entities"]}
-        assert {f"task/{task.id}" for task in mission.tasks} <= names
-        assert {"robot/r_0", "robot/r_1", "route/r_0", "route/r_1"} <= names
-        assert viewer.hear("/muster/plan")[1]["plan"]["allocator"] == "greedy"
-        time, state = viewer.hear("/muster/state")
-        assert time == state["time_s"] == 0.0
-        assert state["robots"]["r_0"]["x"] == pytest.approx(mission.robots[0].position[0])
+        carry_out(mission, muster.solve(mission, "greedy"), server, until=5.0)
+        with viewing(server, *topics) as viewer:
+            until_asked(server, *topics)
+            server.on_step(6.0, np.array([[1.5, 2.0, 0.0], [3.0, 4.0, 0.0]]), np.zeros(2), np.zeros((2, 3)))
+            _is_told_what_holds(viewer, mission)
+
+
+def _is_told_what_holds(viewer, mission):
+    assert viewer.hear("/muster/plan")[1]["plan"]["allocator"] == "greedy"
+    names = {entity["id"] for entity in viewer.hear("/scene")[1]["entities"]}
+    assert {f"task/{task.id}" for task in mission.tasks} <= names
+    assert {"robot/r_0", "robot/r_1", "route/r_0", "route/r_1"} <= names
+    time, state = viewer.hear("/muster/state")
+    assert time == state["time_s"] == 6.0
+    assert state["robots"]["r_0"]["x"] == 1.5
 
 
 def test_a_port_that_is_taken_and_an_address_of_others(mission):

@@ -43,7 +43,7 @@ class FoxgloveServer(Teller):
     def __init__(self, mission: Mission, port: int, *, host: str = "127.0.0.1", rate_hz: float = 10.0) -> None:
         super().__init__(mission, rate_hz)
         foxglove = _foxglove()
-        context = foxglove.Context()
+        self._context = context = foxglove.Context()  # kept: its channels close with it
         self._entities: dict[str, Mapping[str, Any]] = {}
         self._last: dict[str, Mapping[str, Any]] = {}
         self._asked: set[str] = set()
@@ -108,6 +108,9 @@ class _Listener:
 
     def on_subscribe(self, client: Any, channel: Any) -> None:
         self._ask(channel.topic)
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        """What holds is told anew to whoever comes back."""
 
 
 def _foxglove() -> Any:
