@@ -3,7 +3,10 @@
 Its types are written out here, so that they are not those of the bridge: `python robot_process.py NAME X Y SAYS`.
 """
 
+# ruff: noqa: N801 - names of DDS
+
 import math
+import os
 import sys
 import time
 from dataclasses import dataclass
@@ -91,7 +94,7 @@ class Odometry_(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
 
 def main(name, x, y, says):
     quality = Qos(Policy.DataRepresentation(use_cdrv0_representation=True), Policy.Reliability.Reliable(10**8))
-    participant = DomainParticipant(int(__import__("os").environ["ROS_DOMAIN_ID"]))
+    participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
     goals = DataReader(participant, Topic(participant, f"rt/{name}/goal_pose", PoseStamped_), qos=quality)
     kind = PoseStamped_ if says == "pose" else Odometry_
     told = DataWriter(participant, Topic(participant, f"rt/{name}/{says}", kind), qos=quality)
@@ -113,9 +116,8 @@ def main(name, x, y, says):
             told.write(PoseStamped_(header, pose))
         else:
             twist = Twist_(Vector3_(moved / dt, 0.0, 0.0), still)
-            told.write(
-                Odometry_(header, name, PoseWithCovariance_(pose, nothing), TwistWithCovariance_(twist, nothing))
-            )
+            unsure = PoseWithCovariance_(pose, nothing), TwistWithCovariance_(twist, nothing)
+            told.write(Odometry_(header, name, *unsure))
         time.sleep(dt)
 
 

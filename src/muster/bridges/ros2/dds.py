@@ -138,16 +138,16 @@ def _idl(message: type[Message]) -> Any:
         notes = {field.name: _idl_field(field) for field in fields_of(message, ROS2)}
         body = {"__annotations__": notes, "__module__": __name__}
         name = _dds_type(message)
-        made = types.new_class(
-            name.rpartition("::")[2], (IdlStruct,), {"typename": name}, lambda room: room.update(body)
-        )
+        how = {"typename": name}
+        made = types.new_class(name.rpartition("::")[2], (IdlStruct,), how, lambda room: room.update(body))
         _MADE[message] = dataclasses.dataclass(made)
     return _MADE[message]
 
 
 def _idl_field(field: Field) -> Any:
-    from cyclonedds.idl import types as idl
+    from cyclonedds.idl import types as idl_types
 
+    idl: Any = idl_types
     words: Any = {"string": str, "bool": bool}
     one = words.get(field.kind) or (getattr(idl, field.kind) if isinstance(field.kind, str) else _idl(field.kind))
     if not field.is_list:

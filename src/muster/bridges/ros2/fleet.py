@@ -111,7 +111,7 @@ class Ros2Port:
         return self._order
 
     def cancel(self) -> int:
-        """Its goal becomes where it is; one whose pose is not known is told nothing, having been told nothing before."""
+        """Its goal becomes where it is. One whose pose is not known keeps the goal that it has."""
         order = self.send(())
         if self._said is not None:
             self._publish(self._said.position, self._said.heading)
