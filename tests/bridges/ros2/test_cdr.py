@@ -131,3 +131,12 @@ def test_other_encodings_and_values_that_do_not_fit_are_refused():
 @given(st.floats(0, 2e9))
 def test_a_time_is_kept_to_the_nanosecond(seconds):
     assert math.isclose(Time.of(seconds).seconds, seconds, abs_tol=5e-7)
+
+
+@given(st.sampled_from(SENT), st.binary(max_size=120))
+def test_any_bytes_are_a_message_or_refused(message, data):
+    for read, begin in ((from_cdr, b"\0\1\0\0"), (from_ros1, b"")):
+        try:
+            assert isinstance(read(message, begin + data), message)
+        except ParameterError as error:
+            assert message.NAME in str(error)

@@ -128,3 +128,23 @@ def test_risk_is_by_the_distance_to_the_map(recording, tmp_path):
         float((1 / (9.0 - np.abs(recording.tracks.positions[:, 0, :2]).max(axis=1))).sum())
     )
     assert deviations(recording, reference)[0].risk is None
+
+
+@pytest.mark.parametrize("form", ["mcap", "rosbag1"])
+def test_recordings_that_are_damaged_anywhere_are_read_or_refused(form, tmp_path):
+    whole = write(
+        form, tmp_path / "whole", [("/pose", k * 0.1, pose(k * 0.1, (k, 0, 0))) for k in range(40)]
+    ).read_bytes()
+    random = np.random.default_rng(0)
+    for trial in range(60):
+        data = bytearray(whole)
+        if trial % 2:
+            del data[int(random.integers(20, len(whole))) :]
+        else:
+            for at in random.integers(20, len(whole), 5):
+                data[at] = int(random.integers(256))
+        (tmp_path / "damaged").write_bytes(data)
+        try:
+            assert all(len(track.times_s) for track in read_poses(tmp_path / "damaged").tracks.values())
+        except InputError as error:
+            assert len(str(error).splitlines()) == 1

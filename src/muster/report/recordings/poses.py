@@ -116,10 +116,11 @@ def read_poses(path: str | Path) -> PoseRecording:
         raise _refusal(file, error.strerror or str(error)) from None
     except ParameterError as error:
         raise _refusal(file, str(error)) from None
-    if not found:
-        raise _refusal(file, "holds no poses")
     tracks = {name: _track(name, kinds[name], told) for name, told in sorted(found.items())}
-    return PoseRecording({name: track for name, track in tracks.items() if len(track.times_s)}, bool(ended))
+    finite = {name: track for name, track in tracks.items() if len(track.times_s)}
+    if not finite:
+        raise _refusal(file, "holds no poses")
+    return PoseRecording(finite, bool(ended))
 
 
 def _refusal(file: Path, value: str) -> InputError:
@@ -200,5 +201,8 @@ def _from_bag(path: Path, module: str, decode: Callable[..., Any]) -> Iterator[_
                 return
             for connection, time, data in reader.messages(connections=wanted):
                 yield _Raw(connection.topic, connection.msgtype.replace("/msg/", "/"), time, bytes(data), decode)
-    except room.ReaderError as error:
-        raise ParameterError(str(error).rstrip(".")) from None
+    except OSError:
+        raise
+    except Exception as error:  # of damaged bags rosbags says what its own code met: assertions, keys, struct.error
+        reason = str(error).rstrip(".").partition("\n")[0]
+        raise ParameterError(reason or f"a damaged bag ({type(error).__name__})") from None
