@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -181,6 +181,7 @@ def simulate(
     seed: int = 0,
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
+    observers: Sequence[Any] = (),
     **how: Any,
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
@@ -197,6 +198,8 @@ def simulate(
     film
         a file (.mp4, .gif) for a film of it, in the physics world; or a `Footage` of the mission, of which films and
         stills can be made afterwards.
+    observers
+        who else is told, such as `muster.report.live.FoxgloveServer`.
     how
         as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
 
@@ -212,7 +215,7 @@ def simulate(
     _require_mission(mission)
     carry_out = _carrying_out(mission, plan)
     with ExitStack() as stack:
-        recorders: list[Any] = []
+        recorders: list[Any] = list(observers)
         if record is not None:
             from muster.report.record import RecordWriter
 

@@ -16,6 +16,7 @@ from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.filming import draw_footage, footage_of, require_filmable
 from muster.cli.halting import ctrl_c_halts
+from muster.cli.live import foxglove_option, shown_live
 from muster.cli.options import (
     Finite,
     format_option,
@@ -64,7 +65,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--speed",
     type=Finite(0.001, 1e6),
     metavar="X",
-    help="X times real time, telling events.  [default: at once; with --negotiate 1, at most 10]",
+    help="X times real time, telling events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
@@ -82,6 +83,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--film-speed", type=Finite(0.01, 1e6), metavar="X", help="X times real time.  [default: a film of at most 24 s]"
 )
 @click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
+@foxglove_option
 @method_options
 @terms_options
 @require_complete_option
@@ -115,6 +117,7 @@ def command(
     method: str,
     transport: str,
     settings: tuple[str, ...],
+    foxglove: int | None,
     require_complete: bool,
     form: str,
     quiet: bool,
@@ -133,6 +136,7 @@ def command(
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise = _noise(noises)
+    speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
@@ -155,8 +159,8 @@ def command(
         }
         footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
         tell = _tell if speed is not None and not quiet else None
-        with ctrl_c_halts() as halt:
-            report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
+        with shown_live(loaded, foxglove, quiet=quiet) as observers, ctrl_c_halts() as halt:
+            report = _carried_out(loaded, planned, file, observers=observers, on_happening=tell, halt=halt, **how)
         if file is not None:
             show_record(file, html, plot, gantt)
     if found is not None and looks is not None:

@@ -1,0 +1,178 @@
+"""A participant of DDS that speaks as nodes of ROS 2 do: their names of topics and types, their bytes.
+
+A topic `/r_0/pose` of ROS 2 is `rt/r_0/pose` in DDS, and the type `geometry_msgs/msg/PoseStamped` is
+`geometry_msgs::msg::dds_::PoseStamped_` (design.ros2.org, "Topic and Service name mapping to DDS"). Samples are
+polled. Which networks are used is told to Cyclone DDS by the environment: ROS_DOMAIN_ID and CYCLONEDDS_URI.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import types
+from typing import Any, Generic, TypeVar
+
+from muster.bridges.ros2.description import ROS2, Field, Message, fields_of
+from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
+
+M = TypeVar("M", bound=Message)
+_MOST = 100
+"""Samples that are taken at once, and kept until they are taken."""
+_LAST_DOMAIN = 232  # beyond it there are no ports
+
+
+class Participant:
+    """Takes part in a domain until it is closed.
+
+    Raises
+    ------
+    MissingExtraError
+        if the extra `ros2` is not installed.
+    ParameterError
+        if ROS_DOMAIN_ID is no number from 0 to 232.
+    NetworkError
+        if DDS cannot take part, such as for what CYCLONEDDS_URI says.
+    """
+
+    def __init__(self, domain: int | None = None) -> None:
+        self._dds = _Dds()
+        number = _domain() if domain is None else domain
+        try:
+            self._participant: Any = self._dds.participant(number)
+        except self._dds.error as error:
+            raise NetworkError(f"DDS domain {number}: {error}; see CYCLONEDDS_URI") from None
+
+    def writer(self, topic: str, message: type[M]) -> Writer[M]:
+        """Who publishes on a topic of ROS (`/r_0/goal_pose`), reliably."""
+        return Writer(self._dds, self._participant, topic, message)
+
+    def reader(self, topic: str, message: type[M]) -> Reader[M]:
+        """Who hears a topic of ROS, whether it is published reliably or not."""
+        return Reader(self._dds, self._participant, topic, message)
+
+    def close(self) -> None:
+        """Leave the domain; writers and readers end with it."""
+        self._participant = None
+
+
+class Writer(Generic[M]):
+    """Publishes messages of a type on a topic."""
+
+    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
+        self._kind = _idl(message)
+        self._writer = dds.writer(participant, _dds_topic(topic), self._kind)
+
+    def write(self, message: M) -> None:
+        self._writer.write(_sample(message))
+
+    @property
+    def listeners(self) -> int:
+        """How many there are who hear it."""
+        return len(self._writer.get_matched_subscriptions())
+
+
+class Reader(Generic[M]):
+    """Hears messages of a type on a topic."""
+
+    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
+        self._message = message
+        self._reader = dds.reader(participant, _dds_topic(topic), _idl(message))
+
+    def take(self) -> list[M]:
+        """What has come since, oldest first; does not wait."""
+        samples = self._reader.take(_MOST)
+        kind = _idl(self._message)
+        return [_message(self._message, sample) for sample in samples if isinstance(sample, kind)]
+
+
+class _Dds:
+    """The parts of cyclonedds that are used, in the quality of service that nodes of ROS 2 match."""
+
+    def __init__(self) -> None:
+        try:
+            from cyclonedds import core, domain, pub, qos, sub, topic
+        except ImportError:
+            raise MissingExtraError("ros2", "ROS 2 by DDS") from None
+        policy: Any = qos.Policy
+        old = policy.DataRepresentation(use_cdrv0_representation=True)  # XCDR1 is what ROS 2 speaks
+        kept = policy.History.KeepLast(_MOST)
+        self._publishing = qos.Qos(old, kept, policy.Reliability.Reliable(10**8))
+        self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
+        self._topic: Any = topic.Topic
+        self._writer: Any = pub.DataWriter
+        self._reader: Any = sub.DataReader
+        self.participant: Any = domain.DomainParticipant
+        self.error: Any = core.DDSException
+
+    def writer(self, participant: Any, topic: str, kind: Any) -> Any:
+        return self._writer(participant, self._topic(participant, topic, kind), qos=self._publishing)
+
+    def reader(self, participant: Any, topic: str, kind: Any) -> Any:
+        return self._reader(participant, self._topic(participant, topic, kind), qos=self._hearing)
+
+
+def _domain() -> int:
+    text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
+    if not text.isdigit() or int(text) > _LAST_DOMAIN:
+        raise ParameterError(f"ROS_DOMAIN_ID: {text!r}; expected a number from 0 to {_LAST_DOMAIN}")
+    return int(text)
+
+
+def _dds_topic(topic: str) -> str:
+    return f"rt/{topic.strip('/')}"
+
+
+def _dds_type(message: type[Message]) -> str:
+    package, _, name = message.NAME.partition("/")
+    return f"{package}::msg::dds_::{name}_"
+
+
+_MADE: dict[type[Message], Any] = {}
+
+
+def _idl(message: type[Message]) -> Any:
+    """The type of a message as cyclonedds has types, made from its description."""
+    if message not in _MADE:
+        from cyclonedds.idl import IdlStruct
+
+        notes = {field.name: _idl_field(field) for field in fields_of(message, ROS2)}
+        body = {"__annotations__": notes, "__module__": __name__}
+        name = _dds_type(message)
+        how = {"typename": name}
+        made = types.new_class(name.rpartition("::")[2], (IdlStruct,), how, lambda room: room.update(body))
+        _MADE[message] = dataclasses.dataclass(made)
+    return _MADE[message]
+
+
+def _idl_field(field: Field) -> Any:
+    from cyclonedds.idl import types as idl_types
+
+    idl: Any = idl_types
+    words: Any = {"string": str, "bool": bool}
+    one = words.get(field.kind) or (getattr(idl, field.kind) if isinstance(field.kind, str) else _idl(field.kind))
+    if not field.is_list:
+        return one
+    return idl.array[one, field.length] if field.length else idl.sequence[one]
+
+
+def _sample(message: Message) -> Any:
+    values = {field.name: _value(field, getattr(message, field.name)) for field in fields_of(type(message), ROS2)}
+    return _idl(type(message))(**values)
+
+
+def _value(field: Field, value: Any) -> Any:
+    if isinstance(field.kind, str):
+        return list(value) if field.is_list else value
+    return [_sample(item) for item in value] if field.is_list else _sample(value)
+
+
+def _message(message: type[M], sample: Any) -> M:
+    values: dict[str, Any] = {}
+    for field in fields_of(message, ROS2):
+        value, kind = getattr(sample, field.name), field.kind
+        if isinstance(kind, str):
+            listed = bytes if kind == "uint8" else tuple
+            values[field.name] = listed(value) if field.is_list else value
+        else:
+            values[field.name] = tuple(_message(kind, one) for one in value) if field.is_list else _message(kind, value)
+    return message(**values)

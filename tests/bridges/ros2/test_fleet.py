@@ -1,0 +1,132 @@
+"""Robots of ROS 2 over DDS: robots in other processes, with types of their own, on this computer alone."""
+
+import os
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+import muster
+from muster._live import carry_out_live
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.model import Mission, Robot, Task
+from muster.motion.port import Waypoint
+
+pytest.importorskip("cyclonedds")
+
+from muster.bridges.ros2.dds import Participant
+from muster.bridges.ros2.fleet import Ros2Fleet
+from muster.bridges.ros2.messages import MESSAGES
+
+LOOPBACK = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address="127.0.0.1"/></Peers>
+<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>30</MaxAutoParticipantIndex></Discovery>
+</Domain></CycloneDDS>"""
+
+
+@pytest.fixture(autouse=True)
+def on_this_computer_alone(monkeypatch):
+    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(10 + os.getpid() % 200))
+
+
+@pytest.fixture
+def robots():
+    """Starts robots in processes of their own: `robots("r_0", 0, 0, "pose")`."""
+    with ExitStack() as stack:
+
+        def start(name, x, y, says):
+            program = [sys.executable, str(Path(__file__).with_name("robot_process.py")), name, str(x), str(y), says]
+            process = stack.enter_context(subprocess.Popen(program))
+            stack.callback(process.kill)
+            return process
+
+        yield start
+
+
+def mission(*ids):
+    robots = tuple(Robot(id=name, position=(0.0, 3.0 * k), radius_m=0.2) for k, name in enumerate(ids))
+    return Mission(robots=robots, tasks=tuple(Task(id=f"t_{k}", position=(2.0, 1.5 * k)) for k in range(3)))
+
+
+def until(fleet, true, most_s=15.0):
+    end = fleet.time_s + most_s
+    while not true():
+        assert fleet.time_s < end, "this did not come about"
+        fleet.advance(fleet.time_s + 0.1)
+
+
+@pytest.mark.parametrize("says", ["pose", "odom"])
+def test_a_robot_follows_way_points(says, robots):
+    robots("r_0", 1, 0, says)
+    fleet = Ros2Fleet(mission("r_0"))
+    port = fleet.ports["r_0"]
+    assert port.telemetry() is None
+    until(fleet, lambda: port.telemetry() is not None)
+    assert port.telemetry().position == (1.0, 0.0, 0.0)
+    assert port.send([Waypoint((2.0, 0.0, 0.0)), Waypoint((2.0, 1.0, 0.0), hold_s=0.3)]) == 1
+    until(fleet, lambda: port.telemetry().passed == 1)
+    reached = fleet.time_s
+    until(fleet, lambda: port.telemetry().passed == 2)
+    said = port.telemetry()
+    assert fleet.time_s >= reached + 0.3
+    assert said.order == 1
+    assert said.position[:2] == pytest.approx((2.0, 1.0), abs=0.25)
+    assert said.odometry_m == pytest.approx(2.0, abs=0.6)
+    fleet.close()
+
+
+def test_cancelled_it_stays_and_silent_its_time_stands_still(robots):
+    process = robots("r_0", 0, 0, "pose")
+    fleet = Ros2Fleet(mission("r_0"))
+    port = fleet.ports["r_0"]
+    until(fleet, lambda: port.telemetry() is not None)
+    port.send([Waypoint((400.0, 0.0, 0.0))])
+    until(fleet, lambda: port.telemetry().position[0] > 1.0)
+    assert port.cancel() == 2
+    fleet.advance(fleet.time_s + 0.5)
+    stopped = port.telemetry().position
+    fleet.advance(fleet.time_s + 0.3)
+    assert port.telemetry().position == stopped
+    assert port.telemetry().passed == 0
+    process.kill()
+    process.wait()
+    fleet.advance(fleet.time_s + 0.2)
+    last = port.telemetry().time_s
+    fleet.advance(fleet.time_s + 0.3)
+    assert port.telemetry().time_s == last
+    fleet.close()
+
+
+def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
+    there = mission("r_0", "r_1")
+    robots("r_0", 0, 0, "pose")
+    robots("r_1", 0, 3, "odom")
+    fleet = Ros2Fleet(there)
+    until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
+    report = carry_out_live(there, muster.solve(there, "greedy"), fleet)
+    assert set(report.tasks_done) == {"t_0", "t_1", "t_2"}
+    fleet.close()
+
+
+@pytest.mark.parametrize("name", sorted(MESSAGES))
+def test_types_of_dds_are_written_as_messages_are(name):
+    from muster.bridges.ros2.cdr import to_cdr
+    from muster.bridges.ros2.dds import _idl, _message, _sample
+
+    sent = MESSAGES[name]()
+    package, _, kind = name.partition("/")
+    assert _sample(sent).serialize() == to_cdr(sent)
+    assert _idl(MESSAGES[name]).__idl_typename__ == f"{package}::msg::dds_::{kind}_"
+    assert _message(MESSAGES[name], _sample(sent)) == sent
+
+
+def test_bad_domains_and_no_extra(monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "many")
+    with pytest.raises(ParameterError, match="ROS_DOMAIN_ID: 'many'; expected a number from 0 to 232"):
+        Participant()
+    monkeypatch.setitem(sys.modules, "cyclonedds", None)
+    with pytest.raises(MissingExtraError, match=r"muster-robotics\[ros2\]"):
+        Participant(1)
