@@ -10,7 +10,6 @@ import numpy as np
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.perception.detection import Sighting
-from muster.perception.estimates import RawEstimates
 from muster.perception.extra import require_physics
 from muster.perception.matching import error_table
 from muster.perception.search import Search
@@ -44,22 +43,13 @@ class Looks:
             folder.mkdir(parents=True, exist_ok=True)
         self._folder = folder
         self._largest: dict[tuple[str, int], float] = {}
-        self._parts: list[RawEstimates] = []
         self._search = Search()
 
     def __call__(self, look: Look) -> None:
         """Take one look in."""
-        estimates = look.observation.estimates
-        if len(estimates):
-            self._parts.append(estimates)
-            self._search.take(estimates, look.time_s)
+        self._search.take(look.observation.estimates, look.time_s)
         if self._folder is not None and look.image is not None:
             self._keep(look, self._folder)
-
-    @property
-    def pictures(self) -> int:
-        """How many were kept."""
-        return len(self._largest)
 
     def plot(self, mission: Mission, file: Path) -> None:
         """Draw a map of all estimates, of what was found and of what is there (TCF thesis, Figure 6.4).
@@ -75,7 +65,7 @@ class Looks:
         truth = _named(mission)
         table = error_table([point.position for point in points], truth, farthest_m=FARTHEST_M)
         title = f"{mission.name}: found by cameras"
-        save_figure(plot_found(RawEstimates.joined(self._parts), points, table, truth, title), file)
+        save_figure(plot_found(self._search.raw, points, table, truth, title), file)
 
     def _keep(self, look: Look, folder: Path) -> None:
         """Write the picture for those tags that are larger in it than in all before."""
