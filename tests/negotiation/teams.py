@@ -14,9 +14,11 @@ from muster.negotiation.seal import Seal, mission_digest
 from muster.negotiation.taking_part import negotiator_of
 
 KEY = bytes(32)
-GUARD_S = 60.0
+GUARD_S = 120.0
 QUICK = Patience(retry_s=0.03, beat_s=0.06)
 """For lossy transports of one machine."""
+CALM = Patience(retry_s=0.5, beat_s=1.0, suspect_s=20.0, bid_s=30.0)
+"""For many robots on the cores of one busy machine: one that waits for a core is not silent."""
 
 
 class Team:

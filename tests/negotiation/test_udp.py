@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
-from tests.negotiation.teams import QUICK, Lossy, Team, agree
+from tests.negotiation.teams import CALM, QUICK, Lossy, Team, agree
 
 from muster.mission.errors import NetworkError, ParameterError
 from muster.negotiation.udp import UdpTransport
@@ -167,7 +167,7 @@ def test_two_robots_agree():
 
 
 def test_twenty_robots_agree():
-    team = Team("auction-3-seeded", bid="total")
+    team = Team("auction-3-seeded", CALM, bid="total")
     assert len(team.robots) == 20
     nodes = [team.node(robot, transport) for robot, transport in transports(team.robots).items()]
     assert agree(nodes) == team.central_routes()

@@ -9,7 +9,7 @@ import pytest
 
 zenoh = pytest.importorskip("zenoh", reason="the extra `net` is not installed")
 
-from tests.negotiation.teams import QUICK, Lossy, Team, agree  # noqa: E402
+from tests.negotiation.teams import CALM, QUICK, Lossy, Team, agree  # noqa: E402
 
 from muster.mission.errors import NetworkError, ParameterError  # noqa: E402
 from muster.negotiation.zenoh_transport import ZenohTransport  # noqa: E402
@@ -132,7 +132,7 @@ def test_a_team_agrees(mode):
 
 
 def test_twenty_robots_agree():
-    team = Team("auction-3-seeded", bid="total")
+    team = Team("auction-3-seeded", CALM, bid="total")
     made = transports("auction-3-seeded", team.robots)
     assert agree([team.node(robot, transport) for robot, transport in made.items()]) == team.central_routes()
 
