@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.described import described
@@ -48,6 +49,8 @@ class Ros1Fleet:
         whether robots that the mission does not name may join.
     clock
         the mission's.
+    on_pose
+        is told each message that gave a pose, and whose, when telemetry has it; from ROS' own threads.
 
     Raises
     ------
@@ -66,6 +69,7 @@ class Ros1Fleet:
         rate_hz: float = 20.0,
         joins: bool = True,
         clock: MissionClock | None = None,
+        on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
         for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
             if not number > 0:
@@ -76,6 +80,7 @@ class Ros1Fleet:
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
         self._closed = threading.Event()
@@ -169,6 +174,7 @@ class Ros1Fleet:
             time_s=lambda: self.time_s,
             real_s=time.monotonic,
             on_pass=self._news.set,
+            on_pose=self._on_pose,
         )
 
     def _steer_on(self) -> None:

@@ -44,6 +44,8 @@ class Ros1Port:
         of the mission's clock, and of one that never stands still.
     on_pass
         called when a way point is passed.
+    on_pose
+        called with the robot and each message that gave a pose.
     """
 
     def __init__(
@@ -59,10 +61,11 @@ class Ros1Port:
         time_s: Callable[[], float],
         real_s: Callable[[], float],
         on_pass: Callable[[], None],
+        on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
         self.body = robot
         self._drive, self._frame, self._flat, self._lock = drive, frame, flat, lock
-        self._time_s, self._real_s, self._on_pass = time_s, real_s, on_pass
+        self._time_s, self._real_s, self._on_pass, self._on_pose = time_s, real_s, on_pass, on_pose
         self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
         self._last_word: Telemetry | None = None
         self._height = 0.0
@@ -211,6 +214,8 @@ class Ros1Port:
             self._last_word = Telemetry(now, place, heading, velocity, told.odometry_m, told.order, told.passed)
         if passed:
             self._on_pass()
+        if self._on_pose is not None:
+            self._on_pose(self.robot, message)
 
     def _gone(self, place: Place, real: float) -> Place:
         took = real - self._heard_s
