@@ -40,11 +40,15 @@ def under_load(runs: int, robots: int, window_s: float) -> list[Measurement]:
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
-    with tempfile.TemporaryDirectory() as folder, running_master(Path(folder)) as master:
-        with _process(master, "robots", robots, RATE_HZ), _process(master, "bridge", robots, runs, window_s) as bridge:
-            windows = [json.loads(line) for line in bridge.stdout or ()]
-            if bridge.wait() or len(windows) != runs:
-                raise MusterError(f"the bridge measured {len(windows)} windows; expected {runs}")
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running_master(Path(folder)) as master,
+        _process(master, "robots", robots, RATE_HZ),
+        _process(master, "bridge", robots, runs, window_s) as bridge,
+    ):
+        windows = [json.loads(line) for line in bridge.stdout or ()]
+        if bridge.wait() or len(windows) != runs:
+            raise MusterError(f"the bridge measured {len(windows)} windows; expected {runs}")
     speeds = sum(window["driven_m"] for window in windows) / (runs * window_s)
     name = f"ROS 1, {robots} robots at {RATE_HZ:g} Hz: "
     rows = (

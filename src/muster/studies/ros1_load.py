@@ -13,8 +13,9 @@ import signal
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from muster.bridges.ros1.extra import require_rospy
 
@@ -35,11 +36,11 @@ def robots(count: int, rate_hz: float) -> None:
     import rospy
 
     children = []
-    for name, place in starts(count):
+    for k, (name, place) in enumerate(starts(count)):
         child = os.fork()
         if child == 0:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
-            _drive(rospy, nav_msgs.msg.Odometry, name, place, rate_hz)
+            _drive(rospy, nav_msgs.msg.Odometry, name, place, 1 / rate_hz, k / count)
         children.append(child)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     try:
@@ -49,23 +50,25 @@ def robots(count: int, rate_hz: float) -> None:
             os.kill(child, signal.SIGKILL)
 
 
-def _drive(rospy: Any, odometry: Any, name: str, place: tuple[float, float], rate_hz: float) -> None:
-    """A robot on two wheels that does exactly as it is told."""
+def _drive(
+    rospy: Any, odometry: Any, name: str, place: tuple[float, float], interval_s: float, phase: float
+) -> NoReturn:
+    """A robot on two wheels that does exactly as it is told, and speaks in a part of the interval of its own."""
     from geometry_msgs.msg import Twist
 
     rospy.init_node(f"load_{name}", disable_signals=True)
     poses = rospy.Publisher(f"/{name}/odom", odometry, queue_size=10, tcp_nodelay=True)
-    told = [Twist()]
-    rospy.Subscriber(f"/{name}/cmd_vel", Twist, lambda twist: told.append(twist) or told.pop(0), queue_size=1)
+    told = deque([Twist()], maxlen=1)
+    rospy.Subscriber(f"/{name}/cmd_vel", Twist, told.append, queue_size=1, tcp_nodelay=True)
     (x, y), heading = place, 0.0
-    due = time.monotonic()
+    due = (time.monotonic() // interval_s + phase) * interval_s
     while True:
-        due += 1 / rate_hz
+        due += interval_s
         time.sleep(max(0.0, due - time.monotonic()))
         twist = told[-1]
-        heading += twist.angular.z / rate_hz
-        x += math.cos(heading) * twist.linear.x / rate_hz
-        y += math.sin(heading) * twist.linear.x / rate_hz
+        heading += twist.angular.z * interval_s
+        x += math.cos(heading) * twist.linear.x * interval_s
+        y += math.sin(heading) * twist.linear.x * interval_s
         message = odometry()
         message.header.frame_id = "map"
         message.pose.pose.position.x, message.pose.pose.position.y = x, y
@@ -140,7 +143,7 @@ def bridge(count: int, windows: int, window_s: float) -> None:
 
 
 def _driven(fleet: Any) -> float:
-    return sum(port.telemetry().odometry_m for port in fleet.ports.values())
+    return float(sum(port.telemetry().odometry_m for port in fleet.ports.values()))
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -1,7 +1,8 @@
 """Robots on ROS 1 as a fleet: those of a mission, and those that are discovered while it goes on.
 
 Three kinds of threads: ROS' own hear poses, one steers the robots, which goes on while planning takes its time, and one
-looks for robots. What they share is behind one lock; to the executor's thread `advance` tells what has happened.
+looks for robots. What they share is behind one lock; to the executor's thread `advance` tells what has happened. Time
+is ROS' own: that of /clock where `/use_sim_time` is set, and then robots are steered at the simulator's pace.
 """
 
 from __future__ import annotations
@@ -12,20 +13,22 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from muster.bridges.ros1.clock import MissionClock
+from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.described import described
 from muster.bridges.ros1.discovery import NAME, robots_in
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.port import Drive, Ros1Port
-from muster.bridges.ros1.ros import rospy
+from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.ros1.steering import STILL, Steering
-from muster.mission.errors import MissionError, ParameterError
+from muster.mission.errors import MissionError, NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
 """A robot that was not heard for longer is told to stand."""
+_TICK_S = 0.01
+"""Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
 
 
 class Ros1Fleet:
@@ -48,7 +51,7 @@ class Ros1Fleet:
     joins
         whether robots that the mission does not name may join.
     clock
-        the mission's.
+        the mission's; by default by ROS' time.
     on_pose
         is told each message that gave a pose, and whose, when telemetry has it; from ROS' own threads.
 
@@ -74,7 +77,8 @@ class Ros1Fleet:
         for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
             if not number > 0:
                 raise ParameterError(f"{name}: {number}; expected a number above 0")
-        self.clock = MissionClock() if clock is None else clock
+        self._simulator = None if rospy.rostime.is_wallclock() else Forward(rospy.get_time)
+        self.clock = clock or (MissionClock() if self._simulator is None else MissionClock(self._simulator))
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self._namespace = namespace.strip("/")
         self._flat = mission.dimensions == 2
@@ -84,6 +88,8 @@ class Ros1Fleet:
         self._lock = threading.RLock()
         self._news = threading.Event()
         self._closed = threading.Event()
+        self._failure: Exception | None = None  # of the thread that steers
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._known: set[str] = set()
         self._ports: dict[str, Ros1Port] = {}
         self._strangers: dict[str, Ros1Port] = {}  # discovered, and not yet heard
@@ -106,9 +112,21 @@ class Ros1Fleet:
         return self.clock.time_s
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """See `Fleet`."""
-        self._news.wait(max(0.0, until_s - self.time_s))
+        """See `Fleet`.
+
+        Raises
+        ------
+        NetworkError
+            if ROS has shut this node down.
+        """
+        real_until = time.monotonic() + until_s - self.time_s
+        while self.time_s < until_s and time.monotonic() < real_until and not self._news.wait(_TICK_S):
+            pass
         self._news.clear()
+        if rospy.is_shutdown():
+            raise NetworkError("ROS 1: this node was shut down from outside; expected no other node of its name")
+        if self._failure is not None:
+            raise self._failure
         with self._lock:
             events, self._events = self._events, []
         return events
@@ -133,18 +151,21 @@ class Ros1Fleet:
 
     def unheard(self) -> dict[str, str]:
         """Robots of the mission that have not said where they are, and why that may be."""
+        if self._simulator is not None and not self._simulator.has_begun:
+            return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
         return {
             name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
             if port.untied
             else f"nothing on {self.topics(name)}/odom or {self.topics(name)}/pose"
-            for name, port in self._ports.items()
+            for name, port in self._all().items()
             if port.telemetry() is None
         }
 
     def stop(self) -> None:
-        """See `Fleet`."""
-        for port in list(self._ports.values()):
-            port.cancel()
+        """See `Fleet`. A node that ROS has shut down cannot tell anybody: robots stand by their own drivers then."""
+        if not rospy.is_shutdown():
+            for port in self._all().values():
+                port.cancel()
 
     def close(self) -> None:
         """See `Fleet`. What was said last has time to arrive."""
@@ -152,8 +173,10 @@ class Ros1Fleet:
         self._closed.set()
         for thread in self._threads:
             thread.join(timeout=2.0)
-        for port in [*self._ports.values(), *self._strangers.values()]:
+        for port in [*self._all().values(), *self._strangers.values()]:
             port.close()
+        self._frame.close()
+        self._tf.unregister()
 
     def topics(self, robot: str) -> str:
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -171,39 +194,51 @@ class Ros1Fleet:
             flat=self._flat,
             arrival_m=self._arrival_m,
             lock=self._lock,
-            time_s=lambda: self.time_s,
-            real_s=time.monotonic,
+            clock=self.clock,
             on_pass=self._news.set,
             on_pose=self._on_pose,
         )
 
+    def _all(self) -> dict[str, Ros1Port]:
+        """The ports as they are now; robots may join meanwhile."""
+        with self._lock:
+            return dict(self._ports)
+
     def _steer_on(self) -> None:
-        """Tell robots their velocities, again and again."""
-        reported_s = 0.0
-        while not self._closed.wait(self._interval_s):
-            with self._lock:
-                ports = dict(self._ports)
-                drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in ports.values()]
-                team = [driven for driven in drivens if driven is not None]
-                told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
-                for driven in team:
-                    ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
-            if time.monotonic() - reported_s > 2 * self._interval_s:
-                reported_s = time.monotonic()
-                for port in ports.values():
-                    port.report()
+        """Tell robots their velocities at each interval; whatever goes wrong `advance` raises."""
+        due_s, turn = self.clock.unpaused_s, 0
+        try:
+            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):
+                now = self.clock.unpaused_s
+                if now < due_s or rospy.is_shutdown():
+                    continue
+                due_s, turn = max(due_s + self._interval_s, now), turn + 1
+                with self._lock:
+                    self._steer()
+                    frames = [frame for port in self._ports.values() for frame in port.frames()] if turn % 2 else []
+                if frames:
+                    self._tf.publish(TFMessage(frames))
+        except Exception as error:
+            if not (self._closed.is_set() or rospy.is_shutdown()):
+                self._failure = error
+                self._news.set()
+
+    def _steer(self) -> None:
+        drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
+        team = [driven for driven in drivens if driven is not None]
+        told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
+        for driven in team:
+            self._ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
 
     def _look_on(self) -> None:
         """Look for robots that nobody knows, again and again; robots go on where the master does not answer."""
         while not self._closed.wait(_LOOK_S):
             try:
-                topics = rospy.get_published_topics()
+                for name in robots_in(rospy.get_published_topics(), self._namespace):
+                    if name not in self._known and not self._closed.is_set():
+                        self._meet(name)
             except Exception as error:  # rospy raises whatever the network does
                 rospy.logwarn_throttle(10.0, f"the ROS master does not answer: {error}")
-                continue
-            for name in robots_in(topics, self._namespace):
-                if name not in self._known:
-                    self._meet(name)
             self._welcome()
 
     def _meet(self, name: str) -> None:

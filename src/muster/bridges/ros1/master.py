@@ -55,7 +55,9 @@ class Master:
         while not self._answers():
             if self._process.poll() is not None or time.monotonic() > until:
                 self.stop()
-                raise NetworkError(f"ROS master: {self.address}: it does not answer; expected it within {_WITHIN_S:g} s")
+                raise NetworkError(
+                    f"ROS master: {self.address}: it does not answer; expected it within {_WITHIN_S:g} s"
+                )
             time.sleep(0.1)
 
     def stop(self) -> None:

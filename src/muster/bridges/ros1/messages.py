@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from muster.bridges.ros1.ros import PoseStamped, String, TFMessage, TransformStamped, Twist, rospy
+from muster.bridges.ros1.ros import PoseStamped, String, TransformStamped, Twist, rospy
 from muster.bridges.ros1.steering import Velocity
-from muster.motion.frames import Floats, angles, quaternion_of, quaternion_rotation, rotation, transform
+from muster.motion.frames import Floats, angles, quaternion_rotation, transform
 from muster.motion.port import Place
 
 
@@ -43,7 +43,7 @@ def pose_stamped(frame: str, place: Place, heading: float) -> Any:
 def fill_pose(pose: Any, place: Place, heading: float) -> None:
     """Make a geometry_msgs/Pose this level one."""
     pose.position.x, pose.position.y, pose.position.z = place
-    pose.orientation.z, pose.orientation.w = math.sin(heading / 2), math.cos(heading / 2)
+    _turn(pose.orientation, heading)
 
 
 def twist_of(velocity: Velocity) -> Any:
@@ -59,19 +59,22 @@ def velocity_of(twist: Any) -> Velocity:
 
 
 def tf_of(parent: str, child: str, place: Place, heading: float) -> Any:
-    """A tf2_msgs/TFMessage with one transform, stamped now."""
+    """A level geometry_msgs/TransformStamped, stamped now."""
     one = TransformStamped()
     one.header.frame_id, one.header.stamp, one.child_frame_id = parent, rospy.Time.now(), child
-    x, y, z, w = map(float, quaternion_of(rotation(0.0, 0.0, heading)))
     one.transform.translation.x, one.transform.translation.y, one.transform.translation.z = place
-    one.transform.rotation.x, one.transform.rotation.y = x, y
-    one.transform.rotation.z, one.transform.rotation.w = z, w
-    return TFMessage([one])
+    _turn(one.transform.rotation, heading)
+    return one
 
 
 def text_of(data: Any) -> Any:
     """Plain data as JSON in a std_msgs/String."""
     return String(json.dumps(data, ensure_ascii=False))
+
+
+def _turn(quaternion: Any, heading: float) -> None:
+    """Make a geometry_msgs/Quaternion, all zeros, that of a heading."""
+    quaternion.z, quaternion.w = math.sin(heading / 2), math.cos(heading / 2)
 
 
 def _matrix(place: tuple[float, float, float], q: Any) -> Floats | None:

@@ -10,14 +10,15 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
+from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.follower import Follower
-from muster.bridges.ros1.map_frame import MapFrame
+from muster.bridges.ros1.map_frame import OWN, MapFrame
 from muster.bridges.ros1.messages import matrix_of, place_and_heading, pose_stamped, tf_of, twist_of
-from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
+from muster.bridges.ros1.ros import Odometry, PoseStamped, Twist, rospy
 from muster.bridges.ros1.steering import STILL, Driven, Velocity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.motion.frames import flu_to_enu
+from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
 
 Drive = Literal["cmd_vel", "goals"]
@@ -40,8 +41,8 @@ class Ros1Port:
         whether the mission is in the plane: heights are then what the robot says.
     lock
         held wherever what the port knows is read or changed: ROS calls from threads of its own.
-    time_s
-        of the mission's clock, and of one that never stands still.
+    clock
+        the mission's; how long ago something was is told by it too, in pauses as well.
     on_pass
         called when a way point is passed.
     on_pose
@@ -58,25 +59,23 @@ class Ros1Port:
         flat: bool,
         arrival_m: float,
         lock: threading.RLock,
-        time_s: Callable[[], float],
-        real_s: Callable[[], float],
+        clock: MissionClock,
         on_pass: Callable[[], None],
         on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
         self.body = robot
         self._drive, self._frame, self._flat, self._lock = drive, frame, flat, lock
-        self._time_s, self._real_s, self._on_pass, self._on_pose = time_s, real_s, on_pass, on_pose
+        self._clock, self._on_pass, self._on_pose = clock, on_pass, on_pose
         self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
         self._last_word: Telemetry | None = None
         self._height = 0.0
-        self._heard_s, self._stood_s, self._given_s = -math.inf, real_s(), -math.inf
+        self._heard_s, self._stood_s, self._given_s = -math.inf, clock.unpaused_s, -math.inf
         self._given: tuple[int, int] | None = None
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
         self._localised = False
         self.untied = ""  # a frame in which it gives poses that nothing ties to the map
         self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
         self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
-        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=100)
         self._heard = [
             rospy.Subscriber(f"{topics}/odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
             rospy.Subscriber(f"{topics}/pose", PoseStamped, self._hear_pose, queue_size=1, tcp_nodelay=True),
@@ -98,7 +97,7 @@ class Ros1Port:
             if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
                 raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
         with self._lock:
-            self._stood_s = self._real_s()
+            self._stood_s = self._clock.unpaused_s
             order = self._follower.take(waypoints)
             if not waypoints:
                 self._stand_still()
@@ -117,13 +116,13 @@ class Ros1Port:
         said = self._last_word
         if said is None:
             return None
-        aim = None if paused or self._real_s() - self._heard_s > within_s else self._follower.aim
+        aim = None if paused or self._clock.unpaused_s - self._heard_s > within_s else self._follower.aim
         arrived = aim is not None and self._follower.is_at(said.position, aim)
         return Driven(self.body, said.position, said.heading, said.velocity, aim, arrived)
 
     def speak(self, driven: Driven, velocity: Velocity) -> None:
         """Tell the robot what it is to do now, and others where it goes."""
-        now = self._real_s()
+        now = self._clock.unpaused_s
         if driven.aim is not None:
             self._stood_s = now
         if self._drive == "cmd_vel":
@@ -135,27 +134,26 @@ class Ros1Port:
         elif self._given != (self._follower.order, self._follower.passed) or now - self._given_s > _AGAIN_S:
             self._give(driven.aim, driven, now)
 
-    def report(self) -> None:
-        """Say to tf where the robot is, and its next way point."""
+    def frames(self) -> list[Any]:
+        """For tf: where the robot is, and its next way point."""
         said, aim = self._last_word, self._follower.aim
         if said is None:
-            return
+            return []
         height = self._height if self._flat else said.position[2]
-        place = (*said.position[:2], height)
-        self._tf.publish(tf_of(self._frame.name, f"muster/{self.robot}", place, said.heading))
-        if aim is not None:
-            goal = self._goal(aim)
-            self._tf.publish(tf_of(self._frame.name, f"muster/{self.robot}/goal", goal, aim.heading or 0.0))
+        here = tf_of(self._frame.name, f"{OWN}{self.robot}", (*said.position[:2], height), said.heading)
+        if aim is None:
+            return [here]
+        return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim), aim.heading or 0.0)]
 
     def stand(self) -> None:
         """Stand where it is, at once."""
         with self._lock:
-            self._stood_s = self._real_s()
+            self._stood_s = self._clock.unpaused_s
             self._stand_still()
 
     def close(self) -> None:
         """Hear and say no more."""
-        for link in (*self._heard, self._goals, self._velocities, self._tf):
+        for link in (*self._heard, self._goals, self._velocities):
             link.unregister()
 
     def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
@@ -188,27 +186,26 @@ class Ros1Port:
 
     def _hear_pose(self, message: Any) -> None:
         """Who is localised does not go by odometry any more."""
-        self._localised = True
-        self._hear(message, message.pose, None)
+        self._localised = self._hear(message, message.pose, None) or self._localised
 
-    def _hear(self, message: Any, pose: Any, ahead: Place | None) -> None:
-        """A pose, and the body's velocity if that is known; by way of the pose before, if not."""
+    def _hear(self, message: Any, pose: Any, ahead: Place | None) -> bool:
+        """A pose, and the body's velocity if that is known; by way of the pose before, if not. Whether it counts."""
         found = matrix_of(pose)
         if found is None:
             rospy.logwarn_throttle(10.0, f"{self.robot}: a pose that is none; expected finite numbers")
-            return
+            return False
         matrix = self._frame.to_map(message.header.frame_id, found)
         self.untied = message.header.frame_id if matrix is None else ""
         if matrix is None:
-            return
+            return False
         place, heading = place_and_heading(matrix)
         with self._lock:
             self._height = place[2]
             place = (*place[:2], 0.0) if self._flat else place
-            real = self._real_s()
-            velocity = self._gone(place, real) if ahead is None else _turned(ahead, heading)
-            self._heard_s = real
-            now = self._time_s()
+            heard_s = self._clock.unpaused_s
+            velocity = self._gone(place, heard_s) if ahead is None else _turned(ahead, matrix)
+            self._heard_s = heard_s
+            now = self._clock.time_s
             passed = self._follower.hear(now, place, heading)
             told = self._follower
             self._last_word = Telemetry(now, place, heading, velocity, told.odometry_m, told.order, told.passed)
@@ -216,15 +213,17 @@ class Ros1Port:
             self._on_pass()
         if self._on_pose is not None:
             self._on_pose(self.robot, message)
+        return True
 
-    def _gone(self, place: Place, real: float) -> Place:
-        took = real - self._heard_s
+    def _gone(self, place: Place, heard_s: float) -> Place:
+        took = heard_s - self._heard_s
         if self._last_word is None or not 0 < took < 1:
             return (0.0, 0.0, 0.0)
         x, y, z = ((b - a) / took for a, b in zip(self._last_word.position, place, strict=True))
         return (x, y, z)
 
 
-def _turned(ahead: Place, heading: float) -> Place:
-    x, y, z = map(float, flu_to_enu(ahead, heading))
+def _turned(ahead: Place, pose: Floats) -> Place:
+    """A body's velocity as one of the map."""
+    x, y, z = map(float, pose[:3, :3] @ ahead)
     return (x, y, z)

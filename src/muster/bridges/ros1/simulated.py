@@ -111,7 +111,7 @@ class SimulatedRobot:
         twist.linear.x, twist.linear.y, twist.linear.z = map(float, enu_to_flu(rates[:3], heading))
         twist.angular.z = float(rates[3])
         self._poses.publish(message)
-        self._tf.publish(tf_of("map", message.child_frame_id, place, heading))
+        self._tf.publish(TFMessage([tf_of("map", message.child_frame_id, place, heading)]))
 
     def _take_velocity(self, message: Any) -> None:
         velocity = velocity_of(message)
