@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -149,6 +148,7 @@ def _carried_out(
     from muster import solve
     from muster._live import carry_out_live
     from muster.bridges.ros1.station import Station
+    from muster.bridges.starts import from_where_they_stand
 
     started = threading.Event()
     station = Station(mission, fleet, halt=halt, started=started)
@@ -158,7 +158,9 @@ def _carried_out(
             time.sleep(0.05)
         if halt.is_set():
             return None
-        there = _from_where_they_stand(mission, fleet)
+        there, remarks = from_where_they_stand(mission, fleet.ports)
+        for remark in remarks:
+            click.echo(remark, err=True)
         planned = solve(there, seed=seed, time_limit=time_limit) if plan is None else plan
         station.become("carrying-out")
         tell = None if quiet else _tell
@@ -179,16 +181,6 @@ def _wait_for_robots(fleet: Ros1Fleet, halt: threading.Event, wait_s: float) -> 
             more = f" (and {others} more)" if others else ""
             raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected its pose")
         time.sleep(0.05)
-
-
-def _from_where_they_stand(mission: Mission, fleet: Ros1Fleet) -> Mission:
-    """The mission with the robots' own poses for its starts."""
-    robots = []
-    for robot in mission.robots:
-        said = fleet.ports[robot.id].telemetry()
-        assert said is not None
-        robots.append(replace(robot, position=said.position[: mission.dimensions]))
-    return replace(mission, robots=tuple(robots))
 
 
 def _tell(happening: Happening) -> None:

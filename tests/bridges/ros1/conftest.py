@@ -2,18 +2,16 @@
 
 import json
 import os
-import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
-import xmlrpc.client
 from pathlib import Path
 
 import pytest
 
-from muster.bridges.ros1.extra import PACKAGES, require_rospy
+from muster.bridges.ros1.extra import require_rospy
+from muster.bridges.ros1.master import running_master
 from muster.mission.errors import MissingExtraError
 
 
@@ -22,7 +20,7 @@ class Ros:
 
     def __init__(self, master, folder):
         self.master, self.folder, self._processes = master, folder, []
-        self._environment = os.environ | {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_LOG_DIR": str(folder)}
+        self._environment = os.environ | master.environment
 
     def start(self, *arguments):
         started = subprocess.Popen(
@@ -76,38 +74,42 @@ class Listener:
 
 
 @pytest.fixture(scope="session")
-def master(tmp_path_factory):
+def rospy_found():
     try:
         require_rospy()
     except MissingExtraError as error:
         pytest.skip(str(error))
-    program = shutil.which("rosmaster")
-    if program is None:
-        pytest.skip(f"no rosmaster: apt-get install python3-rosmaster {PACKAGES}")
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    environment = os.environ | {"ROS_IP": "127.0.0.1", "ROS_LOG_DIR": str(tmp_path_factory.mktemp("ros"))}
-    process = subprocess.Popen(
-        [program, "--core", "-p", str(port)], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    address, until = f"http://127.0.0.1:{port}", time.monotonic() + 20
-    while True:
-        try:
-            with xmlrpc.client.ServerProxy(address) as proxy:
-                proxy.getPid("/test")
-            break
-        except OSError:
-            assert process.poll() is None
-            assert time.monotonic() < until, "rosmaster does not answer"
-            time.sleep(0.1)
-    yield address
-    process.kill()
-    process.wait()
+
+
+@pytest.fixture(scope="session")
+def shared_master(rospy_found, tmp_path_factory):
+    try:
+        with running_master(tmp_path_factory.mktemp("ros")) as running:
+            yield running
+    except MissingExtraError as error:
+        pytest.skip(str(error))
 
 
 @pytest.fixture
-def ros(master, tmp_path):
+def master(rospy_found, tmp_path):
+    """One of the test's own, which it may set parameters of, stop, and start again."""
+    try:
+        with running_master(tmp_path) as running:
+            yield running
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+
+
+@pytest.fixture
+def ros(shared_master, tmp_path):
+    nodes = Ros(shared_master, tmp_path)
+    yield nodes
+    nodes.close()
+
+
+@pytest.fixture
+def own_ros(master, tmp_path):
+    """Nodes under a master of the test's own."""
     nodes = Ros(master, tmp_path)
     yield nodes
     nodes.close()

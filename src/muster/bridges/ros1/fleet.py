@@ -17,6 +17,7 @@ from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.described import described
 from muster.bridges.ros1.discovery import NAME, robots_in
 from muster.bridges.ros1.map_frame import MapFrame
+from muster.bridges.ros1.node import time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.ros1.steering import STILL, Steering
@@ -77,8 +78,8 @@ class Ros1Fleet:
         for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
             if not number > 0:
                 raise ParameterError(f"{name}: {number}; expected a number above 0")
-        self._simulator = None if rospy.rostime.is_wallclock() else Forward(rospy.get_time)
-        self.clock = clock or (MissionClock() if self._simulator is None else MissionClock(self._simulator))
+        self._now = time_of_ros()
+        self.clock = clock or MissionClock(self._now)
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self._namespace = namespace.strip("/")
         self._flat = mission.dimensions == 2
@@ -151,7 +152,7 @@ class Ros1Fleet:
 
     def unheard(self) -> dict[str, str]:
         """Robots of the mission that have not said where they are, and why that may be."""
-        if self._simulator is not None and not self._simulator.has_begun:
+        if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
         return {
             name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"

@@ -6,8 +6,10 @@ import logging
 import os
 import socket
 import time
+from collections.abc import Callable
 from urllib.parse import urlparse
 
+from muster.bridges.ros1.clock import Forward
 from muster.bridges.ros1.ros import rosgraph, rospy
 from muster.mission.errors import NetworkError
 
@@ -32,6 +34,11 @@ def become_node(name: str, master: str | None = None) -> None:
     os.environ["ROS_MASTER_URI"] = address
     logging.getLogger("rosout").setLevel(logging.WARNING)
     rospy.init_node(name, disable_signals=True, log_level=rospy.WARN)
+
+
+def time_of_ros() -> Callable[[], float]:
+    """Seconds that never go back: of /clock where `/use_sim_time` is set (a `Forward`), else of this computer."""
+    return time.monotonic if rospy.rostime.is_wallclock() else Forward(rospy.get_time)
 
 
 def _require_master(address: str) -> None:

@@ -2,7 +2,7 @@
 
 It moves exactly by its kinematics, takes `<robot>/cmd_vel` (stands if that stops for half a second) and, where nobody
 tells it velocities, `<robot>/WP`; it says `<robot>/odom`, tf `map` -> `<robot>/base_link`, and on the parameter server
-(`<robot>/muster`) what it can do.
+(`<robot>/muster`) what it can do. Where `/use_sim_time` is set it moves by /clock.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from muster.bridges.ros1.follower import Follower
 from muster.bridges.ros1.messages import fill_pose, matrix_of, place_and_heading, tf_of, velocity_of
-from muster.bridges.ros1.node import become_node
+from muster.bridges.ros1.node import become_node, time_of_ros
 from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
 from muster.bridges.ros1.steering import STILL, Driven, Steering, Velocity
 from muster.mission.errors import MusterError
@@ -30,6 +30,8 @@ from muster.motion.port import Place, Waypoint
 
 _DEAF_S = 0.5
 """A robot that is told nothing for longer stands."""
+_TICK_S = 0.005
+"""Real time between two looks at the clock."""
 
 
 class SimulatedRobot:
@@ -44,7 +46,7 @@ class SimulatedRobot:
     """
 
     def __init__(self, robot: Robot, rate_hz: float) -> None:
-        self.robot, self._rate_hz = robot, rate_hz
+        self.robot, self._rate_hz, self._now = robot, rate_hz, time_of_ros()
         x, y, z = (*map(float, robot.position), 0.0)[:3]
         self._state: Floats = np.array([[x, y, z, math.radians(robot.heading_deg)]])
         self._kinematics, self._limits = kinematics_named(robot.kinematics), limits_of(robot)
@@ -63,10 +65,12 @@ class SimulatedRobot:
 
     def run(self) -> None:
         """Move and say so, until the node is shut down."""
-        last = time.monotonic()
+        last = self._now()
         while not rospy.is_shutdown():
-            time.sleep(1 / self._rate_hz)
-            now = time.monotonic()
+            time.sleep(_TICK_S)
+            now = self._now()
+            if now - last < 1 / self._rate_hz:
+                continue
             with self._lock:
                 rates = self._step(now, now - last)
             last = now
@@ -117,7 +121,7 @@ class SimulatedRobot:
         velocity = velocity_of(message)
         if all(map(math.isfinite, velocity)):
             with self._lock:
-                self._told, self._told_s = velocity, time.monotonic()
+                self._told, self._told_s = velocity, self._now()
                 self._follower.take(())
 
     def _take_goal(self, message: Any) -> None:
