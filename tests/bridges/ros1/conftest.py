@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import xmlrpc.client
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,15 @@ class Ros:
         self._processes.append(started)
         return started
 
+    def file(self, name):
+        """A program of these tests."""
+        return Path(__file__).with_name(name)
+
+    def set(self, name, value):
+        """A parameter of the parameter server."""
+        with xmlrpc.client.ServerProxy(self.master.address) as proxy:
+            proxy.setParam("/test", name, value)
+
     def muster(self, *arguments):
         return self.start("-m", "muster.cli", "ros", *arguments)
 
@@ -43,12 +53,12 @@ class Ros:
 
     def call(self, *asked):
         """Calls services, and publishes tasks, in turn; prints what services answer."""
-        return self.start(Path(__file__).with_name("caller.py"), *asked)
+        return self.start(self.file("caller.py"), *asked)
 
     def listener(self, *topics):
         """Independent of Muster: keeps each message of these TOPIC=PACKAGE/TYPE."""
         file = self.folder / "heard.jsonl"
-        heard = self.start(Path(__file__).with_name("listener.py"), file, *topics)
+        heard = self.start(self.file("listener.py"), file, *topics)
         while not file.exists():
             assert heard.poll() is None, heard.stderr.read()
             time.sleep(0.05)

@@ -12,6 +12,8 @@ import rospy
 
 
 def plain(message):
+    if hasattr(message, "to_sec"):
+        return message.to_sec()
     if hasattr(message, "__slots__"):
         return {name: plain(getattr(message, name)) for name in message.__slots__}
     return [plain(item) for item in message] if isinstance(message, (list, tuple)) else message

@@ -1,4 +1,4 @@
-"""The TCF thesis' 11T-2R on a real ROS master: robots are processes, one joins, one is killed, all eleven tasks are done.
+"""The TCF thesis' 11T-2R on a real ROS master: robots are processes, one joins, one is killed, all tasks are done.
 
 Its work is as shipped: tasks, prerequisites, types, suitability, the ground patrol. Robots are faster than in the file,
 and slimmer: of three as wide as its 0.3 m one that waits at task 4 stands where another's patrol has a corner.
@@ -46,8 +46,9 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
         "/muster/events=std_msgs/String",
         "/system_monitor/robots=std_msgs/String",
     )
-    carried = ros.muster("eleven.yaml", "--time-limit", "0.5", "--format", "json")
+    carried, told = ros.muster("eleven.yaml", "--time-limit", "0.5", "--format", "json"), []
     for line in carried.stderr:
+        told.append(line)
         if "ends: task" in line and "robot r_1" in line:  # in the middle: it has done a task, and has others before it
             robots["r_1"].kill()
             break
@@ -68,8 +69,8 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
 
     events = said(heard, "/muster/events")
     killed = next(event for event in events if event["kind"] == "robot_silent")
-    joined = next(event for event in events if event["kind"] == "robot_joins")
-    assert (killed["robot"], joined["robot"]["id"]) == ("r_1", "r_2")
+    assert killed["robot"] == "r_1"
+    assert [line for line in told if "robot joins: robot r_2" in line]
     begun = [event["time_s"] for event in events if event["kind"] == "starts" and event["robot"] == "r_1"]
     assert max(begun) < killed["time_s"]
     before, after = said(heard, "/r_1/task_sequence")[-2:]
