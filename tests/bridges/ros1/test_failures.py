@@ -1,7 +1,6 @@
-"""What becomes of robots and missions when programs around them end: the controller itself, the master, another node."""
+"""What becomes of robots and missions when programs around them end: the controller itself, the master, its node."""
 
 import json
-import math
 import time
 
 import pytest
@@ -65,6 +64,4 @@ def test_another_controller_takes_the_first_ones_place_which_ends_with_a_line(ro
     called.communicate(timeout=20)
     out, err = second.communicate(timeout=40)
     assert second.returncode == 0, err
-    report = json.loads(out)
-    assert report["tasks_done"]
-    assert math.isfinite(report["mission_time_s"])
+    assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]

@@ -1,13 +1,15 @@
 """What needs no ROS: following way points, steering, discovery, the clock."""
 
 import math
+import threading
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from muster.bridges.ros1.clock import MissionClock
+from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.discovery import robots_in
 from muster.bridges.ros1.follower import Follower
 from muster.bridges.ros1.steering import STILL, Driven, Steering
@@ -68,6 +70,34 @@ def test_the_clock_stands_still_in_a_pause():
     assert clock.time_s == 2.0
     clock.resume()
     assert clock.time_s == 3.0
+
+
+@given(st.lists(st.floats(0, 1e6), min_size=1))
+def test_a_simulators_clock_goes_forward_by_what_it_gains_and_never_back(said):
+    readings = iter(said)
+    clock = Forward(lambda: next(readings))
+    told = [clock() for _ in said]
+    assert told[0] == 0
+    for before, after, a, b in zip(said, said[1:], told, told[1:], strict=False):
+        assert b - a == pytest.approx(max(0.0, after - before) if before > 0 else 0.0, abs=1e-6)
+
+
+def test_the_clock_never_goes_back_while_others_pause_it():
+    clock, over = MissionClock(), threading.Event()
+
+    def fidget():
+        while not over.is_set():
+            clock.pause()
+            clock.resume()
+
+    other = threading.Thread(target=fidget)
+    other.start()
+    try:
+        times = [clock.time_s for _ in range(50_000)]
+    finally:
+        over.set()
+        other.join()
+    assert all(a <= b for a, b in pairwise(times))
 
 
 def drive(robots, goals, steps):
