@@ -149,6 +149,7 @@ class Ros1Fleet:
             thread.join(timeout=2.0)
         for port in [*self._ports.values(), *self._strangers.values()]:
             port.close()
+        self._frame.close()
 
     def topics(self, robot: str) -> str:
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -192,8 +193,8 @@ class Ros1Fleet:
         while not self._closed.wait(_LOOK_S):
             try:
                 topics = rospy.get_published_topics()
-            except Exception as error:  # rospy raises whatever the network does
-                rospy.logwarn_throttle(10.0, f"the ROS master does not answer: {error}")
+            except Exception as error:  # rospy raises whatever the network does; who watches the master tells of it
+                rospy.logdebug(f"the ROS master does not answer: {error}")
                 continue
             for name in robots_in(topics, self._namespace):
                 if name not in self._known:

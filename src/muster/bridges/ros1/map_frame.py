@@ -41,6 +41,11 @@ class MapFrame:
         except TransformError:
             return None
 
+    def close(self) -> None:
+        """Listen no more."""
+        for link in self._heard:
+            link.unregister()
+
     def _take(self, message: Any, static: bool) -> None:
         """What contradicts what tf said before is left out, as tf2 does."""
         for one in message.transforms:
