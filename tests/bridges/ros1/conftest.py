@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import xmlrpc.client
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -29,9 +30,11 @@ class Ros:
             [sys.executable, *map(str, arguments)],
             env=self._environment,
             cwd=self.folder,
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            start_new_session=True,  # so that Ctrl-C can be sent as a terminal does: to a group
         )
         self._processes.append(started)
         return started
@@ -46,6 +49,10 @@ class Ros:
     def call(self, *asked):
         """Calls services, and publishes tasks, in turn; prints what services answer."""
         return self.start(Path(__file__).with_name("caller.py"), *asked)
+
+    def user(self):
+        """One who asks in turn, as often as is wanted."""
+        return User(self.start(Path(__file__).with_name("user.py")))
 
     def listener(self, *topics):
         """Independent of Muster: keeps each message of these TOPIC=PACKAGE/TYPE."""
@@ -62,6 +69,33 @@ class Ros:
             process.communicate()
 
 
+class User:
+    """A process that does as it is told; see user.py."""
+
+    def __init__(self, process):
+        self._process = process
+
+    def do(self, **asked):
+        self._process.stdin.write(json.dumps(asked) + "\n")
+        self._process.stdin.flush()
+        answer = self._process.stdout.readline()
+        assert answer, self._process.stderr.read()
+        return json.loads(answer)
+
+    def call(self, service):
+        """Whether it succeeded, and the message."""
+        answer = self.do(call=service)
+        return answer["success"], answer["message"]
+
+    def until(self, holds, within_s=20.0, **asked):
+        """Ask again until the answer is as wanted; returns it."""
+        until = time.monotonic() + within_s
+        while not holds(answer := self.do(**asked)):
+            assert time.monotonic() < until, answer
+            time.sleep(0.1)
+        return answer
+
+
 class Listener:
     """A process that keeps what it hears."""
 
@@ -75,19 +109,16 @@ class Listener:
         return [json.loads(line) for line in self._file.read_text(encoding="utf-8").splitlines()]
 
 
-@pytest.fixture(scope="session")
-def master(tmp_path_factory):
-    try:
-        require_rospy()
-    except MissingExtraError as error:
-        pytest.skip(str(error))
+@contextmanager
+def rosmaster(folder):
+    """A real one on a free port: its process, and its address."""
     program = shutil.which("rosmaster")
     if program is None:
         pytest.skip(f"no rosmaster: apt-get install python3-rosmaster {PACKAGES}")
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    environment = os.environ | {"ROS_IP": "127.0.0.1", "ROS_LOG_DIR": str(tmp_path_factory.mktemp("ros"))}
+    environment = os.environ | {"ROS_IP": "127.0.0.1", "ROS_LOG_DIR": str(folder)}
     process = subprocess.Popen(
         [program, "--core", "-p", str(port)], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
@@ -101,9 +132,32 @@ def master(tmp_path_factory):
             assert process.poll() is None
             assert time.monotonic() < until, "rosmaster does not answer"
             time.sleep(0.1)
-    yield address
+    yield process, address
     process.kill()
     process.wait()
+
+
+@pytest.fixture(scope="session")
+def rospy_there():
+    try:
+        require_rospy()
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="session")
+def master(rospy_there, tmp_path_factory):
+    with rosmaster(tmp_path_factory.mktemp("ros")) as (_, address):
+        yield address
+
+
+@pytest.fixture
+def mortal(rospy_there, tmp_path):
+    """Nodes under a master of their own, and its process."""
+    with rosmaster(tmp_path) as (process, address):
+        nodes = Ros(address, tmp_path)
+        yield nodes, process
+        nodes.close()
 
 
 @pytest.fixture
@@ -111,3 +165,6 @@ def ros(master, tmp_path):
     nodes = Ros(master, tmp_path)
     yield nodes
     nodes.close()
+    with xmlrpc.client.ServerProxy(master) as proxy:  # what users left there
+        for node in ("/command_interface", "/mission_planner"):
+            proxy.deleteParam("/test", node)
