@@ -110,7 +110,9 @@ def test_it_begins_pauses_goes_on_and_takes_a_task_when_told(ros, mission):
     task = json.dumps({"id": "extra", "position": [2, 2]})
     wrong = json.dumps({"id": "wrong", "position": "here"})
     asked = ros.call("/command_interface/start", f"add_task={wrong}", f"add_task={task}", "/command_interface/pause")
-    assert asked.communicate(timeout=20)[0].splitlines()[-1] == "mission mission is paused; the robots were told to stand"
+    assert (
+        asked.communicate(timeout=20)[0].splitlines()[-1] == "mission mission is paused; the robots were told to stand"
+    )
     time.sleep(1.0)
     assert carried.poll() is None
     again = ros.call("/command_interface/start")

@@ -13,6 +13,7 @@ from muster.bridges.ros1.parcels import packed
 from muster.bridges.ros1.ros import String, rospy
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 
 _ACTIVITIES = {
@@ -34,7 +35,7 @@ _ACTIVITIES = {
 
 
 class Board:
-    """The executor's observer, and the place of the latched topics."""
+    """A `Recorder`, and the place of the latched topics."""
 
     def __init__(self) -> None:
         self._topics = {
@@ -81,6 +82,12 @@ class Board:
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
         """See `Observer`: the system monitor hears robots itself."""
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        """See `Recorder`: where robots are is in what they say."""
+
+    def on_report(self, report: Mapping[str, Any]) -> None:
+        """See `Recorder`: the figures are printed."""
 
     def _say(self, topic: str, data: Any) -> None:
         self._topics[topic].publish(text_of(data))
