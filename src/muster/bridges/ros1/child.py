@@ -27,5 +27,5 @@ def live(name: str, duty: Callable[[], object]) -> NoReturn:
         readable, _, _ = select.select([0], [], [], _LOOK_S)
         if readable and not os.read(0, 1024):
             break
-    leave(within_s=1.0)
+    leave()
     os._exit(0)  # a plan that is half made is not waited for

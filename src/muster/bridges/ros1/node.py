@@ -76,7 +76,7 @@ def _require_master(address: str) -> None:
         raise NetworkError(f"ROS master: {address}: it does not answer; {told}")
 
 
-def leave(within_s: float = 3.0) -> None:
+def leave(within_s: float = 2.0) -> None:
     """Say goodbye to the ROS master; what was said last has time to arrive. A master that hangs is not waited for."""
     time.sleep(0.2)
     goodbye = threading.Thread(target=rospy.signal_shutdown, args=("done",), daemon=True)
