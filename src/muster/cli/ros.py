@@ -2,36 +2,44 @@
 
 from __future__ import annotations
 
-import threading
+import sys
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from muster.cli.exits import INTERRUPTED
+from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.halting import ctrl_c_halts
-from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.options import Finite, load_mission, optional_mission_argument
 from muster.cli.real import (
     Wishes,
     carried_out,
-    planned,
     read_wanted,
     real_options,
     reported,
     require_outputs,
     wait_for_robots,
 )
+from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
+    from muster.bridges.ros1.children import Children
+    from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.execution import Report
 
+_LEFT = "the robots were told to stand"
+_ARRIVES_S = 0.3
+"""In which what robots were told last arrives."""
+
 
 @click.command()
-@mission_argument
+@optional_mission_argument
 @click.option("--master", metavar="URI", help="The ROS master.  [default: ROS_MASTER_URI, or localhost]")
 @click.option(
     "--drive",
@@ -57,9 +65,10 @@ if TYPE_CHECKING:
 @click.option("--rate", type=Finite(1.0, 200.0), default=20.0, show_default=True, metavar="HZ", help="Of velocities.")
 @click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
+@click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @real_options
 def command(
-    mission: str,
+    mission: str | None,
     robots: Path | None,
     suitability: Path | None,
     salesmen: int | None,
@@ -73,11 +82,13 @@ def command(
     rate: float,
     known_only: bool,
     on_start: bool,
+    stay: bool,
     **asked: Any,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
-    Robot r_0 is at /r_0/odom or /r_0/pose. Ctrl-C stops all robots.
+    Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION it waits for command_interface/load and start. Ctrl-C
+    stops all robots.
     """
     from muster.bridges.ros1.extra import require_rospy
 
@@ -86,13 +97,16 @@ def command(
     from muster.bridges.ros1.node import become_node, leave
 
     wishes = Wishes(**asked)
+    _require_fitting(wishes, mission, stay, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot)
     require_outputs(wishes, (mission, robots, suitability))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
-    given = read_wanted(wishes, loaded)
-    become_node("muster", master)
-    with ctrl_c_halts() as halt:
-        fleet = Ros1Fleet(
-            loaded,
+    loaded = None
+    if mission is not None:
+        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    given = None if loaded is None else read_wanted(wishes, loaded)
+
+    def fleet_of(its: Mission) -> Ros1Fleet:
+        return Ros1Fleet(
+            its,
             drive=drive,
             namespace=namespace,
             frame=frame,
@@ -100,46 +114,114 @@ def command(
             rate_hz=rate,
             joins=not known_only,
         )
-        try:
-            report = _carried_out(loaded, given, fleet, halt, wait_s, on_start, wishes)
-        finally:
-            fleet.stop()
-            fleet.close()
-            leave()
-    if report is None:
-        click.echo("interrupted; the robots were told to stand", err=True)
-        return INTERRUPTED
-    return reported(loaded, report, wishes, halt, "the robots were told to stand")
+
+    become_node("muster", master)
+    try:
+        own = ("--seed", str(wishes.seed), "--time-limit", str(wishes.time_limit))
+        node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
+        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, wishes), node, master, begins=not on_start)
+    finally:
+        leave()
 
 
-def _carried_out(
-    mission: Mission,
-    given: Plan | None,
-    fleet: Ros1Fleet,
-    halt: threading.Event,
-    wait_s: float,
-    on_start: bool,
-    wishes: Wishes,
-) -> Report | None:
+def _require_fitting(wishes: Wishes, mission: str | None, stay: bool, **of_mission: object) -> None:
+    """Options that say something of a mission need one, and a file holds what came of one."""
+    for name, value in (of_mission | {"plan": wishes.plan}).items():
+        if mission is None and value is not None:
+            raise ParameterError(f"--{name} given without a MISSION; expected both")
+    for name in ("record", "html", "plot", "gantt"):
+        if stay and getattr(wishes, name) is not None:
+            raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+
+
+@dataclass(frozen=True)
+class _Work:
+    """How missions are carried out, whichever they are."""
+
+    fleet_of: Callable[[Mission], Ros1Fleet]
+    plan: Plan | None
+    wait_s: float
+    stay: bool
+    wishes: Wishes
+
+
+def _with_nodes(
+    mission: Mission | None, work: _Work, node: tuple[str, ...], master: str | None, *, begins: bool
+) -> int:
+    """Carry missions out while the nodes beside this one live; returns the exit code.
+
+    Parameters
+    ----------
+    node
+        the command that runs such a node.
+    begins
+        whether the mission begins before anybody calls `start`.
+    """
+    from muster.bridges.ros1.children import Children
+    from muster.bridges.ros1.controller import Controller
+    from muster.bridges.ros1.node import master_address
+
+    controller = Controller()
+    if mission is not None:
+        controller.load(mission)
+        if begins:
+            controller.start()
+    elif not work.wishes.quiet:
+        click.echo("waits for command_interface/load and start", err=True)
+    with ctrl_c_halts() as asked:
+        children = Children(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        with children:
+            code = _one(controller, work, children)
+            while work.stay and not controller.ending.is_set():
+                code = _one(controller, work, children)
+        if children.fault:
+            raise NetworkError(children.fault)
+        return INTERRUPTED if controller.ending.is_set() else code
+
+
+def _one(controller: Controller, work: _Work, children: Children) -> int:
+    """Wait for one mission and carry it out; returns the exit code.
+
+    Raises
+    ------
+    MusterError
+        if that cannot be done; with --stay that is told, and the next mission may be loaded.
+    """
+    mission, code, reason = controller.await_start(), DONE, ""
+    try:
+        report = None if mission is None else _through(mission, controller, work, children)
+        if mission is not None and report is not None and not children.fault:
+            code = reported(mission, report, work.wishes, controller.halt, _LEFT)
+        elif not children.fault and controller.halt.is_set():
+            click.echo(f"interrupted; {_LEFT}", err=True)
+            code = INTERRUPTED
+    except MusterError as error:
+        if not work.stay and not children.fault:
+            raise
+        reason = "" if children.fault else str(error)
+        click.echo(reason, err=True, nl=bool(reason))
+    controller.end("cancelled" if controller.halt.is_set() else reason)
+    return code
+
+
+def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
     """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
     from muster._live import elsewhere, from_where_they_stand
-    from muster.bridges.ros1.station import Station
 
-    started = threading.Event()
-    station = Station(mission, fleet, halt=halt, started=started)
+    fleet, wishes = work.fleet_of(mission), work.wishes
     try:
-        wait_for_robots(fleet, halt, wait_s)
-        while on_start and not (started.is_set() or halt.is_set()):
-            time.sleep(0.05)
-        if halt.is_set():
-            return None
+        wait_for_robots(fleet, controller.halt, work.wait_s)
         there = from_where_they_stand(mission, fleet)
         for line in elsewhere(mission, there):
             click.echo(line, err=True)
-        plan = given or planned(wishes, there)
-        station.become("carrying-out")
-        report = carried_out(there, plan, fleet, wishes, halt, [station])
-        station.become("ended")
-        return report
+        plan = work.plan or controller.plan(there, seed=wishes.seed, time_limit=wishes.time_limit)
+        if plan is None or controller.halt.is_set():
+            return None
+        controller.carry_out(fleet)
+        return carried_out(there, plan, fleet, wishes, controller.halt, [controller.board])
     finally:
-        station.close()
+        fleet.stop()
+        if children.fault:
+            time.sleep(_ARRIVES_S)  # a master that hangs is not told of the end
+        else:
+            fleet.close()

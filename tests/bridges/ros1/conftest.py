@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 import xmlrpc.client
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -28,9 +29,11 @@ class Ros:
             [sys.executable, *map(str, arguments)],
             env=self._environment,
             cwd=self.folder,
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            start_new_session=True,  # so that Ctrl-C can be sent as a terminal does: to a group
         )
         self._processes.append(started)
         return started
@@ -55,6 +58,10 @@ class Ros:
         """Calls services, and publishes tasks, in turn; prints what services answer."""
         return self.start(self.file("caller.py"), *asked)
 
+    def user(self):
+        """One who asks in turn, as often as is wanted."""
+        return User(self.start(Path(__file__).with_name("user.py")))
+
     def listener(self, *topics):
         """Independent of Muster: keeps each message of these TOPIC=PACKAGE/TYPE."""
         file = self.folder / "heard.jsonl"
@@ -68,6 +75,33 @@ class Ros:
         for process in self._processes:
             process.kill()
             process.communicate()
+
+
+class User:
+    """A process that does as it is told; see user.py."""
+
+    def __init__(self, process):
+        self._process = process
+
+    def do(self, **asked):
+        self._process.stdin.write(json.dumps(asked) + "\n")
+        self._process.stdin.flush()
+        answer = self._process.stdout.readline()
+        assert answer, self._process.stderr.read()
+        return json.loads(answer)
+
+    def call(self, service):
+        """Whether it succeeded, and the message."""
+        answer = self.do(call=service)
+        return answer["success"], answer["message"]
+
+    def until(self, holds, within_s=20.0, **asked):
+        """Ask again until the answer is as wanted; returns it."""
+        until = time.monotonic() + within_s
+        while not holds(answer := self.do(**asked)):
+            assert time.monotonic() < until, answer
+            time.sleep(0.1)
+        return answer
 
 
 class Listener:
@@ -84,30 +118,26 @@ class Listener:
 
 
 @pytest.fixture(scope="session")
-def rospy_found():
+def rospy_there():
     try:
         require_rospy()
     except MissingExtraError as error:
         pytest.skip(str(error))
 
 
+@contextmanager
+def master_in(folder):
+    try:
+        with running_master(folder) as master:
+            yield master
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+
+
 @pytest.fixture(scope="session")
-def shared_master(rospy_found, tmp_path_factory):
-    try:
-        with running_master(tmp_path_factory.mktemp("ros")) as running:
-            yield running
-    except MissingExtraError as error:
-        pytest.skip(str(error))
-
-
-@pytest.fixture
-def master(rospy_found, tmp_path):
-    """One of the test's own, which it may set parameters of, stop, and start again."""
-    try:
-        with running_master(tmp_path) as running:
-            yield running
-    except MissingExtraError as error:
-        pytest.skip(str(error))
+def shared_master(rospy_there, tmp_path_factory):
+    with master_in(tmp_path_factory.mktemp("ros")) as master:
+        yield master
 
 
 @pytest.fixture
@@ -115,11 +145,15 @@ def ros(shared_master, tmp_path):
     nodes = Ros(shared_master, tmp_path)
     yield nodes
     nodes.close()
+    with xmlrpc.client.ServerProxy(shared_master.address) as proxy:  # what users left there
+        for node in ("/command_interface", "/mission_planner"):
+            proxy.deleteParam("/test", node)
 
 
 @pytest.fixture
-def own_ros(master, tmp_path):
-    """Nodes under a master of the test's own."""
-    nodes = Ros(master, tmp_path)
-    yield nodes
-    nodes.close()
+def own_ros(rospy_there, tmp_path):
+    """Nodes under a master of the test's own, whose parameters it may set, and which it may stop and start again."""
+    with master_in(tmp_path) as master:
+        nodes = Ros(master, tmp_path)
+        yield nodes
+        nodes.close()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 SHARED = {"odom": "nav_msgs/Odometry", "pose": "geometry_msgs/PoseStamped"}
 """Topics that say where a robot is, and their types."""
@@ -28,3 +28,9 @@ def robots_in(topics: Iterable[tuple[str, str]], namespace: str = "") -> list[st
         if topic.startswith(prefix) and SHARED.get(shared) == kind and NAME.fullmatch(robot):
             found.add(robot)
     return sorted(found)
+
+
+def topics_in(namespace: str) -> Callable[[str], str]:
+    """What gives the namespace of a robot's topics, such as `/r_0`, by its name."""
+    within = [part for part in [namespace.strip("/")] if part]
+    return lambda robot: "/".join(["", *within, robot])

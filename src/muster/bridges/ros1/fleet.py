@@ -17,7 +17,7 @@ from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.described import described
 from muster.bridges.ros1.discovery import NAME, robots_in
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.node import time_of_ros
+from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.ros1.steering import STILL, Steering
@@ -125,7 +125,7 @@ class Ros1Fleet:
             pass
         self._news.clear()
         if rospy.is_shutdown():
-            raise NetworkError("ROS 1: this node was shut down from outside; expected no other node of its name")
+            raise NetworkError(SHUT_DOWN)
         if self._failure is not None:
             raise self._failure
         with self._lock:
@@ -235,11 +235,13 @@ class Ros1Fleet:
         """Look for robots that nobody knows, again and again; robots go on where the master does not answer."""
         while not self._closed.wait(_LOOK_S):
             try:
-                for name in robots_in(rospy.get_published_topics(), self._namespace):
-                    if name not in self._known and not self._closed.is_set():
-                        self._meet(name)
-            except Exception as error:  # rospy raises whatever the network does
-                rospy.logwarn_throttle(10.0, f"the ROS master does not answer: {error}")
+                topics = rospy.get_published_topics()
+            except Exception as error:  # rospy raises whatever the network does; who watches the master tells of it
+                rospy.logdebug(f"the ROS master does not answer: {error}")
+                continue
+            for name in robots_in(topics, self._namespace):
+                if name not in self._known and not self._closed.is_set():
+                    self._meet(name)
             self._welcome()
 
     def _meet(self, name: str) -> None:

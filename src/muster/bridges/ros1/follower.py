@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
+from muster.bridges.ros1.odometer import Odometer, distance
 from muster.motion.frames import wrapped
 from muster.motion.port import Place, Waypoint
-
-MOVED_M = 0.01
-"""Less than this is trembling of what measures, not travel."""
 
 
 class Follower:
@@ -29,10 +26,14 @@ class Follower:
         self._flat = flat
         self._waypoints: tuple[Waypoint, ...] = ()
         self._held_since: float | None = None
-        self._counted: Place | None = None
+        self._odometer = Odometer(flat=flat)
         self.order = 0
         self.passed = 0
-        self.odometry_m = 0.0
+
+    @property
+    def odometry_m(self) -> float:
+        """Metres that it has gone."""
+        return self._odometer.metres
 
     @property
     def aim(self) -> Waypoint | None:
@@ -52,7 +53,7 @@ class Follower:
 
     def hear(self, now: float, place: Place, heading: float) -> bool:
         """The robot is there now; returns whether it has passed a way point."""
-        self._count(place)
+        self._odometer.hear(place)
         before = self.passed
         while self.aim is not None and self._has_passed(self.aim, now, place, heading):
             self.passed += 1
@@ -61,7 +62,7 @@ class Follower:
 
     def is_at(self, place: Place, aim: Waypoint) -> bool:
         """Whether a place counts as the way point's."""
-        return self._distance(place, aim.position) <= self._arrival_m
+        return distance(place, aim.position, flat=self._flat) <= self._arrival_m
 
     def _has_passed(self, aim: Waypoint, now: float, place: Place, heading: float) -> bool:
         if self._held_since is None:
@@ -70,14 +71,3 @@ class Follower:
                 return False
             self._held_since = now
         return now - self._held_since >= aim.hold_s
-
-    def _count(self, place: Place) -> None:
-        if self._counted is None:
-            self._counted = place
-        gone = self._distance(place, self._counted)
-        if gone >= MOVED_M:
-            self.odometry_m += gone
-            self._counted = place
-
-    def _distance(self, one: Place, other: Place) -> float:
-        return math.dist(one[:2], other[:2]) if self._flat else math.dist(one, other)

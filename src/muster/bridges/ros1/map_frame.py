@@ -47,7 +47,7 @@ class MapFrame:
             return None
 
     def close(self) -> None:
-        """Hear no more."""
+        """Listen no more."""
         for link in self._heard:
             link.unregister()
 

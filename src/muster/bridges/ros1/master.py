@@ -7,11 +7,11 @@ import shutil
 import socket
 import subprocess
 import time
-import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from muster.bridges.ros1.node import master_answers
 from muster.mission.errors import MissingExtraError, NetworkError
 
 _WITHIN_S = 20.0
@@ -52,7 +52,7 @@ class Master:
         quiet = subprocess.DEVNULL
         self._process = subprocess.Popen(self._command, env=environment, stdout=quiet, stderr=quiet)
         until = time.monotonic() + _WITHIN_S
-        while not self._answers():
+        while not master_answers(self.address):
             if self._process.poll() is not None or time.monotonic() > until:
                 self.stop()
                 raise NetworkError(
@@ -60,18 +60,14 @@ class Master:
                 )
             time.sleep(0.1)
 
+    def send_signal(self, number: int) -> None:
+        """Such as SIGSTOP: it hangs."""
+        self._process.send_signal(number)
+
     def stop(self) -> None:
         """End it at once: nodes are not told."""
         self._process.kill()
         self._process.wait()
-
-    def _answers(self) -> bool:
-        try:
-            with xmlrpc.client.ServerProxy(self.address) as proxy:
-                proxy.getPid("/muster_looks")
-        except OSError:
-            return False
-        return True
 
 
 @contextmanager

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import logging
 import os
-import socket
+import threading
 import time
+import xmlrpc.client
 from collections.abc import Callable
+from http.client import HTTPConnection, HTTPException
+from typing import Any
 from urllib.parse import urlparse
+from xml.parsers.expat import ExpatError
 
 from muster.bridges.ros1.clock import Forward
-from muster.bridges.ros1.ros import rosgraph, rospy
+from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import NetworkError
 
+SHUT_DOWN = "node /muster: it was shut down, or another took its name; expected it to stay"
 _USUAL = "http://localhost:11311"
 
 
@@ -29,7 +34,7 @@ def become_node(name: str, master: str | None = None) -> None:
     NetworkError
         if no ROS master answers there.
     """
-    address = master or os.environ.get("ROS_MASTER_URI") or _USUAL
+    address = master_address(master)
     _require_master(address)
     os.environ["ROS_MASTER_URI"] = address
     logging.getLogger("rosout").setLevel(logging.WARNING)
@@ -41,23 +46,47 @@ def time_of_ros() -> Callable[[], float]:
     return time.monotonic if rospy.rostime.is_wallclock() else Forward(rospy.get_time)
 
 
+def master_address(master: str | None) -> str:
+    """The one that is given, or that of ROS_MASTER_URI, or this computer's."""
+    return master or os.environ.get("ROS_MASTER_URI") or _USUAL
+
+
+def master_answers(address: str, within_s: float = 3.0) -> bool:
+    """Whether a ROS master answers there.
+
+    Raises
+    ------
+    ValueError
+        if that is no address.
+    """
+    parts = urlparse(address)
+    if parts.scheme != "http" or parts.hostname is None or parts.port is None:
+        raise ValueError(address)
+    connection = HTTPConnection(parts.hostname, parts.port, timeout=within_s)
+    question = xmlrpc.client.dumps(("/muster_looks",), "getPid")
+    try:
+        connection.request("POST", "/RPC2", question, {"Content-Type": "text/xml"})
+        answer: Any = xmlrpc.client.loads(connection.getresponse().read())[0][0]
+        return bool(answer[0] == 1)
+    except (OSError, HTTPException, ExpatError, xmlrpc.client.Error, ValueError, TypeError, LookupError):
+        return False
+    finally:
+        connection.close()
+
+
 def _require_master(address: str) -> None:
     try:
-        parts = urlparse(address)
-        if parts.scheme != "http" or parts.hostname is None or parts.port is None:
-            raise NetworkError(f"ROS master: {address}; expected http://HOST:PORT")
-        socket.create_connection((parts.hostname, parts.port), timeout=3.0).close()
-        rosgraph.Master("/muster_looks", master_uri=address).getPid()
+        answers = master_answers(address)
     except ValueError:
         raise NetworkError(f"ROS master: {address}; expected http://HOST:PORT") from None
-    except Exception as error:
-        if isinstance(error, NetworkError):
-            raise
+    if not answers:
         told = "expected a running one (rosmaster --core, roscore), or --master URI"
-        raise NetworkError(f"ROS master: {address}: it does not answer; {told}") from None
+        raise NetworkError(f"ROS master: {address}: it does not answer; {told}")
 
 
-def leave() -> None:
-    """Say goodbye to the ROS master; what was said last has time to arrive."""
+def leave(within_s: float = 2.0) -> None:
+    """Say goodbye to the ROS master; what was said last has time to arrive. A master that hangs is not waited for."""
     time.sleep(0.2)
-    rospy.signal_shutdown("done")
+    goodbye = threading.Thread(target=rospy.signal_shutdown, args=("done",), daemon=True)
+    goodbye.start()
+    goodbye.join(within_s)
