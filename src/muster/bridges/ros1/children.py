@@ -50,6 +50,7 @@ class Children:
         self._closed = threading.Event()
         self._watch = threading.Thread(target=self._watch_on, daemon=True)
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
+        self._master_gone = False
         self.fault = ""
         """What is wrong, in a line, from when something is."""
 
@@ -72,7 +73,7 @@ class Children:
         for process in self._processes.values():
             assert process.stdin is not None
             process.stdin.close()
-        until = time.monotonic() + _PATIENCE_S
+        until = time.monotonic() + (0.0 if self._master_gone else _PATIENCE_S)  # nobody is there to say goodbye to
         for process in self._processes.values():
             try:
                 process.wait(max(0.0, until - time.monotonic()))
@@ -86,7 +87,8 @@ class Children:
             if not self.fault:
                 self.fault = self._dead() or self._shut_down()
             if not self.fault and time.monotonic() - asked_s >= _MASTER_S:
-                if not master_answers(self._master):
+                self._master_gone = not master_answers(self._master)
+                if self._master_gone:
                     self.fault = f"ROS master: {self._master}: it does not answer any more; expected it to stay"
                 asked_s = time.monotonic()
             if not self.fault:
