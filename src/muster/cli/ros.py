@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
     from muster.execution import Report
 
 _LEFT = "the robots were told to stand"
-_ARRIVES_S = 0.3
-"""In which what robots were told last arrives."""
 
 
 @click.command()
@@ -193,7 +190,7 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
         if mission is not None and report is not None and not children.fault:
             code = reported(mission, report, work.wishes, controller.halt, _LEFT)
         elif not children.fault and controller.halt.is_set():
-            click.echo(f"interrupted; {_LEFT}", err=True)
+            click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
             code = INTERRUPTED
     except MusterError as error:
         if not work.stay and not children.fault:
@@ -211,6 +208,8 @@ def _through(mission: Mission, controller: Controller, work: _Work, children: Ch
     fleet, wishes = work.fleet_of(mission), work.wishes
     try:
         wait_for_robots(fleet, controller.halt, work.wait_s)
+        if controller.halt.is_set():
+            return None
         there = from_where_they_stand(mission, fleet)
         for line in elsewhere(mission, there):
             click.echo(line, err=True)
@@ -222,6 +221,6 @@ def _through(mission: Mission, controller: Controller, work: _Work, children: Ch
     finally:
         fleet.stop()
         if children.fault:
-            time.sleep(_ARRIVES_S)  # a master that hangs is not told of the end
+            fleet.fall_silent()  # a master that hangs is not told of the end
         else:
             fleet.close()

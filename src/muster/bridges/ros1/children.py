@@ -52,6 +52,7 @@ class Children:
         self._closed = threading.Event()
         self._watch = threading.Thread(target=self._watch_on, daemon=True)
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
+        self._master_gone = False
         self.fault = ""
         """What is wrong, in a line, from when something is."""
 
@@ -74,7 +75,7 @@ class Children:
         for process in self._processes.values():
             assert process.stdin is not None
             process.stdin.close()
-        until = time.monotonic() + _PATIENCE_S
+        until = time.monotonic() + (0.0 if self._master_gone else _PATIENCE_S)  # nobody is there to say goodbye to
         for process in self._processes.values():
             try:
                 process.wait(max(0.0, until - time.monotonic()))
@@ -88,7 +89,8 @@ class Children:
         while not self._closed.wait(_LOOK_S):
             now = time.monotonic()
             if not self.fault and now - asked_s >= _MASTER_S:
-                answered_s = time.monotonic() if master_answers(self._master) else answered_s
+                self._master_gone = not master_answers(self._master)
+                answered_s = answered_s if self._master_gone else time.monotonic()
                 asked_s = time.monotonic()
             if not self.fault:
                 self.fault, fault_s = self._shut_down() or self._dead() or self._left(asked_s - answered_s), now

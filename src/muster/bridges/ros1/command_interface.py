@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from muster.bridges.ros1.controller import COMMANDS
 from muster.bridges.ros1.parcels import Load, in_lines, mission_on, packed
-from muster.bridges.ros1.questions import Asker
+from muster.bridges.ros1.questions import COMMANDS, Asker
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 

@@ -15,16 +15,12 @@ from muster.bridges.ros1.described import task_of
 from muster.bridges.ros1.discovery import NAME
 from muster.bridges.ros1.fleet import Ros1Fleet
 from muster.bridges.ros1.parcels import packed, unpacked
-from muster.bridges.ros1.questions import Answerer, Asker, Data
+from muster.bridges.ros1.questions import COMMANDS, PLANNING, Answerer, Asker, Data
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Task
 from muster.mission.plan import Plan, plan_from
-
-COMMANDS = "/muster/commands"
-PLANNING = "/muster/planning"
-"""Questions to the controller, and of the controller to the mission planner."""
 
 State = Literal["empty", "waiting", "gathering", "planning", "carrying-out", "paused", "ended"]
 _BUSY = ("gathering", "planning", "carrying-out", "paused")

@@ -168,12 +168,16 @@ class Ros1Fleet:
             for port in self._all().values():
                 port.cancel()
 
-    def close(self) -> None:
-        """See `Fleet`. What was said last has time to arrive."""
+    def fall_silent(self) -> None:
+        """Say no more, without a word to the ROS master. What was said last has time to arrive."""
         self._closed.wait(0.2)
         self._closed.set()
         for thread in self._threads:
             thread.join(timeout=2.0)
+
+    def close(self) -> None:
+        """See `Fleet`."""
+        self.fall_silent()
         for port in [*self._all().values(), *self._strangers.values()]:
             port.close()
         self._frame.close()

@@ -13,10 +13,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from muster.bridges.ros1.controller import PLANNING
 from muster.bridges.ros1.messages import text_of
 from muster.bridges.ros1.parcels import Load, in_lines, mission_on, unpacked
-from muster.bridges.ros1.questions import Answerer, Data
+from muster.bridges.ros1.questions import PLANNING, Answerer, Data
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission

@@ -16,6 +16,10 @@ from typing import Any
 from muster.bridges.ros1.messages import text_of
 from muster.bridges.ros1.ros import String, rospy
 
+COMMANDS = "/muster/commands"
+PLANNING = "/muster/planning"
+"""Questions to the controller, and of the controller to the mission planner."""
+
 Data = Mapping[str, Any]
 _LOOK_S = 0.1
 
