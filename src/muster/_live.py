@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from muster.bridges.fleet import Fleet
+from muster.bridges.fleet import Fleet, reason_of
 from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -65,7 +65,7 @@ def carry_out_live(
     try:
         while not executor.done and not halt.is_set():
             for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
-                executor.report_if_it_fits(event)
+                executor.report_if_it_fits(event, reason_of(event))
             executor.tick(fleet.time_s)
             if on_happening is not None:
                 for happening in executor.happenings[told:]:

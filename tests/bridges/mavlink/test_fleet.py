@@ -72,7 +72,7 @@ def test_three_drones_and_a_low_battery():
     assert report.reallocations >= 1
     assert str(fleet.faults[0]) == "r_1: low battery: 10% left; expected 25%"
     assert sky.drones["r_1"].mode in (PX4.back, PX4.land)
-    assert fleet.remaining["r_1"] == 0.1
+    assert fleet.ports["r_1"].telemetry().charge == 0.1
     assert [happening.kind for happening in heard][-1] == "mission_ended"
 
 

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4, autopilot_of
+from muster.bridges.mavlink.craft import Craft
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.faults import Kind
 from muster.bridges.mavlink.fence import no_fence
@@ -56,7 +57,7 @@ class Talk:
     def __init__(self, kind=PX4, **settings):
         robot = Robot(id="r_0", position=(0.0, 0.0, 0.0), kind="air", speed_mps=4.0)
         seen = Seen((0.0, 0.0, 0.0), GlobalFrame(ORIGIN, (0.0, 0.0, 0.0)))
-        self.session = Session(robot, seen, Settings(**{"arm": True, **settings}), no_fence, None)
+        self.session = Session(Craft(robot, seen, Settings(**{"arm": True, **settings}), None), no_fence)
         self.kind, self.now = kind, 0.0
         self.say(heartbeat(kind), position())
 
@@ -90,7 +91,7 @@ class Talk:
         if first[0].get_type() == "COMMAND_LONG":
             first = self.say(heartbeat(self.kind, armed=True))
         self.say(from_drone(M.MAVLink_mission_current_message(first[0].seq)))
-        assert self.say(heartbeat(self.kind, self.kind.mission, armed=True)) == []
+        assert self.say(heartbeat(self.kind, self.kind.mission, armed=True), position(above=8.0)) == []
 
 
 def test_the_upload_message_by_message():
