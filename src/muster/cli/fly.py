@@ -38,7 +38,7 @@ _AT_END = ("hold", "return", "land")
     multiple=True,
     required=True,
     metavar="ROBOT=ENDPOINT",
-    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD].",
+    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it.",
 )
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
@@ -156,8 +156,8 @@ def _fly(
 
     with ctrl_c_halts() as halt:
         report = carry_out_live(mission, plan, fleet, seed=seed, on_happening=None if quiet else _tell, halt=halt)
-        if not halt.is_set() and at_end != "hold":
-            {"return": fleet.go_back, "land": fleet.land}[at_end]()
+        if not halt.is_set():
+            _end(fleet, at_end)
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
     if form == "json":
@@ -168,6 +168,11 @@ def _fly(
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission: drones were told to hover", err=True)
         return INTERRUPTED
     return INCOMPLETE if whole and report.tasks_lost else DONE
+
+
+def _end(fleet: MavlinkFleet, at_end: str) -> None:
+    """What drones do when all is done. To hover they must be told: way points that are said one by one end now."""
+    {"hold": fleet.stop, "return": fleet.go_back, "land": fleet.land}[at_end]()
 
 
 def _tell(happening: Happening) -> None:

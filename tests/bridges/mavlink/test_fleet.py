@@ -1,8 +1,5 @@
 """Fleets of simulated autopilots: missions flown, every fault in its documented state, nothing sent unasked."""
 
-import math
-import os
-
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, flown, mission
 
@@ -10,7 +7,6 @@ import muster
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_drone import Faults
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Map, Robot, Task, Zone
@@ -37,43 +33,6 @@ def test_lost_packets_do_no_harm(kind):
     report, fleet, _, _ = flown(mission(2), kind, lossy, link_lost_s=8)
     assert len(report.tasks_done) == 4
     assert fleet.faults == []
-
-
-@KINDS
-@pytest.mark.parametrize(
-    ("faults", "fault", "armed", "mode"),
-    [
-        (Faults(refuse_arm=True), Kind.ARM_REFUSED, False, "ready"),
-        (Faults(reject_item=1), Kind.ITEM_REJECTED, False, "ready"),
-        (Faults(low_battery_at_s=3), Kind.LOW_BATTERY, True, "back"),
-        (Faults(silent_at_s=3), Kind.LINK_LOST, True, "mission"),
-        (Faults(breach_at_s=3), Kind.FENCE_BREACHED, True, "hold"),
-        (Faults(pilot_at_s=3), Kind.TAKEN_OVER, True, None),
-    ],
-    ids=lambda value: value.name if isinstance(value, Kind) else "",
-)
-def test_every_fault_ends_in_its_state_and_others_do_the_rest(kind, faults, fault, armed, mode):
-    far = tuple(Task(id=f"t_{k}", position=(120.0, 6.0 * k, 10.0)) for k in range(2))
-    report, fleet, sky, heard = flown(mission(2, far), kind, {"r_0": faults})
-    assert [found.kind for found in fleet.faults] == [fault]
-    assert fleet.faults[0].robot == "r_0"
-    drone = sky.drones["r_0"]
-    assert drone.armed == armed or fault is Kind.LOW_BATTERY  # which may have landed by then
-    if mode is not None and fault is not Kind.LINK_LOST:  # who is not heard flies on as its own failsafe says
-        assert drone.mode in (getattr(kind, mode), kind.land if mode == "back" else getattr(kind, mode))
-    assert "robot_fails" in [happening.kind for happening in heard]
-    assert set(report.tasks_done) == {"t_0", "t_1"}
-    assert {row.robot for row in report.tasks} == {"r_1"}
-
-
-def test_three_drones_and_a_low_battery():
-    report, fleet, sky, heard = flown(mission(3), PX4, {"r_1": Faults(low_battery_at_s=6)})
-    assert len(report.tasks_done) == 6
-    assert report.reallocations >= 1
-    assert str(fleet.faults[0]) == "r_1: low battery: 10% left; expected 25%"
-    assert sky.drones["r_1"].mode in (PX4.back, PX4.land)
-    assert fleet.ports["r_1"].telemetry().charge == 0.1
-    assert [happening.kind for happening in heard][-1] == "mission_ended"
 
 
 @KINDS
@@ -160,19 +119,3 @@ def test_what_does_not_answer_or_is_unknown_or_elsewhere_is_said_in_a_line():
 def test_endpoints_that_are_none(endpoint):
     with pytest.raises(ParameterError, match="expected udp:HOST:PORT"):
         MavlinkFleet(mission(1), {"r_0": endpoint})
-
-
-@pytest.mark.skipif("MUSTER_MAVLINK_ENDPOINT" not in os.environ, reason="MUSTER_MAVLINK_ENDPOINT names no autopilot")
-def test_a_real_autopilot_is_heard_and_left_alone():
-    """Listens only: it never arms what may be real."""
-    there = mission(1, origin_wgs84=ORIGIN)
-    fleet = MavlinkFleet(there, {"r_0": os.environ["MUSTER_MAVLINK_ENDPOINT"]}, Settings(arm=False, far_m=math.inf))
-    try:
-        fleet.connect(20.0)
-        session = fleet.sessions["r_0"]
-        assert session.autopilot is not None
-        first = session.telemetry().time_s
-        fleet.advance(fleet.time_s + 3.0)
-        assert session.telemetry().time_s > first
-    finally:
-        fleet.close()
