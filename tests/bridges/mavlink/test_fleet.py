@@ -1,15 +1,19 @@
 """Fleets of simulated autopilots: missions flown, every fault in its documented state, nothing sent unasked."""
 
+from dataclasses import replace
+
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, flown, mission
 
 import muster
+from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
 from muster.bridges.mavlink.simulated_drone import Faults
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Map, Robot, Task, Zone
+from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
@@ -119,3 +123,42 @@ def test_what_does_not_answer_or_is_unknown_or_elsewhere_is_said_in_a_line():
 def test_endpoints_that_are_none(endpoint):
     with pytest.raises(ParameterError, match="expected udp:HOST:PORT"):
         MavlinkFleet(mission(1), {"r_0": endpoint})
+
+
+@KINDS
+@pytest.mark.parametrize("offboard", [False, True])
+@pytest.mark.parametrize("after_s", [0.1, 1.5, 3.0, 4.5, 6.0, 7.5])
+def test_whenever_it_is_stopped_it_hovers_or_stands_disarmed(kind, offboard, after_s):
+    """With a drone that takes two seconds to arm: before, while, between arming and the start, while it climbs."""
+    there = mission(1, (Task(id="t", position=(60.0, 0.0, 10.0)),))
+    sky = Sky(there, kind, {"r_0": Faults(slow_arm_s=2.0)})
+    fleet = sky.fleet(there, offboard=offboard)
+    drone = sky.drones["r_0"]
+    fleet.ports["r_0"].send([Waypoint((60.0, 0.0, 10.0))])
+    fleet.advance(fleet.time_s + after_s)
+    fleet.stop()
+    fleet.close()
+    place = drone.flight.place
+    for _ in range(1000):  # nobody speaks to it any more
+        sky.wait(0.02)
+    sky.close()
+    assert fleet.faults == []
+    assert drone.flight.place == pytest.approx(place, abs=1e-6)
+    assert (drone.armed, drone.mode) == (True, kind.hold) if drone.flight.flies else not drone.armed
+
+
+def test_a_drone_with_too_little_in_its_battery_for_its_way_is_planned_for_again():
+    there = mission(2, (Task(id="near", position=(20.0, 0.0, 10.0)), Task(id="far", position=(150.0, 6.0, 10.0))))
+    there = replace(there, robots=tuple(replace(robot, work_capacity=400.0) for robot in there.robots))
+    plan = Plan(allocator="by hand", routes=(Route("r_0", ("near",)), Route("r_1", ("far",))))
+    sky, heard = Sky(there), []
+    sky.drones["r_1"].battery = 0.3  # of 400 m: 120 m
+    fleet = sky.fleet(there)
+    report = carry_out_live(there, plan, fleet, on_happening=heard.append)
+    fleet.close()
+    sky.close()
+    assert {task.task: task.robot for task in report.tasks} == {"near": "r_1", "far": "r_0"}
+    (refused,) = [happening.data for happening in heard if happening.kind == "task_refused"]
+    assert (refused["task"], refused["robot"]) == ("far", "r_1")
+    assert refused["reason"].startswith("capacity: ")
+    assert fleet.faults == []
