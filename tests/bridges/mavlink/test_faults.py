@@ -47,13 +47,17 @@ def in_the_way_of_flying(kind, case, offboard):
     return pytest.param(kind, case, offboard, id=f"{kind.words} {case.how} {'offboard' if offboard else 'mission'}")
 
 
-EVERY = [in_the_way_of_flying(kind, case, way) for kind, found in CASES.items() for case in found for way in case.offboard]
+EVERY = [
+    in_the_way_of_flying(kind, case, way) for kind, found in CASES.items() for case in found for way in case.offboard
+]
 
 
 def rows():
     """Of the table: for each fault what the drone is told, and in what state it ends, by the words of the first cell."""
     text = PAGE.read_text().split("## Faults and reactions")[1].split("\n## ")[0]
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
+    cells = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")
+    ]
     return {row[0]: dict(zip(cells[0], row, strict=True)) for row in cells[2:]}
 
 
