@@ -53,7 +53,7 @@ EVERY = [
 
 
 def rows():
-    """Of the table: for each fault what the drone is told, and in what state it ends, by the words of the first cell."""
+    """Of the table, by the words of the first cell."""
     text = PAGE.read_text().split("## Faults and reactions")[1].split("\n## ")[0]
     cells = [
         [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")

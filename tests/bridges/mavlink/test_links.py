@@ -1,5 +1,6 @@
-"""Lines: several drones on one, told apart by their system ids; who is answered; a serial line, by a pseudo-terminal."""
+"""Lines: several drones on one, told apart by system ids; who is answered; serial lines, by a pseudo-terminal."""
 
+import contextlib
 import os
 import pty
 import socket
@@ -135,7 +136,7 @@ def test_endpoints_by_name():
 @pytest.mark.parametrize("pair", [("", ""), ("#1", ""), ("", "#1"), ("#1", "#1")])
 def test_two_robots_on_one_line_need_a_system_id_each(pair):
     endpoints = {f"r_{k}": f"udpout:127.0.0.1:9{number}" for k, number in enumerate(pair)}
-    with pytest.raises(ParameterError, match="of r_0 and r_1; expected a system id for each: udpout:127.0.0.1:9#1"):
+    with pytest.raises(ParameterError, match=r"of r_0 and r_1; expected a system id for each: udpout:127.0.0.1:9#1"):
         MavlinkFleet(mission(2), endpoints)
 
 
@@ -151,10 +152,8 @@ def test_a_drone_on_a_serial_line(kind):
 
     def wait(seconds):
         clock.advance(seconds)
-        try:
+        with contextlib.suppress(BlockingIOError):
             drone.receive(os.read(ours, 65535))
-        except BlockingIOError:
-            pass
         for packet in drone.advance(clock.now()):
             os.write(ours, packet)
 
@@ -176,5 +175,5 @@ def test_a_drone_on_a_serial_line(kind):
 
 
 def test_a_serial_line_that_is_none_is_said_in_a_line():
-    with pytest.raises(NetworkError, match="serial:/dev/nothing-here: .*expected a serial device"):
+    with pytest.raises(NetworkError, match=r"serial:/dev/nothing-here: .*expected a serial device"):
         line_to("serial:/dev/nothing-here")

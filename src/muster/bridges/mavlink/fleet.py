@@ -21,7 +21,7 @@ from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02
-_LAST_WORDS_S = 3.0, 15.0
+_LAST_WORDS_S = 1.0, 15.0
 """For how long it is spoken at the least, and at the most, to drones that are told how to end."""
 
 

@@ -19,7 +19,7 @@ from muster.motion.frames import enu_to_ned
 from muster.motion.port import Place
 
 _GROUND_M = 0.1
-_OFFBOARD_LOST_S = 0.5
+_OFFBOARD_LOST_S = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
