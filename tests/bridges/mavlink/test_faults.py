@@ -15,7 +15,7 @@ from muster.bridges.mavlink.simulated_drone import Faults
 from muster.mission.model import Task
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
-FAR = tuple(Task(id=f"t_{k}", position=(120.0, 6.0 * k, 10.0)) for k in range(2))
+FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(2))
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     if case.fenced:
         fleet.sessions["r_0"].fence = lambda here, waypoints: "way to (1, 2); expected none"
     report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_happening=heard.append)
-    fleet.advance(fleet.time_s + 8.0)
+    fleet.advance(fleet.time_s + 5.0)
     fleet.close()
     sky.close()
 

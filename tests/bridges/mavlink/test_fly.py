@@ -160,7 +160,7 @@ def asked_to_arm(drone):
 
 @pytest.mark.parametrize(
     ("end", "mode", "more"),
-    [("hold", PX4.hold, ()), ("return", PX4.land, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
+    [("hold", PX4.hold, ()), ("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
 )
 def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more):
     drone = sky(speed=1.0 if more else 4.0)

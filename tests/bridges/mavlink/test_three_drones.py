@@ -72,7 +72,7 @@ def test_three_drones_one_of_which_runs_low(kind, offboard):
     # the low one went home and landed; the others hover where they did their last task
     r_1 = sky.drones["r_1"]
     assert r_1.flight.place == pytest.approx((0.0, 0.0, 0.0), abs=0.01)
-    assert (r_1.armed, r_1.mode) == (False, kind.land)
+    assert (r_1.armed, r_1.mode) == (False, kind.back)
     for robot in ("r_0", "r_2"):
         drone = sky.drones[robot]
         assert drone.armed

@@ -172,10 +172,10 @@ class SimulatedAutopilot:
             if self.kind.streams and self._now > self._setpoint_s + _OFFBOARD_LOST_S:
                 self.mode = self.kind.hold
             self.flight.go(self._setpoint, by_s)
-        elif self.mode == self.kind.back and self.flight.go((0.0, 0.0, self.flight.place[2]), by_s):
-            self.mode = self.kind.land
-        elif self.mode == self.kind.land and self.flight.go((*self.flight.place[:2], 0.0), by_s):
-            self.armed = False
+        elif self.mode in (self.kind.back, self.kind.land):
+            home = self.mode == self.kind.land or self.flight.go((0.0, 0.0, self.flight.place[2]), by_s)
+            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s):
+                self.armed = False
         else:
             self.flight.velocity = (0.0, 0.0, 0.0)
 
