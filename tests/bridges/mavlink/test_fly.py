@@ -57,7 +57,7 @@ def sky(port):
     """Lets drones fly in threads, each `speed` times as fast as time goes, and speak to the port."""
     over, threads = threading.Event(), []
 
-    def up(faults=None, *, kind=PX4, system=1, speed=4.0, origin=ORIGIN):
+    def up(faults=None, *, kind=PX4, system=1, speed=8.0, origin=ORIGIN):
         made = SimulatedAutopilot(kind, origin, faults or Faults(), system=system)
         how = {"until": over.is_set, "speed": speed}
         threads.append(threading.Thread(target=serve, args=(made, ("127.0.0.1", port)), kwargs=how))
@@ -122,13 +122,13 @@ def flying(mission, port):
         process.communicate()
 
 
-def two(sky, faults=None):
-    return [sky(faults, system=k + 1, speed=1.0, origin=origin_at(ORIGIN, (0.0, 8.0 * k, 0.0))) for k in range(2)]
+def two(sky, faults=None, speed=3.0):
+    return [sky(faults, system=k + 1, speed=speed, origin=origin_at(ORIGIN, (0.0, 8.0 * k, 0.0))) for k in range(2)]
 
 
 @pytest.mark.parametrize("more", [(), ("--offboard",)])
 def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
-    drones = two(sky)
+    drones = two(sky, speed=1.0 if more else 3.0)
     process = flying(*more)
     until(lambda: all(drone.flight.place[2] < -2.0 for drone in drones))
     process.send_signal(signal.SIGINT)
@@ -138,19 +138,19 @@ def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     assert re.search(r"interrupted at \d+\.\d s of the mission; drones were told to hover", err)
     assert "Traceback" not in err
     assert "0 of 2" in out
-    time.sleep(1.0)
+    time.sleep(0.5)
     assert [drone.flight.place for drone in drones] == places
     assert all(drone.armed and drone.mode == PX4.hold for drone in drones)
 
 
 def test_ctrl_c_while_drones_arm_leaves_none_armed(sky, flying):
-    drones = two(sky, Faults(slow_arm_s=2.0))
+    drones = two(sky, Faults(slow_arm_s=4.0))
     process = flying()
     until(lambda: all(asked_to_arm(drone) for drone in drones))
     assert not any(drone.armed for drone in drones)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=30) == 130
-    time.sleep(2.5)  # so long arming takes
+    time.sleep(1.5)  # so long arming takes
     assert not any(drone.armed or drone.flight.flies for drone in drones)
 
 
@@ -163,7 +163,7 @@ def asked_to_arm(drone):
     [("hold", PX4.hold, ()), ("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
 )
 def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more):
-    drone = sky(speed=1.0 if more else 4.0)
+    drone = sky(speed=1.0 if more else 8.0)
     assert fly(mission, port, "--arm", "--quiet", "--at-end", end, *more) == 0
     until(lambda: drone.mode == mode and (end == "hold" or not drone.armed))
     _, east, down = drone.flight.place
