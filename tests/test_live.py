@@ -8,6 +8,7 @@ import pytest
 
 import muster
 from muster._live import from_where_they_stand
+from muster.bridges.fleet import Failure
 from muster.execution.record import NoObserver
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.record import read_record
@@ -72,6 +73,14 @@ def test_who_fails_is_planned_for_and_who_is_discovered_helps():
     assert len(report.tasks_done) == 4
     assert {row.robot for row in report.tasks} <= {"r_1", "new"}
     assert report.reallocations >= 2
+
+
+def test_why_a_robot_fails_is_told():
+    there, heard = mission(), []
+    fleet = WorldAsFleet(there, [Failure(at_s=2, robot_fails="r_0", reason="low battery")])
+    flown(there, fleet, on_happening=heard.append)
+    (out,) = [happening.data for happening in heard if happening.kind == "robot_fails"]
+    assert out == {"robot": "r_0", "reason": "low battery"}
 
 
 def test_halted_it_stops_the_robots():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.bridges.fleet import Fleet
+from muster.bridges.fleet import Fleet, reason_of
 from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -71,7 +71,7 @@ def carry_out_live(
         executor.tick(fleet.time_s)
         while not executor.done and not halt.is_set():
             for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
-                executor.report_if_it_fits(event)
+                executor.report_if_it_fits(event, reason_of(event))
             executor.tick(fleet.time_s)
             if recorder is not None:
                 _tell_places(recorder, fleet.time_s, executor.crew, fleet.ports)

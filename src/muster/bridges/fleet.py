@@ -3,10 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from muster.mission.model import Event
 from muster.motion.port import RobotPort
+
+
+@dataclass(frozen=True)
+class Failure(Event):
+    """A robot says that it cannot go on (`robot_fails`), and why, in words; files have no word for that."""
+
+    reason: str = ""
+
+
+def reason_of(event: Event) -> str:
+    """Why it has happened, in words; empty where nobody says."""
+    return event.reason if isinstance(event, Failure) else ""
 
 
 class Fleet(Protocol):
@@ -28,7 +41,7 @@ class Fleet(Protocol):
         Returns
         -------
         what has happened that concerns the plan, as in a mission file: a robot that was discovered (`robot_joins`), one
-        that says that it cannot go on (`robot_fails`).
+        that says that it cannot go on (`robot_fails`, or a `Failure`).
         """
         ...
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,7 @@ _AT_END = ("hold", "return", "land")
     multiple=True,
     required=True,
     metavar="ROBOT=ENDPOINT",
-    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD].",
+    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it.",
 )
 @click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
 @click.option("--offboard", is_flag=True, help="Say way points one by one instead of uploading missions.")
@@ -120,8 +121,15 @@ def _degrees(value: float | None) -> str:
 def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: str, wishes: Wishes) -> int:
     with ctrl_c_halts() as halt:
         report = carried_out(mission, plan, fleet, wishes, halt)
-        if not halt.is_set() and at_end != "hold":
-            {"return": fleet.go_back, "land": fleet.land}[at_end]()
+        if not halt.is_set():
+            _end(fleet, at_end, halt)
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
     return reported(mission, report, wishes, halt, "drones were told to hover")
+
+
+def _end(fleet: MavlinkFleet, at_end: str, halt: threading.Event) -> None:
+    """What drones do when all is done; to hover they must be told: way points said one by one end now."""
+    {"hold": fleet.stop, "return": fleet.go_back, "land": fleet.land}[at_end]()
+    if halt.is_set():  # Ctrl-C meanwhile
+        fleet.stop()

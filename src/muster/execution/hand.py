@@ -161,6 +161,14 @@ class Hand:
         """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
         return self.busy_s if self.in_time else self.charged + (self.told.odometry_m if self.told else 0.0)
 
+    @property
+    def capacity(self) -> float | None:
+        """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
+        most = self.robot.work_capacity
+        if most is None or self.told is None or self.told.charge is None:
+            return most
+        return min(most, self.used + self.told.charge * most)
+
     def work_left_s(self, now: float) -> float:
         """Seconds until the work under way ends, if all goes well."""
         return max(0.0, self.begun_s + self.work_s - now) if self.activity is Activity.WORKING else 0.0

@@ -68,6 +68,8 @@ class Telemetry:
         the number of the last `send` that it took, and how many of its way points it has passed, holds included.
     inertial
         of its inertial unit; None where it has none, or has not moved yet.
+    charge
+        share of its work capacity that its battery leaves, 0 to 1; None where it says nothing of it.
     """
 
     time_s: float
@@ -78,6 +80,7 @@ class Telemetry:
     order: int
     passed: int
     inertial: Inertial | None = None
+    charge: float | None = None
 
 
 class RobotPort(Protocol):

@@ -54,7 +54,7 @@ def _work(task: Task, robot: Robot, session: Session) -> Iterator[Line]:
     doing = actions.plan(task, robot)
     if isinstance(doing, Impossible):
         raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
-    waypoints = [session.flown(waypoint) for waypoint in doing.waypoints]
+    waypoints = session.craft.flown(doing.waypoints)
     refusal = session.fence(waypoints[0].position, waypoints)
     if refusal:
         raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")
@@ -62,8 +62,8 @@ def _work(task: Task, robot: Robot, session: Session) -> Iterator[Line]:
 
 
 def _line(robot: str, task: str, waypoint: Waypoint, session: Session) -> Line:
-    earth = session.seen.earth
+    earth = session.craft.seen.earth
     if earth is None:
-        return Line(robot, task, None, None, waypoint.position[2] - session.seen.start[2], waypoint.hold_s)
+        return Line(robot, task, None, None, waypoint.position[2] - session.craft.seen.start[2], waypoint.hold_s)
     lat, lon, above = earth.to_drone(waypoint.position)
     return Line(robot, task, lat / DEGREES_E7, lon / DEGREES_E7, above, waypoint.hold_s)

@@ -1,15 +1,16 @@
-"""Drones behind MAVLink as a fleet: one session and one line each."""
+"""Drones behind MAVLink as a fleet: a session each, and the links by which they are reached."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
 
-from muster.bridges.mavlink.dialect import Codec
-from muster.bridges.mavlink.endpoints import Line, line_to
+from muster.bridges.fleet import Failure
+from muster.bridges.mavlink.craft import Craft
 from muster.bridges.mavlink.faults import Fault
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
+from muster.bridges.mavlink.links import Link, links_of
 from muster.bridges.mavlink.seen import Seen
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
@@ -20,6 +21,8 @@ from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02
+_LAST_WORDS_S = 1.0, 15.0
+"""For how long it is spoken at the least, and at the most, to drones that are told how to end."""
 
 
 class MavlinkFleet:
@@ -30,7 +33,7 @@ class MavlinkFleet:
     mission
         whose robots they are.
     endpoints
-        for each robot how it is reached: see `line_to`.
+        for each robot how it is reached: see `endpoint_of`.
     settings
         what is allowed: by default nothing but to listen.
     height_m
@@ -62,16 +65,11 @@ class MavlinkFleet:
         self._begun_s = self._clock.now()
         fences = fences_of(mission)
         self.sessions: dict[str, Session] = {}
-        self._lines: dict[str, tuple[Line, Codec]] = {}
-        try:
-            for robot in mission.robots:
-                seen = _seen_of(mission, robot)
-                fence = fences.get(robot.id, no_fence)
-                self.sessions[robot.id] = Session(robot, seen, self._settings, fence, height_m)
-                self._lines[robot.id] = line_to(endpoints[robot.id]), Codec()
-        except BaseException:
-            self.close()
-            raise
+        for robot in mission.robots:
+            craft = Craft(robot, _seen_of(mission, robot), self._settings, height_m)
+            self.sessions[robot.id] = Session(craft, fences.get(robot.id, no_fence))
+        self._link_of: dict[str, Link] = links_of(endpoints)
+        self._links = list({id(link): link for link in self._link_of.values()}.values())
         self._ports = {robot: Port(session, lambda: self.time_s) for robot, session in self.sessions.items()}
         self._told: set[str] = set()
 
@@ -89,18 +87,6 @@ class MavlinkFleet:
         found = [session.fault for session in self.sessions.values() if session.fault is not None]
         return sorted(found, key=lambda fault: fault.at_s)
 
-    @property
-    def remaining(self) -> dict[str, float | None]:
-        """For each robot the work capacity that its battery leaves, in the mission's unit; without one the share.
-
-        None before its battery was heard of.
-        """
-        shares = {name: session.seen.battery for name, session in self.sessions.items()}
-        return {
-            name: None if share is None else share * (self.sessions[name].robot.work_capacity or 1.0)
-            for name, share in shares.items()
-        }
-
     def connect(self, within_s: float = 10.0) -> None:
         """Wait until every drone has said who and where it is.
 
@@ -109,19 +95,18 @@ class MavlinkFleet:
         NetworkError
             if one does not.
         ParameterError
-            if one is none that Muster flies, or stands far from where the mission says.
+            if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
         until = self.time_s + within_s
-        while self.time_s < until and not all(session.located for session in self.sessions.values()):
+        while self.time_s < until and not all(session.craft.located for session in self.sessions.values()):
             self._step()
         for name, session in self.sessions.items():
-            if session.autopilot is None:
-                raise NetworkError(f"{name}: no heartbeat within {within_s:g} s; expected a drone at its endpoint")
-            if not session.located:
+            self._require_one(name, within_s)
+            if not session.craft.located:
                 raise NetworkError(
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
-            self._require_near(session)
+            self._require_near(session.craft)
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Hear and speak; a drone that cannot go on is told once (`robot_fails`)."""
@@ -132,55 +117,63 @@ class MavlinkFleet:
                 return events
 
     def stop(self) -> None:
-        """Let every drone that flies hover, and go on speaking for as long as they need to hear it."""
+        """Let every drone that flies hover, and speak until they say that they do; on the ground none is left armed."""
         for session in self.sessions.values():
             session.hold(self.time_s)
-        self._speak_for(3.0)
+        self._speak_last_words()
 
     def go_back(self) -> None:
         """Let every drone that flies return to where it was armed, and land there."""
         for session in self.sessions.values():
             session.go_back(self.time_s)
-        self._speak_for(3.0)
+        self._speak_last_words()
 
     def land(self) -> None:
         """Let every drone that flies land where it is."""
         for session in self.sessions.values():
             session.land(self.time_s)
-        self._speak_for(3.0)
+        self._speak_last_words()
 
     def close(self) -> None:
-        for line, _ in self._lines.values():
-            line.close()
+        for link in self._links:
+            link.close()
 
     def _event(self, fault: Fault) -> Event:
         self._told.add(fault.robot)
-        return Event(at_s=max(0.0, fault.at_s), robot_fails=fault.robot)
+        reason = f"{fault.kind.words}: {fault.detail}"
+        return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=reason)
 
-    def _speak_for(self, seconds: float) -> None:
-        until = self.time_s + seconds
-        while self.time_s < until:
+    def _speak_last_words(self) -> None:
+        least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
+        while self.time_s < least or (self.time_s < most and any(session.busy for session in self.sessions.values())):
             self._step()
 
     def _step(self) -> None:
-        """Hear all lines, let sessions think, speak, wait."""
+        """Hear all links, let sessions think, speak, wait."""
+        for link in self._links:
+            for name, message in link.hear():
+                self.sessions[name].hear(message, self.time_s)
         for name, session in self.sessions.items():
-            line, codec = self._lines[name]
-            for message in codec.parse(line.read()):
-                if message.get_srcComponent() == 1:  # the autopilot itself, not a camera or gimbal on board
-                    session.hear(message, self.time_s)
             session.tick(self.time_s)
             for message in session.take():
-                line.write(codec.pack(message))
+                self._link_of[name].say(name, message)
         self._wait(_STEP_S)
 
-    def _require_near(self, session: Session) -> None:
-        place, start = session.seen.place, session.seen.start
+    def _require_one(self, name: str, within_s: float) -> None:
+        link = self._link_of[name]
+        if self.sessions[name].craft.autopilot is None:
+            raise NetworkError(f"{name}: no heartbeat within {within_s:g} s; expected a drone at its endpoint")
+        if link.others:
+            found = " and ".join(map(str, [link.system_of(name), *sorted(link.others)]))
+            raise ParameterError(f"{name}: systems {found} on {link.name}; expected one, or which: {link.name}#1")
+
+    def _require_near(self, craft: Craft) -> None:
+        place, start = craft.seen.place, craft.seen.start
         assert place is not None
         metres = ((place[0] - start[0]) ** 2 + (place[1] - start[1]) ** 2) ** 0.5
         if metres > self._settings.far_m:
             raise ParameterError(
-                f"{session.robot.id}: stands {metres:.1f} m from its start in the mission; "
+                f"{craft.robot.id}: stands {metres:.1f} m from its start in the mission; "
                 f"expected at most {self._settings.far_m:g} m: check origin_wgs84 and its position"
             )
 
@@ -193,7 +186,7 @@ class Port:
 
     @property
     def robot(self) -> str:
-        return self._session.robot.id
+        return self._session.craft.robot.id
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         return self._session.follow(waypoints, self._now())

@@ -7,7 +7,7 @@ and whether they are armed, which is the answer that counts: an acknowledgement 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.conversation import Ask, Script, pause
@@ -17,6 +17,7 @@ from muster.bridges.mavlink.items import Item, Route
 
 _AGAIN = 3
 """How often a command is given that is refused for the moment."""
+_NO_REFUSAL = (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
 
 
 def command(target: Message, number: int, *params: float) -> Message:
@@ -29,37 +30,39 @@ def obeyed(
     target: Message,
     number: int,
     params: Sequence[float],
-    shows: str,
-    value: int,
+    shows: Callable[[Message], bool],
     kind: Kind,
     *,
-    takes_ack: bool = False,
+    sightings: int = 1,
+    with_it: Sequence[Message] = (),
 ) -> Script:
-    """Give a command until the heartbeat shows that it was obeyed.
+    """Give a command until what is heard shows that it was obeyed. That it is acknowledged does not.
 
     Parameters
     ----------
-    shows, value
-        `mode`: the heartbeat's custom mode must be this; `armed`: it must be armed.
+    shows
+        whether a message shows it; heartbeats that do not show that it is not so.
     kind
         of the fault if it is refused.
-    takes_ack
-        whether an acknowledgement is enough: a short mission may be over before the next heartbeat.
+    sightings
+        how many messages in a row must show it.
+    with_it
+        what is said before it, each time.
     """
+    sighted = 0
 
     def answer(message: Message) -> Message | None:
-        if message.get_type() == "HEARTBEAT":
-            is_mode = shows == "mode" and message.custom_mode == value
-            is_armed = shows == "armed" and message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-            return message if is_mode or is_armed else None
+        nonlocal sighted
+        if shows(message) or message.get_type() == "HEARTBEAT":
+            sighted = sighted + 1 if shows(message) else 0
+            return message if sighted >= sightings else None
         answered = message.get_type() == "COMMAND_ACK" and message.command == number
-        waits = (mavlink.MAV_RESULT_IN_PROGRESS, *(() if takes_ack else (mavlink.MAV_RESULT_ACCEPTED,)))
-        return message if answered and message.result not in waits else None
+        return message if answered and message.result not in _NO_REFUSAL else None
 
     name = mavlink.enums["MAV_CMD"][number].name
     for _ in range(_AGAIN):
-        said = yield Ask([command(target, number, *params)], answer, name)
-        if said.get_type() == "HEARTBEAT" or said.result == mavlink.MAV_RESULT_ACCEPTED:
+        said = yield Ask([*with_it, command(target, number, *params)], answer, name)
+        if said.get_type() != "COMMAND_ACK":
             return
         if said.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
             break
@@ -67,15 +70,39 @@ def obeyed(
     raise FaultError(kind, f"{name}: {mavlink.enums['MAV_RESULT'][said.result].name}")
 
 
-def mode(target: Message, autopilot: Autopilot, wanted: int) -> Script:
+def mode(target: Message, autopilot: Autopilot, wanted: int, *, sightings: int = 1) -> Script:
     """Bring it into a mode."""
-    params = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, *autopilot.mode_parameters(wanted))
-    return obeyed(target, mavlink.MAV_CMD_DO_SET_MODE, params, "mode", wanted, Kind.COMMAND_REFUSED)
+    params = _mode_parameters(autopilot, wanted)
+    number = mavlink.MAV_CMD_DO_SET_MODE
+    yield from obeyed(target, number, params, _beats(mode=wanted), Kind.COMMAND_REFUSED, sightings=sightings)
 
 
 def armed(target: Message) -> Script:
     """Arm it. The second parameter stays 0: nothing is forced."""
-    return obeyed(target, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0,), "armed", 1, Kind.ARM_REFUSED)
+    return obeyed(target, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0,), _beats(armed=True), Kind.ARM_REFUSED)
+
+
+def disarmed(target: Message, autopilot: Autopilot) -> Script:
+    """Disarm it on the ground: not forced, so that in the air it refuses; told to hold too, in case it takes off."""
+    hold = command(target, mavlink.MAV_CMD_DO_SET_MODE, *_mode_parameters(autopilot, autopilot.hold))
+    number, kind = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, Kind.COMMAND_REFUSED
+    return obeyed(target, number, (0.0,), _beats(armed=False), kind, sightings=2, with_it=[hold])
+
+
+def _mode_parameters(autopilot: Autopilot, wanted: int) -> tuple[float, ...]:
+    return (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, *autopilot.mode_parameters(wanted))
+
+
+def _beats(mode: int | None = None, armed: bool | None = None) -> Callable[[Message], bool]:
+    """Whether a message is a heartbeat in a mode, of a drone that is armed or is not."""
+
+    def shows(message: Message) -> bool:
+        if message.get_type() != "HEARTBEAT":
+            return False
+        is_armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+        return mode in (None, message.custom_mode) and armed in (None, is_armed)
+
+    return shows
 
 
 def started(target: Message, autopilot: Autopilot, first: int) -> Script:
@@ -86,8 +113,13 @@ def started(target: Message, autopilot: Autopilot, first: int) -> Script:
         return message if message.get_type() == "MISSION_CURRENT" and message.seq == first else None
 
     yield Ask([mavlink.MAVLink_mission_set_current_message(*to, first)], at_first, "MISSION_SET_CURRENT")
-    number = mavlink.MAV_CMD_MISSION_START
-    yield from obeyed(target, number, (), "mode", autopilot.mission, Kind.COMMAND_REFUSED, takes_ack=True)
+    flies = _beats(mode=autopilot.mission)
+
+    def under_way(message: Message) -> bool:  # a short mission may be over before the next heartbeat
+        over = message.get_type() == "MISSION_CURRENT" and message.mission_state == mavlink.MISSION_STATE_COMPLETE
+        return over or message.get_type() == "MISSION_ITEM_REACHED" or flies(message)
+
+    yield from obeyed(target, mavlink.MAV_CMD_MISSION_START, (), under_way, Kind.COMMAND_REFUSED)
 
 
 def upload(target: Message, route: Route) -> Script:
@@ -129,7 +161,11 @@ def climb(target: Message, above_home_m: float) -> Script:
             return message if message.relative_alt / 1000 > above_home_m - 0.5 else None
         if message.get_type() == "LOCAL_POSITION_NED":
             return message if -message.z > above_home_m - 0.5 else None
-        return None
+        refused = message.get_type() == "COMMAND_ACK" and message.command == mavlink.MAV_CMD_NAV_TAKEOFF
+        return message if refused and message.result not in _NO_REFUSAL else None
 
     climbing = command(target, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, above_home_m)
-    yield Ask([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
+    said = yield Ask([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
+    if said.get_type() == "COMMAND_ACK":
+        result = mavlink.enums["MAV_RESULT"][said.result].name
+        raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {result}")

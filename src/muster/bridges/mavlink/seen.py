@@ -11,6 +11,7 @@ from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
 from muster.motion.port import Place
 
 _STILL_MPS = 0.2  # slower is noise, and no way
+_UP_M = 0.5  # above home: higher is in the air
 
 
 @dataclass
@@ -34,6 +35,7 @@ class Seen:
     velocity: Place = (0.0, 0.0, 0.0)
     heading: float = 0.0
     odometry_m: float = 0.0
+    was_up: bool = False  # whether it was seen in the air, armed
     battery: float | None = None  # share that remains
     breach: str = ""  # of the fence of the autopilot, in words
     text: str = ""  # its last words
@@ -48,6 +50,11 @@ class Seen:
     @property
     def armed(self) -> bool:
         return self.heartbeat is not None and bool(self.heartbeat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
+    @property
+    def up(self) -> bool:
+        """Whether it is in the air, armed."""
+        return self.armed and self.place is not None and self.place[2] > self.start[2] + _UP_M
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message."""
@@ -90,7 +97,7 @@ class Seen:
         self.text = "".join(letter for letter in message.text if letter.isprintable())
         words = self.text.lower()
         if "fence" in words and "breach" in words:
-            self.breach = self.text
+            self.breach = "" if "clear" in words else self.text
 
     def _has_left(self, percent: int) -> None:
         if percent >= 0:  # -1: not known
@@ -102,3 +109,4 @@ class Seen:
         if self.place is not None and self.armed and math.hypot(*self.velocity) > _STILL_MPS:
             self.odometry_m += math.dist(self.place, place)
         self.place, self.place_s = place, now
+        self.was_up = self.was_up or self.up

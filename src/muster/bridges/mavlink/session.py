@@ -1,4 +1,4 @@
-"""One drone, sans-I/O: messages in, messages out, times given. What it does, how far it is, why it cannot go on.
+"""One drone, sans-I/O: messages in, messages out, times given. Orders in, how far it is, why it cannot go on.
 
 Without `settings.arm` a session says nothing but heartbeats and requests for telemetry: all leaves by `_say`.
 """
@@ -6,19 +6,16 @@ Without `settings.arm` a session says nothing but heartbeats and requests for te
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
-from muster.bridges.mavlink import scripts
-from muster.bridges.mavlink.autopilots import Autopilot, autopilot_of
-from muster.bridges.mavlink.conversation import Conversation, Script, pause
+from muster.bridges.mavlink import orders, scripts
+from muster.bridges.mavlink.autopilots import autopilot_of
+from muster.bridges.mavlink.conversation import Conversation, Script
+from muster.bridges.mavlink.craft import Craft
 from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
-from muster.bridges.mavlink.follower import EVERY_S, Follower
-from muster.bridges.mavlink.items import Route, route_of
-from muster.bridges.mavlink.seen import Seen
-from muster.bridges.mavlink.settings import Settings
+from muster.bridges.mavlink.follower import EVERY_S
+from muster.bridges.mavlink.watch import Watch
 from muster.mission.errors import ParameterError
-from muster.mission.model import Robot
 from muster.motion.port import Place, Telemetry, Waypoint
 
 Fence = Callable[[Place, Sequence[Waypoint]], str]
@@ -35,38 +32,25 @@ class Session:
 
     Parameters
     ----------
-    robot
-        who it is in the mission.
-    seen
-        where what it says of itself is kept, and the frames in which it says it.
-    settings
-        what is allowed.
+    craft
+        who it is, and what is known of it.
     fence
         says where it may go.
-    height_m
-        in a mission in the plane, how high above home it flies; None in space.
     """
 
-    def __init__(self, robot: Robot, seen: Seen, settings: Settings, fence: Fence, height_m: float | None) -> None:
-        self.robot, self.seen, self.settings = robot, seen, settings
-        self.autopilot: Autopilot | None = None
+    def __init__(self, craft: Craft, fence: Fence) -> None:
+        self.craft, self.fence = craft, fence
         self.fault: Fault | None = None
-        self.order, self.passed = 0, 0
-        self.fence, self._height_m = fence, height_m
+        self._order = 0
         self._outbox: list[Message] = []
         self._talk: Conversation | None = None
-        self._route: Route | None = None  # the mission that it flies
-        self._follower: Follower | None = None
-        self._mode: int | None = None  # in which it must be
-        self._flew = False  # whether Muster asked it to arm
-        self._took_off = False  # whether it was seen armed since
-        self._astray = 0  # heartbeats in a row in another mode
+        self._watch = Watch(craft)
         self._said_s = self._asked_s = self._streamed_s = float("-inf")
 
     @property
-    def located(self) -> bool:
-        """Whether it has said where it is, in all frames in which it is to be told where to go."""
-        return self.seen.place is not None and not (self.settings.offboard and self.seen.local is None)
+    def busy(self) -> bool:
+        """Whether something that it was told is not answered yet."""
+        return self._talk is not None
 
     def take(self) -> list[Message]:
         """What is to be sent, which it forgets."""
@@ -75,11 +59,20 @@ class Session:
 
     def telemetry(self) -> Telemetry | None:
         """As a port has it; None before it has said where it is."""
-        seen = self.seen
+        craft, seen = self.craft, self.craft.seen
         if seen.place is None:
             return None
-        place = seen.place if self._height_m is None else (*seen.place[:2], 0.0)
-        return Telemetry(seen.place_s, place, seen.heading, seen.velocity, seen.odometry_m, self.order, self.passed)
+        place = seen.place if craft.height_m is None else (*seen.place[:2], 0.0)
+        return Telemetry(
+            seen.place_s,
+            place,
+            seen.heading,
+            seen.velocity,
+            seen.odometry_m,
+            self._order,
+            craft.passed,
+            charge=seen.battery,
+        )
 
     def follow(self, waypoints: Sequence[Waypoint], now: float) -> int:
         """Let it pass way points in place of those that it still has.
@@ -89,29 +82,26 @@ class Session:
         ParameterError
             if it may not arm.
         """
-        if not self.settings.arm:
-            raise ParameterError(f"{self.robot.id}: way points; expected none without leave to arm")
+        if not self.craft.settings.arm:
+            raise ParameterError(f"{self.craft.robot.id}: way points; expected none without leave to arm")
         self._take_order()
         if self.fault is None:
-            self._try(lambda: self._set_out([self.flown(waypoint) for waypoint in waypoints], now), now)
-        return self.order
+            self._try(lambda: self._set_out(self.craft.flown(waypoints), now), now)
+        return self._order
 
     def hold(self, now: float) -> int:
-        """Let it stay where it is, if it flies, and is ours."""
+        """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
         self._take_order()
-        if self.autopilot is not None:
-            self._bring_into(self.autopilot.hold, now)
-        return self.order
+        self._end_in(lambda: self.craft.kind.hold, now)
+        return self._order
 
     def go_back(self, now: float) -> None:
         """Let it return to where it was armed, and land there, as its autopilot does it."""
-        if self.autopilot is not None:
-            self._bring_into(self.autopilot.back, now)
+        self._end_in(lambda: self.craft.kind.back, now)
 
     def land(self, now: float) -> None:
         """Let it land where it is."""
-        if self.autopilot is not None:
-            self._bring_into(self.autopilot.land, now)
+        self._end_in(lambda: self.craft.kind.land, now)
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message.
@@ -121,11 +111,11 @@ class Session:
         ParameterError
             at the first heartbeat, if Muster cannot fly such a drone.
         """
-        if message.get_type() == "HEARTBEAT" and self.autopilot is None:
-            self.autopilot = autopilot_of(message, self.robot.id)
-        if self.autopilot is None:
+        if message.get_type() == "HEARTBEAT" and self.craft.autopilot is None:
+            self.craft.autopilot = autopilot_of(message, self.craft.robot.id)
+        if self.craft.autopilot is None:
             return
-        self.seen.hear(message, now)
+        self.craft.seen.hear(message, now)
         self._try(lambda: self._answer(message, now), now)
 
     def tick(self, now: float) -> None:
@@ -134,9 +124,9 @@ class Session:
             self._said_s = now
             kind = mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID
             self._say(mavlink.MAVLink_heartbeat_message(*kind, 0, 0, mavlink.MAV_STATE_ACTIVE, 3))
-        if self.autopilot is None:
+        if self.craft.autopilot is None:
             return
-        silent = now - max(self.seen.place_s, self._asked_s) >= _ASK_AGAIN_S
+        silent = now - max(self.craft.seen.place_s, self._asked_s) >= _ASK_AGAIN_S
         if silent or self._asked_s < 0:
             self._ask_for_telemetry(now)
         self._try(lambda: self._go_on(now), now)
@@ -145,169 +135,97 @@ class Session:
         """Take no part any more, for good, and react as the kind of fault says."""
         if self.fault is not None:
             return
-        self.fault = Fault(now, self.robot.id, kind, detail)
-        self._talk = self._route = self._follower = self._mode = None
-        assert self.autopilot is not None
-        reactions = {Reaction.HOLD: self.autopilot.hold, Reaction.RETURN: self.autopilot.back}
-        if kind.reaction in reactions and self._ours:
-            self._begin(self._into(reactions[kind.reaction]), now)
-
-    @property
-    def _ours(self) -> bool:
-        """Whether it flies, in a mode in which Muster brought it."""
-        return (
-            self._flew and self.seen.armed and self.autopilot is not None and self.seen.mode in self.autopilot.own_modes
-        )
+        self.fault = Fault(now, self.craft.robot.id, kind, detail)
+        self.craft.forget_order()
+        self._talk = self.craft.mode = None
+        reactions = {Reaction.HOLD: self.craft.kind.hold, Reaction.RETURN: self.craft.kind.back}
+        if kind.reaction in reactions:
+            self._end_flight(reactions[kind.reaction], now)
 
     def _take_order(self) -> None:
-        self.order, self.passed = self.order + 1, 0
-        self._route = self._follower = None
-
-    def flown(self, waypoint: Waypoint) -> Waypoint:
-        """A way point at the height at which it is flown."""
-        x, y, z = waypoint.position
-        ground = self.seen.start[2]
-        height = z if self._height_m is None else ground + self._height_m
-        return replace(waypoint, position=(x, y, max(height, ground + self.settings.lowest_m)))
+        self._order += 1
+        self.craft.forget_order()
 
     def _set_out(self, waypoints: Sequence[Waypoint], now: float) -> None:
-        here, target = self.seen.place, self.seen.heartbeat
-        if here is None or target is None or not self.located:
+        here = self.craft.seen.place
+        if here is None or not self.craft.located:
             raise FaultError(Kind.NO_ANSWER, "it has not said where it is")
+        self._watch.require_nobody_flies_it()
         refusal = self.fence(here, waypoints)
         if refusal:
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:
             return
-        self._require_charge()
-        self._begin(self._guided(waypoints) if self.settings.offboard else self._mission(waypoints), now)
+        self._watch.require_charge()
+        way = orders.guided if self.craft.settings.offboard else orders.mission
+        self._begin(way(self.craft, waypoints), now)
 
-    def _mission(self, waypoints: Sequence[Waypoint]) -> Script:
-        """Stay, be given a mission, arm if it stands on the ground, fly it. Missions are never changed in flight."""
-        target, seen = self.seen.heartbeat, self.seen
-        assert self.autopilot is not None
-        assert seen.earth is not None
-        yield from self._into(self.autopilot.hold if seen.armed else self.autopilot.ready)
-        assert seen.place is not None
-        route = route_of(
-            waypoints,
-            seen.place,
-            seen.earth,
-            self.autopilot,
-            speed_mps=self.robot.speed_mps,
-            accept_m=self.settings.accept_m,
-            take_off=not seen.armed,
-        )
-        yield from scripts.upload(target, route)
-        yield from self._armed()
-        yield from scripts.started(target, self.autopilot, route.first)
-        self._route, self._mode = route, self.autopilot.mission
-
-    def _guided(self, waypoints: Sequence[Waypoint]) -> Script:
-        """PX4: way points are said for a second, then it follows them. ArduPilot: it climbs first."""
-        assert self.autopilot is not None
-        assert self.seen.local is not None
-        follower = Follower(waypoints, self.settings.accept_m)
-        if self.autopilot.streams:
-            self._follower = follower
-            yield pause(1.2)
-            yield from self._into(self.autopilot.guided)
-            yield from self._armed()
-            return
-        yield from self._into(self.autopilot.guided)
-        if not self.seen.armed:
-            yield from self._armed()
-            yield from scripts.climb(self.seen.heartbeat, waypoints[0].position[2] - self.seen.start[2])
-        self._follower = follower
-
-    def _armed(self) -> Script:
-        self._flew = True
-        if not self.seen.armed:
-            yield from scripts.armed(self.seen.heartbeat)
-
-    def _into(self, mode: int) -> Script:
-        assert self.autopilot is not None
-        self._mode = None
-        if self.seen.mode != mode:
-            yield from scripts.mode(self.seen.heartbeat, self.autopilot, mode)
-        self._mode = mode
-
-    def _bring_into(self, mode: int, now: float) -> None:
-        """Into a mode, if it flies under Muster, and has not failed."""
-        if self.fault is None:
+    def _end_in(self, mode: Callable[[], int], now: float) -> None:
+        """As `_end_flight`, if it was heard and has not failed."""
+        if self.craft.autopilot is not None and self.fault is None:
             self._talk = None
-            if self._ours:
-                self._try(lambda: self._begin(self._into(mode), now), now)
+            self._try(lambda: self._end_flight(mode(), now), now)
+
+    def _end_flight(self, mode: int, now: float) -> None:
+        """Into a mode if it flies under Muster; on the ground it stands down instead."""
+        if self.craft.stands:
+            self._begin(orders.stand_down(self.craft), now)
+        elif self.craft.ours:
+            self._begin(orders.into(self.craft, mode), now)
 
     def _begin(self, script: Script, now: float) -> None:
-        self._astray = 0
+        self._watch.astray = 0
         self._talk = Conversation(script, self._say, now)
 
     def _answer(self, message: Message, now: float) -> None:
+        beats = message.get_type() == "HEARTBEAT" and self.craft.asked_to_arm
         if self._talk is not None:
+            if beats:
+                self._watch.look_meanwhile()
             self._talk.hear(message, now)
             self._talk = None if self._talk.done else self._talk
-        elif message.get_type() == "HEARTBEAT" and self.fault is None and self._flew:
-            self._look_at_mode()
+        elif beats and self.fault is None:
+            self._watch.look_at_heartbeat()
         self._see_progress(message)
 
     def _see_progress(self, message: Message) -> None:
         """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
-        if self._route is None:
+        craft = self.craft
+        if craft.route is None:
             return
         if message.get_type() == "MISSION_ITEM_REACHED":
-            self.passed = max(self.passed, self._route.passed(message.seq))
+            craft.passed = max(craft.passed, craft.route.passed(message.seq))
         elif message.get_type() == "MISSION_CURRENT":
             over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
-            self.passed = max(self.passed, self._route.passed(len(self._route.items) if over else message.seq - 1))
-
-    def _look_at_mode(self) -> None:
-        """In a mode that Muster did not choose somebody else flies: the pilot, or the autopilot's own failsafe."""
-        assert self.autopilot is not None
-        self._took_off = self._took_off or self.seen.armed
-        if self._took_off and not self.seen.armed and self._mode not in (self.autopilot.back, self.autopilot.land):
-            raise FaultError(Kind.DISARMED, self.seen.text or "it says that it is not armed")
-        over = self._route is not None and self.passed >= len(self._route.passed_with)
-        fine = self._mode is None or self.seen.mode == self._mode or (over and self.seen.mode == self.autopilot.hold)
-        self._astray = 0 if fine else self._astray + 1
-        if self._astray >= 2:
-            raise FaultError(Kind.TAKEN_OVER, f"mode {self.seen.mode:#x}; {self.seen.text}".rstrip("; "))
+            craft.passed = max(craft.passed, craft.route.passed(len(craft.route.items) if over else message.seq - 1))
 
     def _go_on(self, now: float) -> None:
         if self._talk is not None:
             self._talk.tick(now)
             if self._talk.done:
                 self._talk = None
-        if self.fault is not None:
+        if self.fault is None:
+            self._watch.look_at_clock(now)
+            self._lead(now)
+
+    def _lead(self, now: float) -> None:
+        """Say where it is to be, if it is led by way points that are said one by one."""
+        craft, seen = self.craft, self.craft.seen
+        if craft.follower is None or seen.place is None:
             return
-        self._notice(now)
-        if self._follower is not None and self.seen.place is not None:
-            self._follower.look(self.seen.place, now)
-            self.passed = self._follower.passed
-            if now >= self._streamed_s + EVERY_S and self.seen.local is not None:
-                self._streamed_s = now
-                self._say(self._follower.message(self.seen.heartbeat, self.seen.local, now))
-
-    def _notice(self, now: float) -> None:
-        silence = now - self.seen.heartbeat_s
-        if silence > self.settings.link_lost_s:
-            raise FaultError(Kind.LINK_LOST, f"no heartbeat for {silence:.1f} s")
-        if self._flew:
-            if self.seen.breach:
-                raise FaultError(Kind.FENCE_BREACHED, self.seen.breach)
-            self._require_charge()
-
-    def _require_charge(self) -> None:
-        left = self.seen.battery
-        if left is not None and left < self.settings.low_battery:
-            raise FaultError(Kind.LOW_BATTERY, f"{left:.0%} left; expected {self.settings.low_battery:.0%}")
+        craft.follower.look(seen.place, now)
+        craft.passed = craft.follower.passed
+        if now >= self._streamed_s + EVERY_S and seen.local is not None:
+            self._streamed_s = now
+            self._say(craft.follower.message(craft.target, seen.local, now))
 
     def _try(self, what: Callable[[], None], now: float) -> None:
         """Do something that a fault may end; a second fault, of the reaction to the first, ends that alone."""
         try:
             what()
         except FaultError as error:
-            said = f" ({self.seen.text})" if error.kind is Kind.ARM_REFUSED and self.seen.text else ""
+            text = self.craft.seen.text
+            said = f" ({text})" if error.kind is Kind.ARM_REFUSED and text else ""
             self._talk = None
             self.fail(error.kind, error.detail + said, now)
 
@@ -315,10 +233,10 @@ class Session:
         self._asked_s = now
         for number in _TELEMETRY:
             rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
-            self._say(scripts.command(self.seen.heartbeat, *rate))
+            self._say(scripts.command(self.craft.target, *rate))
 
     def _say(self, message: Message) -> None:
         """The one way out."""
         harmless = message.get_type() == "HEARTBEAT" or getattr(message, "command", None) in _REQUESTS
-        assert harmless or self.settings.arm, f"{message.get_type()} without leave to arm"
+        assert harmless or self.craft.settings.arm, f"{message.get_type()} without leave to arm"
         self._outbox.append(message)

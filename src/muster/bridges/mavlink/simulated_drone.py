@@ -19,7 +19,7 @@ from muster.motion.frames import enu_to_ned
 from muster.motion.port import Place
 
 _GROUND_M = 0.1
-_OFFBOARD_LOST_S = 0.5
+_OFFBOARD_LOST_S = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,21 +30,30 @@ class Faults:
     ----------
     loss
         share of packets that are lost, both ways.
-    refuse_arm, reject_item, repeat_reached
-        whether it does not arm; which item of a mission it rejects; whether it says three times that one is reached.
-    low_battery_at_s, silent_at_s, breach_at_s, pilot_at_s
-        when, in seconds after it was armed, its battery falls to 10 %, it is heard no more, it leaves its fence, a
-        pilot takes it over.
+    refuse_arm, refuse_start, mute
+        whether it does not arm; does not start a mission, nor follow way points; answers nothing that it is told.
+    slow_arm_s
+        seconds from when it is told to arm until it is armed.
+    reject_item, repeat_reached
+        which item of a mission it rejects; whether it says three times that one is reached.
+    low_battery_at_s, silent_at_s, breach_at_s, breach_text_at_s, pilot_at_s, disarm_at_s
+        when, in seconds after it was armed, its battery falls to 10 %, it is heard no more, it leaves its fence (and
+        says so by FENCE_STATUS, or by STATUSTEXT alone), a pilot takes it over, its motors stop.
     """
 
     loss: float = 0.0
     refuse_arm: bool = False
+    refuse_start: bool = False
+    mute: bool = False
+    slow_arm_s: float = 0.0
     reject_item: int | None = None
     repeat_reached: bool = False
     low_battery_at_s: float | None = None
     silent_at_s: float | None = None
     breach_at_s: float | None = None
+    breach_text_at_s: float | None = None
     pilot_at_s: float | None = None
+    disarm_at_s: float | None = None
 
 
 @dataclass
@@ -85,8 +94,9 @@ class SimulatedAutopilot:
         self._arriving: list[Message | None] = []  # a mission that is uploaded
         self._aim: Place | None = None
         self._setpoint: Place | None = None
-        self._setpoint_s = self._asked_s = self._armed_s = self._held_s = -1e9
+        self._setpoint_s = self._armed_s = self._held_s = -1e9
         self._now = self._said_s = self._telemetry_s = -1e9
+        self._arms_s: float | None = None  # when it will be armed
 
     def receive(self, data: bytes) -> None:
         """Take in a packet."""
@@ -94,13 +104,15 @@ class SimulatedAutopilot:
             if self._random.random() >= self.faults.loss:
                 self.heard.append(message)
                 handler = getattr(self, f"_on_{message.get_type().lower()}", None)
-                if handler is not None:
+                if handler is not None and not self.faults.mute and self._is_for_me(message):
                     handler(message)
 
     def advance(self, now: float) -> list[bytes]:
         """Fly until a time; returns what it says."""
         by_s = 0.0 if self._now < -1e8 else now - self._now
         self._now = now
+        if self._arms_s is not None and now >= self._arms_s:
+            self.armed, self._armed_s, self._arms_s = True, now, None
         if self.armed:
             self._fly(by_s)
         self._let_faults_happen()
@@ -109,12 +121,17 @@ class SimulatedAutopilot:
         silent = self._due(self.faults.silent_at_s)
         return [self._codec.pack(m) for m in out if not silent and self._random.random() >= self.faults.loss]
 
+    def _is_for_me(self, message: Message) -> bool:
+        return getattr(message, "target_system", self.system) in (0, self.system)
+
     def _due(self, at_s: float | None) -> bool:
         return at_s is not None and self._armed_s > -1e8 and self._now >= self._armed_s + at_s
 
     def _let_faults_happen(self) -> None:
         if self._due(self.faults.low_battery_at_s):
             self.battery = 0.1
+        if self._due(self.faults.disarm_at_s):
+            self.armed = False
         if self._due(self.faults.pilot_at_s) and self.mode in self.kind.own_modes:
             self.mode = 2 if self.kind is ARDUPILOT else 3 << 16  # altitude hold, position control
 
@@ -127,6 +144,8 @@ class SimulatedAutopilot:
             self._say("heartbeat", mavlink.MAV_TYPE_QUADROTOR, autopilot, base, self.mode, 4, 3)
             self._say("sys_status", 0, 0, 0, 0, 12000, -1, round(self.battery * 100), 0, 0, 0, 0, 0, 0)
             breached = int(self._due(self.faults.breach_at_s))
+            if self._due(self.faults.breach_text_at_s):
+                self._say("statustext", mavlink.MAV_SEVERITY_WARNING, b"Geofence breached")
             self._say("fence_status", breached, breached, mavlink.FENCE_BREACH_BOUNDARY if breached else 0, 0)
         if now >= self._telemetry_s + 0.1:
             self._telemetry_s = now
@@ -153,10 +172,10 @@ class SimulatedAutopilot:
             if self.kind.streams and self._now > self._setpoint_s + _OFFBOARD_LOST_S:
                 self.mode = self.kind.hold
             self.flight.go(self._setpoint, by_s)
-        elif self.mode == self.kind.back and self.flight.go((0.0, 0.0, self.flight.place[2]), by_s):
-            self.mode = self.kind.land
-        elif self.mode == self.kind.land and self.flight.go((*self.flight.place[:2], 0.0), by_s):
-            self.armed = False
+        elif self.mode in (self.kind.back, self.kind.land):
+            home = self.mode == self.kind.land or self.flight.go((0.0, 0.0, self.flight.place[2]), by_s)
+            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s):
+                self.armed = False
         else:
             self.flight.velocity = (0.0, 0.0, 0.0)
 
@@ -203,27 +222,40 @@ class SimulatedAutopilot:
         wanted = int(message.param2) << 16 | int(message.param3) << 24 if wide else int(message.param2)
         if wanted == self.kind.guided and self.kind.streams and self._now > self._setpoint_s + _OFFBOARD_LOST_S:
             return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+        if wanted == self.kind.guided != self.kind.ready and self.faults.refuse_start:
+            return int(mavlink.MAV_RESULT_DENIED)
         self.mode = wanted
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _arm(self, message: Message) -> int:
+        if not message.param1:
+            return self._disarm()
         if self.faults.refuse_arm:
             self._say("statustext", mavlink.MAV_SEVERITY_CRITICAL, b"PreArm: compass not healthy")
             return int(mavlink.MAV_RESULT_DENIED)
         if self.kind is ARDUPILOT and self.mode != self.kind.guided:
             return int(mavlink.MAV_RESULT_FAILED)
-        if not self.armed:
-            self.armed, self._armed_s = True, self._now
+        if not self.armed and self._arms_s is None:
+            self._arms_s = self._now + self.faults.slow_arm_s
+        return int(mavlink.MAV_RESULT_ACCEPTED)
+
+    def _disarm(self) -> int:
+        """In the air it refuses; what it was told before, it does before."""
+        if self.flight.flies:
+            return int(mavlink.MAV_RESULT_DENIED)
+        if self._arms_s is not None:
+            return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+        self.armed = False
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _start(self, message: Message) -> int:
-        if not self.armed or not self.items:
+        if not self.armed or not self.items or self.faults.refuse_start:
             return int(mavlink.MAV_RESULT_DENIED)
         self.mode = self.kind.mission
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _take_off(self, message: Message) -> int:
-        if not self.armed or self.mode != self.kind.guided:
+        if not self.armed or self.mode != self.kind.guided or self.faults.refuse_start:
             return int(mavlink.MAV_RESULT_DENIED)
         self._setpoint = (*self.flight.place[:2], -message.param7)
         return int(mavlink.MAV_RESULT_ACCEPTED)
