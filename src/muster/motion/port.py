@@ -68,6 +68,8 @@ class Telemetry:
         the number of the last `send` that it took, and how many of its way points it has passed, holds included.
     inertial
         of its inertial unit; None where it has none, or has not moved yet.
+    refused
+        why it will not get to the next way point of this order, as its own navigation says; empty while it goes on.
     """
 
     time_s: float
@@ -78,6 +80,7 @@ class Telemetry:
     order: int
     passed: int
     inertial: Inertial | None = None
+    refused: str = ""
 
 
 class RobotPort(Protocol):
