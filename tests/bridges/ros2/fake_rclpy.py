@@ -1,15 +1,14 @@
 """rclpy as far as the bridge uses it, without ROS: its modules by their names, in one process, without a network.
 
-By the documentation and source of rclpy (docs.ros.org; ros2/rclpy: action/client.py, executors.py, task.py, qos.py), and
-the messages that rosidl generates: fields are checked for their types, publishers and subscriptions match by quality of
-service, nothing is called back but in `spin_once`, which takes one callback, and goals are only known weakly to clients.
+By the documentation and source of rclpy (docs.ros.org; ros2/rclpy: action/client.py, executors.py, task.py, qos.py)
+and the messages that rosidl generates: fields check their types, publishers and subscriptions match by quality of
+service, nothing is called back but in `spin_once`, which takes one callback, and futures end there.
 """
 
 import array
 import sys
 import time
 import types
-import weakref
 from collections import deque
 from types import SimpleNamespace
 
@@ -22,8 +21,14 @@ class Graph:
 
     def __init__(self):
         self.topics = {}  # name -> [(kind, publishers, subscriptions)]
-        self.servers = {}  # name -> Nav2
+        self.servers = {}  # of actions, by name
+        self.robots = []
         self.contexts = []
+
+    def serve(self):
+        """Robots go on as often as nothing else is done."""
+        for robot in self.robots:
+            robot.look()
 
     def topic(self, name, kind):
         return self.topics.setdefault((name, kind), ([], []))
@@ -212,6 +217,7 @@ class Nav2:
         if says:
             self._said = node.create_publisher(MODULES["geometry_msgs.msg"].PoseStamped, f"/{name}/{says}", best)
         graph.servers[f"/{name}/navigate_to_pose"] = self
+        graph.robots.append(self)
 
     def take(self, client, goal, answer, feedback):
         how = self.script.pop(0) if len(self.script) > 1 else self.script[0]
@@ -222,7 +228,7 @@ class Nav2:
         assert self._under_way is None, "two goals at once"
         handle = ClientGoalHandle(client, goal, how != "reject")
         if handle.accepted:
-            self._under_way, goal.known = goal, weakref.ref(handle)
+            self._under_way = goal
         answer.set_result(handle)
 
     def look(self):
@@ -257,14 +263,6 @@ class Nav2:
 
 def _result(code, words):
     return SimpleNamespace(error_code=code, error_msg=words)
-
-
-class _Serving(Graph):
-    """Servers look at their robots as often as nothing else is done."""
-
-    def serve(self):
-        for server in self.servers.values():
-            server.look()
 
 
 _WORDS = {"float64": float, "float32": float, "int32": int, "uint32": int, "bool": bool, "string": str}
@@ -336,7 +334,7 @@ MODULES = _modules()
 
 def install(monkeypatch):
     """Let rclpy be importable; returns the graph of its nodes."""
-    graph = _Serving()
+    graph = Graph()
     monkeypatch.setattr(Context, "graph", graph)
     for name, module in MODULES.items():
         monkeypatch.setitem(sys.modules, name, module)

@@ -54,7 +54,8 @@ class Participant:
 
     def navigator(self, action: str) -> Navigator:
         """Actions are calls, and every make of DDS has its own header for what ROS 2 calls."""
-        raise ParameterError(f"{action}: an action, by DDS; expected rclpy for actions, or goals as poses")
+        expected = "rclpy (--by rclpy), or goals as poses (--give goals)"
+        raise ParameterError(f"{action}: an action, by DDS; expected {expected}")
 
     def topics(self) -> Iterable[tuple[str, str]]:
         """See `Wire`."""

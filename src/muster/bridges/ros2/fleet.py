@@ -96,7 +96,8 @@ class Ros2Fleet:
                 return events
 
     def unheard(self) -> dict[str, str]:
-        """Robots of the mission that cannot be sent anywhere yet, and what is missing."""
+        """Robots of the mission that cannot be sent anywhere yet, and what is missing, by what has come until now."""
+        self._hear_for(0.0)
         return {name: port.missing for name, port in self._ports.items() if port.missing}
 
     def stop(self) -> None:
