@@ -1,7 +1,9 @@
 """`muster ros2` over DDS: simulated robots, and the command, as processes of their own, on this computer alone."""
 
 import json
+import signal
 import sys
+import time
 
 import pytest
 from tests.bridges.ros2 import fake_rclpy
@@ -9,6 +11,9 @@ from tests.bridges.ros2 import fake_rclpy
 from muster.cli.main import run
 
 pytest.importorskip("cyclonedds")
+
+from muster.bridges.ros2.dds import Participant
+from muster.bridges.ros2.messages import Odometry, PoseStamped
 
 pytestmark = pytest.mark.usefixtures("loopback")
 MISSION = """
@@ -55,6 +60,50 @@ def test_robots_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(s
     assert "r-1" in next(line for line in said.splitlines() if "silent" in line)
     assert "r_2" in next(line for line in said.splitlines() if "joins" in line)
     assert record.stat().st_size > 0
+
+
+def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
+    simulated("r_0", 0, 0)
+    simulated("r_1", 0, 3)
+    carried = start("-m", "muster.cli", "ros2", mission, *QUICK)
+    for line in carried.stderr:
+        if "sets out: robot r_0" in line:
+            break
+    time.sleep(0.5)
+    carried.send_signal(signal.SIGINT)
+    _, err = carried.communicate(timeout=20)
+    assert carried.returncode == 130
+    assert "told to stay where they are" in err
+    listens = Participant()
+    heard = listens.reader("/r_0/odom", Odometry)
+    time.sleep(1.0)
+    before = heard.take()[-1].pose.pose.position
+    listens.wait(0.5)
+    after = heard.take()[-1].pose.pose.position
+    assert (before.x, before.y) == pytest.approx((after.x, after.y), abs=0.01)
+    assert 0.1 < after.x < 7.9  # of 8 m and more
+    listens.close()
+
+
+def test_what_is_published_is_known_until_its_publisher_leaves():
+    one, other = Participant(), Participant()
+    writers = [one.writer("/r_0/pose", PoseStamped), one.writer("/r_0/odom", Odometry)]
+    until = time.monotonic() + 10
+    known = {("/r_0/pose", "geometry_msgs/PoseStamped"), ("/r_0/odom", "nav_msgs/Odometry")}
+    while set(other.topics()) != known:
+        assert time.monotonic() < until
+        other.wait(0.05)
+    del writers
+    one.close()
+    while set(other.topics()):
+        assert time.monotonic() < until
+        other.wait(0.05)
+    other.close()
+
+
+def test_a_simulated_robot_in_no_domain_is_one_line(start):
+    out, err = start("-m", "muster.bridges.ros2.simulated", "r_0", "--domain", "300").communicate(timeout=20)
+    assert (out, err) == ("", "domain: '300'; expected a number from 0 to 232\n")
 
 
 def test_what_is_missing_is_one_line(start, mission):

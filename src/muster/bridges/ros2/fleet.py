@@ -61,7 +61,6 @@ class Ros2Fleet:
         joins: bool = True,
         clock: Clock | None = None,
     ) -> None:
-        names = ros_names(robot.id for robot in mission.robots)
         self._clock: Clock = clock or SystemClock()
         self._begin = self._clock.now()
         self._namespace, self._give, self._arrival = namespace.strip("/"), give, arrival or Arrival()
@@ -69,6 +68,7 @@ class Ros2Fleet:
         self._wire = open_wire() if wire is None else wire
         self._ports: dict[str, Ros2Port] = {}
         try:
+            names = ros_names(robot.id for robot in mission.robots)
             for robot in mission.robots:
                 self._ports[robot.id] = self._reached(robot, names[robot.id])
         except BaseException:
