@@ -205,10 +205,13 @@ class Nav2:
     ----------
     script
         for each goal how it ends: `go` (it arrives), `abort`, `reject`, `hang`; the last holds for all that follow.
+    brakes
+        looks that it takes to end a goal that is cancelled.
     """
 
-    def __init__(self, graph, name, place, *, script=("go",), speed=0.3, says="pose"):
+    def __init__(self, graph, name, place, *, script=("go",), speed=0.3, brakes=1, says="pose"):
         self.graph, self.place, self.speed, self.script = graph, place, speed, list(script)
+        self.brakes = brakes
         self.goals, self.ended, self._under_way = [], [], None
         self._talks = says
         context = Context()
@@ -222,7 +225,7 @@ class Nav2:
     def take(self, client, goal, answer, feedback):
         how = self.script.pop(0) if len(self.script) > 1 else self.script[0]
         at = goal.pose.pose.position
-        goal = SimpleNamespace(at=(at.x, at.y), how=how, feedback=feedback, cancel_asked=False, client=client)
+        goal = SimpleNamespace(at=(at.x, at.y), how=how, feedback=feedback, cancel_asked=False, braked=0, client=client)
         goal.result = Future(client.context)
         self.goals.append(goal)
         assert self._under_way is None, "two goals at once"
@@ -234,7 +237,9 @@ class Nav2:
     def look(self):
         goal = self._under_way
         if goal is not None and goal.cancel_asked:
-            self._end(goal, 5)
+            goal.braked += 1
+            if goal.braked >= self.brakes:
+                self._end(goal, 5)
         elif goal is not None and goal.how == "abort":
             self._end(goal, 6, 9003, "no way")
         elif goal is not None and goal.how == "go":

@@ -101,6 +101,7 @@ def test_new_orders_cancel_the_goal_before_and_wait_for_its_end(graph):
     until(fleet, lambda: len(nav2.goals) == 2)
     assert nav2.ended == [5]
     fleet.advance(fleet.time_s + 0.1)
+    assert not port.telemetry().refused
     port.cancel()
     port.send([Waypoint((1.0, 0.0, 0.0))])
     until(fleet, lambda: port.telemetry().passed == 1)
@@ -109,7 +110,7 @@ def test_new_orders_cancel_the_goal_before_and_wait_for_its_end(graph):
 
 
 def test_stop_cancels_and_waits_for_it(graph):
-    nav2 = fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0), script=["hang"])
+    nav2 = fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0), script=["hang"], brakes=300)
     fleet = navigated(mission("r_0"))
     fleet.ports["r_0"].send([Waypoint((9.0, 0.0, 0.0))])
     fleet.stop()
