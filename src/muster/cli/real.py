@@ -100,20 +100,20 @@ class _Heard(Protocol):
         ...
 
 
-def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float) -> None:
-    """Until each robot of the mission has said where it is, or `halt` is set.
+def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
+    """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
 
     Raises
     ------
     NetworkError
-        if one does not in time.
+        if something is, when the time is over.
     """
     until = time.monotonic() + wait_s
     while (unheard := fleet.unheard()) and not halt.is_set():
         if time.monotonic() > until:
             robot, why = next(iter(unheard.items()))
             more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
-            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected its pose")
+            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
         time.sleep(0.05)
 
 

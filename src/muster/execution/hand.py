@@ -98,6 +98,11 @@ class Hand:
         return self.told.passed if self.told is not None and self.told.order == self._order else 0
 
     @property
+    def refused(self) -> str:
+        """Why it will not get to the next way point of the last order; empty while it goes on."""
+        return self.told.refused if self.told is not None and self.told.order == self._order else ""
+
+    @property
     def arrived(self) -> bool:
         """Whether it has carried out the last order."""
         return self.passed >= len(self._waypoints)

@@ -70,6 +70,8 @@ class Telemetry:
         of its inertial unit; None where it has none, or has not moved yet.
     charge
         share of its work capacity that its battery leaves, 0 to 1; None where it says nothing of it.
+    refused
+        why it will not get to the next way point of this order, as its own navigation says; empty while it goes on.
     """
 
     time_s: float
@@ -81,6 +83,7 @@ class Telemetry:
     passed: int
     inertial: Inertial | None = None
     charge: float | None = None
+    refused: str = ""
 
 
 class RobotPort(Protocol):

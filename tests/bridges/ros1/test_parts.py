@@ -39,6 +39,17 @@ def test_way_points_are_passed_in_order_with_headings_and_holds():
     assert it.passed == 0
 
 
+def test_it_is_there_where_one_says_so_who_knows_better():
+    it = follower()
+    it.arrive(0.0)  # without way points it is nowhere
+    it.take([Waypoint((1, 0, 0), hold_s=2.0), Waypoint((2, 0, 0))])
+    it.arrive(1.0)
+    assert not it.hear(2.9, (0, 0, 0), 0.0)
+    it.arrive(2.9)  # the hold goes on
+    assert it.hear(3.0, (0, 0, 0), 0.0)
+    assert not it.hear(9.0, (0, 0, 0), 0.0)
+
+
 def test_trembling_is_no_travel_and_creeping_is():
     it = follower()
     for k in range(1000):

@@ -1,9 +1,6 @@
 """Robots of ROS 2 over DDS: robots in other processes, with types of their own, on this computer alone."""
 
-import os
-import subprocess
 import sys
-from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -20,30 +17,17 @@ from muster.bridges.ros2.dds import Participant
 from muster.bridges.ros2.fleet import Ros2Fleet
 from muster.bridges.ros2.messages import MESSAGES
 
-LOOPBACK = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces>
-<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address="127.0.0.1"/></Peers>
-<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>30</MaxAutoParticipantIndex></Discovery>
-</Domain></CycloneDDS>"""
-
-
-@pytest.fixture(autouse=True)
-def on_this_computer_alone(monkeypatch):
-    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(10 + os.getpid() % 200))
+pytestmark = pytest.mark.usefixtures("loopback")
 
 
 @pytest.fixture
-def robots():
-    """Starts robots in processes of their own: `robots("r_0", 0, 0, "pose")`."""
-    with ExitStack() as stack:
+def robots(start):
+    """Starts robots with types of their own: `robots("r_0", 0, 0, "pose")`."""
 
-        def start(name, x, y, says):
-            program = [sys.executable, str(Path(__file__).with_name("robot_process.py")), name, str(x), str(y), says]
-            process = stack.enter_context(subprocess.Popen(program))
-            stack.callback(process.kill)
-            return process
+    def robot(name, x, y, says):
+        return start(Path(__file__).with_name("robot_process.py"), name, x, y, says)
 
-        yield start
+    return robot
 
 
 def mission(*ids):
@@ -61,7 +45,7 @@ def until(fleet, true, most_s=15.0):
 @pytest.mark.parametrize("says", ["pose", "odom"])
 def test_a_robot_follows_way_points(says, robots):
     robots("r_0", 1, 0, says)
-    fleet = Ros2Fleet(mission("r_0"))
+    fleet = Ros2Fleet(mission("r_0"), wire=Participant())
     port = fleet.ports["r_0"]
     assert port.telemetry() is None
     until(fleet, lambda: port.telemetry() is not None)
@@ -80,7 +64,7 @@ def test_a_robot_follows_way_points(says, robots):
 
 def test_cancelled_it_stays_and_silent_its_time_stands_still(robots):
     process = robots("r_0", 0, 0, "pose")
-    fleet = Ros2Fleet(mission("r_0"))
+    fleet = Ros2Fleet(mission("r_0"), wire=Participant())
     port = fleet.ports["r_0"]
     until(fleet, lambda: port.telemetry() is not None)
     port.send([Waypoint((400.0, 0.0, 0.0))])
@@ -104,7 +88,7 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     there = mission("r_0", "r_1")
     robots("r_0", 0, 0, "pose")
     robots("r_1", 0, 3, "odom")
-    fleet = Ros2Fleet(there)
+    fleet = Ros2Fleet(there, wire=Participant())
     until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
     report = carry_out_live(there, muster.solve(there, "greedy"), fleet)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2"}
@@ -127,6 +111,8 @@ def test_bad_domains_and_no_extra(monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", "many")
     with pytest.raises(ParameterError, match="ROS_DOMAIN_ID: 'many'; expected a number from 0 to 232"):
         Participant()
+    with pytest.raises(ParameterError, match="domain: '-1'; expected a number from 0 to 232"):
+        Participant(-1)
     monkeypatch.setitem(sys.modules, "cyclonedds", None)
     with pytest.raises(MissingExtraError, match=r"muster-robotics\[ros2\]"):
         Participant(1)

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
+from muster.bridges.described import read_as, robot_as_said
 from muster.bridges.ros1.ros import rospy
-from muster.mission.errors import MissionError
-from muster.mission.kinds import Fault, Record
-from muster.mission.model import Robot, Task, findings
-from muster.mission.source import Source
-from muster.mission.yaml_writer import plain
+from muster.mission.model import Robot, Task
 
 
 def described(topics: str, robot: Robot) -> Robot:
@@ -22,10 +18,7 @@ def described(topics: str, robot: Robot) -> Robot:
         if something there is wrong.
     """
     name = f"{topics}/muster"
-    said: Any = rospy.get_param(name, {})
-    known = plain(robot) | (said if isinstance(said, dict) else {"muster": said}) | {"id": robot.id}
-    found: Robot = _read(known, Record(Robot, "a robot"), name)
-    return found
+    return robot_as_said(rospy.get_param(name, {}), robot, name)
 
 
 def task_of(text: str) -> Task:
@@ -40,13 +33,4 @@ def task_of(text: str) -> Task:
         data = json.loads(text)
     except ValueError:
         data = text
-    found: Task = _read(data, Record(Task, "a task"), "add_task")
-    return found
-
-
-def _read(data: object, record: Any, name: str) -> Any:
-    faults: list[Fault] = []
-    found = record.read(data, (), faults)
-    if faults:
-        raise MissionError(findings(faults, Source(name)))
-    return found
+    return read_as(Task, data, "add_task")

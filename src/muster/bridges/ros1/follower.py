@@ -60,6 +60,11 @@ class Follower:
             self._held_since = None
         return self.passed > before
 
+    def arrive(self, now: float) -> None:
+        """It is at its way point, as one says who knows better than its poses do."""
+        if self.aim is not None and self._held_since is None:
+            self._held_since = now
+
     def is_at(self, place: Place, aim: Waypoint) -> bool:
         """Whether a place counts as the way point's."""
         return distance(place, aim.position, flat=self._flat) <= self._arrival_m

@@ -7,29 +7,23 @@ tells it velocities, `<robot>/WP`; it says `<robot>/odom`, tf `map` -> `<robot>/
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Sequence
 from typing import Any
 
 import click
-import numpy as np
 
-from muster.bridges.ros1.follower import Follower
 from muster.bridges.ros1.messages import fill_pose, matrix_of, place_and_heading, tf_of, velocity_of
 from muster.bridges.ros1.node import become_node, time_of_ros
 from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
-from muster.bridges.ros1.steering import STILL, Driven, Steering, Velocity
+from muster.bridges.simulated_body import Body
 from muster.mission.errors import MusterError
 from muster.mission.model import Robot
-from muster.motion.frames import enu_to_flu, flu_to_enu, wrapped
+from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
-from muster.motion.kinematics.registry import KINEMATICS, kinematics_named, limits_of
-from muster.motion.port import Place, Waypoint
+from muster.motion.kinematics.registry import KINEMATICS
 
-_DEAF_S = 0.5
-"""A robot that is told nothing for longer stands."""
 _TICK_S = 0.005
 """Real time between two looks at the clock."""
 
@@ -46,16 +40,9 @@ class SimulatedRobot:
     """
 
     def __init__(self, robot: Robot, rate_hz: float) -> None:
-        self.robot, self._rate_hz, self._now = robot, rate_hz, time_of_ros()
-        x, y, z = (*map(float, robot.position), 0.0)[:3]
-        self._state: Floats = np.array([[x, y, z, math.radians(robot.heading_deg)]])
-        self._kinematics, self._limits = kinematics_named(robot.kinematics), limits_of(robot)
-        self._steering = Steering(interval_s=1 / rate_hz, space=True)
-        self._follower = Follower(arrival_m=0.05, turned_rad=0.05, flat=robot.kind == "ground")
+        self.robot, self._rate_hz, self._body = robot, rate_hz, Body(robot, rate_hz)
+        self._now = time_of_ros()
         self._lock = threading.Lock()
-        self._told: Velocity = STILL
-        self._told_s = -math.inf
-        self._inputs: Floats | None = None
         self._poses = rospy.Publisher(f"/{robot.id}/odom", Odometry, queue_size=1)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._heard = [
@@ -72,41 +59,12 @@ class SimulatedRobot:
             if now - last < 1 / self._rate_hz:
                 continue
             with self._lock:
-                rates = self._step(now, now - last)
+                rates = self._body.step(now, now - last)
             last = now
             self._say(rates)
 
-    def _step(self, now: float, dt: float) -> Floats:
-        place, heading = self._pose
-        velocity = self._told if now - self._told_s <= _DEAF_S else self._towards_goal(now, place, heading)
-        inputs = self._kinematics.limited(self._as_inputs(velocity, heading), self._limits, self._inputs, dt)
-        rates: Floats = self._kinematics.velocities(self._state, inputs)[0]
-        self._state = self._kinematics.step(self._state, inputs, dt)
-        self._inputs = inputs
-        return rates
-
-    @property
-    def _pose(self) -> tuple[Place, float]:
-        x, y, z, heading = map(float, self._state[0])
-        return (x, y, z), float(wrapped(heading))
-
-    def _towards_goal(self, now: float, place: Place, heading: float) -> Velocity:
-        self._follower.hear(now, place, heading)
-        aim = self._follower.aim
-        arrived = aim is not None and self._follower.is_at(place, aim)
-        driven = Driven(self.robot, place, heading, (0.0, 0.0, 0.0), aim, arrived)
-        return self._steering.velocities([driven])[self.robot.id]
-
-    def _as_inputs(self, velocity: Velocity, heading: float) -> Floats:
-        ahead, left, up, turning = velocity
-        if len(self._kinematics.input_names) == 2:
-            return np.array([[ahead, turning]])
-        if self._kinematics.input_names[0] == "ahead_mps":
-            return np.array([[ahead, left, up, turning]])
-        return np.array([[*flu_to_enu((ahead, left, up), heading), turning]])
-
     def _say(self, rates: Floats) -> None:
-        place, heading = self._pose
+        place, heading = self._body.pose
         message = Odometry()
         message.header.frame_id, message.header.stamp = "map", rospy.Time.now()
         message.child_frame_id = f"{self.robot.id}/base_link"
@@ -118,18 +76,14 @@ class SimulatedRobot:
         self._tf.publish(TFMessage([tf_of("map", message.child_frame_id, place, heading)]))
 
     def _take_velocity(self, message: Any) -> None:
-        velocity = velocity_of(message)
-        if all(map(math.isfinite, velocity)):
-            with self._lock:
-                self._told, self._told_s = velocity, self._now()
-                self._follower.take(())
+        with self._lock:
+            self._body.drive(velocity_of(message), self._now())
 
     def _take_goal(self, message: Any) -> None:
         matrix = matrix_of(message.pose)
         if matrix is not None:
-            place, heading = place_and_heading(matrix)
             with self._lock:
-                self._follower.take([Waypoint(place, heading)])
+                self._body.go_to(*place_and_heading(matrix))
 
 
 @click.command()

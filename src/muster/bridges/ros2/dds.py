@@ -8,55 +8,79 @@ polled. Which networks are used is told to Cyclone DDS by the environment: ROS_D
 from __future__ import annotations
 
 import dataclasses
-import os
+import re
+import time
 import types
+from collections.abc import Iterable
 from typing import Any, Generic, TypeVar
 
 from muster.bridges.ros2.description import ROS2, Field, Message, fields_of
+from muster.bridges.ros2.wire import KEPT, Navigator, domain_or_own
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 
 M = TypeVar("M", bound=Message)
-_MOST = 100
-"""Samples that are taken at once, and kept until they are taken."""
-_LAST_DOMAIN = 232  # beyond it there are no ports
 
 
 class Participant:
-    """Takes part in a domain until it is closed.
+    """Takes part in a domain until it is closed: a `Wire`.
 
     Raises
     ------
     MissingExtraError
         if the extra `ros2` is not installed.
     ParameterError
-        if ROS_DOMAIN_ID is no number from 0 to 232.
+        if the domain, or ROS_DOMAIN_ID, is no number from 0 to 232.
     NetworkError
         if DDS cannot take part, such as for what CYCLONEDDS_URI says.
     """
 
     def __init__(self, domain: int | None = None) -> None:
         self._dds = _Dds()
-        number = _domain() if domain is None else domain
+        number = domain_or_own(domain)
         try:
             self._participant: Any = self._dds.participant(number)
         except self._dds.error as error:
             raise NetworkError(f"DDS domain {number}: {error}; see CYCLONEDDS_URI") from None
+        self._publications = self._dds.publications(self._participant)
+        self._published: dict[Any, tuple[str, str]] = {}  # by the writers' keys
 
-    def writer(self, topic: str, message: type[M]) -> Writer[M]:
-        """Who publishes on a topic of ROS (`/r_0/goal_pose`), reliably."""
-        return Writer(self._dds, self._participant, topic, message)
+    def writer(self, topic: str, message: type[M]) -> DdsWriter[M]:
+        """See `Wire`."""
+        return DdsWriter(self._dds, self._participant, topic, message)
 
-    def reader(self, topic: str, message: type[M]) -> Reader[M]:
-        """Who hears a topic of ROS, whether it is published reliably or not."""
-        return Reader(self._dds, self._participant, topic, message)
+    def reader(self, topic: str, message: type[M]) -> DdsReader[M]:
+        """See `Wire`."""
+        return DdsReader(self._dds, self._participant, topic, message)
+
+    def navigator(self, action: str) -> Navigator:
+        """Actions are calls, and every make of DDS has its own header for what ROS 2 calls."""
+        expected = "rclpy (--by rclpy), or goals as poses (--give goals)"
+        raise ParameterError(f"{action}: an action, by DDS; expected {expected}")
+
+    def topics(self) -> Iterable[tuple[str, str]]:
+        """See `Wire`."""
+        while samples := self._publications.take(KEPT):
+            for sample in samples:
+                if sample.topic_name is None:  # its writer has ended
+                    self._published.pop(sample.key, None)
+                else:
+                    self._published[sample.key] = sample.topic_name, sample.type_name
+        for topic, kind in self._published.values():
+            name = _DDS_TYPE.fullmatch(kind)
+            if topic.startswith(_TOPICS) and name is not None:
+                yield topic.removeprefix(_TOPICS), f"{name[1]}/{name[2]}"
+
+    def wait(self, seconds: float) -> None:
+        """See `Wire`: Cyclone DDS hears by itself."""
+        time.sleep(seconds)
 
     def close(self) -> None:
-        """Leave the domain; writers and readers end with it."""
-        self._participant = None
+        """See `Wire`."""
+        self._participant = self._publications = None
 
 
-class Writer(Generic[M]):
-    """Publishes messages of a type on a topic."""
+class DdsWriter(Generic[M]):
+    """See `wire.Writer`."""
 
     def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
         self._kind = _idl(message)
@@ -67,20 +91,18 @@ class Writer(Generic[M]):
 
     @property
     def listeners(self) -> int:
-        """How many there are who hear it."""
         return len(self._writer.get_matched_subscriptions())
 
 
-class Reader(Generic[M]):
-    """Hears messages of a type on a topic."""
+class DdsReader(Generic[M]):
+    """See `wire.Reader`."""
 
     def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
         self._message = message
         self._reader = dds.reader(participant, _dds_topic(topic), _idl(message))
 
     def take(self) -> list[M]:
-        """What has come since, oldest first; does not wait."""
-        samples = self._reader.take(_MOST)
+        samples = self._reader.take(KEPT)
         kind = _idl(self._message)
         return [_message(self._message, sample) for sample in samples if isinstance(sample, kind)]
 
@@ -90,17 +112,18 @@ class _Dds:
 
     def __init__(self) -> None:
         try:
-            from cyclonedds import core, domain, pub, qos, sub, topic
+            from cyclonedds import builtin, core, domain, pub, qos, sub, topic
         except ImportError:
             raise MissingExtraError("ros2", "ROS 2 by DDS") from None
         policy: Any = qos.Policy
         old = policy.DataRepresentation(use_cdrv0_representation=True)  # XCDR1 is what ROS 2 speaks
-        kept = policy.History.KeepLast(_MOST)
+        kept = policy.History.KeepLast(KEPT)
         self._publishing = qos.Qos(old, kept, policy.Reliability.Reliable(10**8))
         self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
         self._topic: Any = topic.Topic
         self._writer: Any = pub.DataWriter
         self._reader: Any = sub.DataReader
+        self._builtin: Any = builtin
         self.participant: Any = domain.DomainParticipant
         self.error: Any = core.DDSException
 
@@ -110,16 +133,17 @@ class _Dds:
     def reader(self, participant: Any, topic: str, kind: Any) -> Any:
         return self._reader(participant, self._topic(participant, topic, kind), qos=self._hearing)
 
+    def publications(self, participant: Any) -> Any:
+        """The reader of what others publish, and how (DDS 1.4, 2.2.5: DCPSPublication)."""
+        return self._builtin.BuiltinDataReader(participant, self._builtin.BuiltinTopicDcpsPublication)
 
-def _domain() -> int:
-    text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
-    if not text.isdigit() or int(text) > _LAST_DOMAIN:
-        raise ParameterError(f"ROS_DOMAIN_ID: {text!r}; expected a number from 0 to {_LAST_DOMAIN}")
-    return int(text)
+
+_TOPICS = "rt"
+_DDS_TYPE = re.compile(r"(\w+)::msg::dds_::(\w+)_")
 
 
 def _dds_topic(topic: str) -> str:
-    return f"rt/{topic.strip('/')}"
+    return f"{_TOPICS}/{topic.strip('/')}"
 
 
 def _dds_type(message: type[Message]) -> str:

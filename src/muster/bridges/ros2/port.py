@@ -1,0 +1,188 @@
+"""The port of a robot on ROS 2: hears where it is, and gives it one goal after the other.
+
+| topic | type | |
+|---|---|---|
+| `<robot>/pose` | PoseStamped, frame `map` | where it is |
+| `<robot>/odom` | Odometry | how fast it is; where it is, if it has no `pose`, its frame taken as `map` |
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from muster.bridges.ros1.follower import Follower
+from muster.bridges.ros2.goals import Goals
+from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
+from muster.bridges.ros2.wire import Wire
+from muster.mission.errors import ParameterError
+from muster.mission.model import Robot
+from muster.motion.frames import angles, flu_to_enu, quaternion_rotation
+from muster.motion.port import Place, Telemetry, Waypoint
+
+MAP_FRAME = "map"
+_AT_ONCE_S = 0.01
+"""Poses that come closer to each other say nothing of the velocity."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arrival:
+    """When a robot is where it was sent: so near, metres, and where a heading was wanted, so well turned, radians.
+
+    Raises
+    ------
+    ParameterError
+        if one of them is not above 0.
+    """
+
+    near_m: float = 0.25
+    turned_rad: float = 0.35
+
+    def __post_init__(self) -> None:
+        for name in ("near_m", "turned_rad"):
+            if not getattr(self, name) > 0:
+                raise ParameterError(f"{name}: {getattr(self, name)}; expected a number above 0")
+
+
+class Ros2Port:
+    """One robot: a `RobotPort`.
+
+    Parameters
+    ----------
+    topics
+        its namespace, such as `/r_0`.
+    goals
+        how it is told where to go.
+    flat
+        whether the mission is in the plane: heights are then the robot's own affair.
+    """
+
+    def __init__(self, robot: Robot, wire: Wire, topics: str, goals: Goals, arrival: Arrival, *, flat: bool) -> None:
+        self.body, self.topics, self.goals, self._flat = robot, topics, goals, flat
+        near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
+        self._follower = Follower(**near, flat=flat or robot.kind == "ground")
+        self._poses = wire.reader(f"{topics}/pose", PoseStamped)
+        self._odometry = wire.reader(f"{topics}/odom", Odometry)
+        self._said: Telemetry | None = None
+        self._has_pose = False
+        self._height = 0.0
+        self._refused = ""
+
+    @property
+    def robot(self) -> str:
+        return self.body.id
+
+    @property
+    def missing(self) -> str:
+        """What is not there of what it needs; empty if all is."""
+        if self._said is None:
+            return f"nothing on {self.topics}/pose or {self.topics}/odom"
+        return "" if self.goals.ready else f"no server of {self.topics}/navigate_to_pose"
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`.
+
+        Raises
+        ------
+        ParameterError
+            if a number of a way point is not finite.
+        """
+        for point in waypoints:
+            if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
+                raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
+        order = self._follower.take(waypoints)
+        self._refused = ""
+        if waypoints:
+            self._speak()
+        else:
+            self.goals.withdraw(None if self._said is None else self._stamped(self._said.position, self._said.heading))
+        return order
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self.send(())
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        return self._said
+
+    def hear(self, now: float) -> bool:
+        """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
+        under_way = self._follower.aim is not None and not self._follower.stays
+        ended = self.goals.hear(now, under_way=under_way)
+        if ended is not None and under_way:
+            self._refused = ended.reason
+            if not ended.reason:
+                self._follower.arrive(now)
+        passed = [self._take_odometry(odometry, now) for odometry in self._odometry.take()]
+        passed += [self._take_pose(pose, now) for pose in (*self._poses.take(), *self.goals.poses())]
+        if any(passed):
+            self._speak()
+        return any(passed)
+
+    def _take_pose(self, pose: PoseStamped, now: float) -> bool:
+        """Who is localised does not go by odometry any more."""
+        if pose.header.frame_id.lstrip("/") != MAP_FRAME:
+            return False
+        self._has_pose = True
+        return self._is_at(pose.pose, now, None)
+
+    def _take_odometry(self, odometry: Odometry, now: float) -> bool:
+        if self._has_pose:
+            return False
+        linear = odometry.twist.twist.linear
+        yaw = yaw_of(odometry.pose.pose.orientation)
+        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], yaw).tolist()
+        return self._is_at(odometry.pose.pose, now, (x, y, z))
+
+    def _is_at(self, pose: Pose, now: float, velocity: Place | None) -> bool:
+        """It is there; returns whether it has passed a way point with that."""
+        at, follower = pose.position, self._follower
+        heading = yaw_of(pose.orientation)
+        if not all(map(math.isfinite, (at.x, at.y, at.z, heading))):
+            return False
+        place = (at.x, at.y, 0.0 if self._flat else at.z)
+        self._height = at.z
+        passed = follower.hear(now, place, heading)
+        speed = _velocity(self._said, place, now) if velocity is None else velocity
+        counted = follower.odometry_m, follower.order, follower.passed
+        self._said = Telemetry(now, place, heading, speed, *counted, refused=self._refused)
+        return passed
+
+    def _speak(self) -> None:
+        """Give the way point to which it is to go; its heading, where none is wanted, is that of the way there."""
+        aim = self._follower.aim
+        if aim is None:
+            return
+        heading = aim.heading
+        if heading is None:
+            here = aim.position if self._said is None else self._said.position
+            heading = math.atan2(aim.position[1] - here[1], aim.position[0] - here[0])
+        self.goals.give(self._stamped(aim.position, heading))
+
+    def _stamped(self, place: Place, heading: float) -> PoseStamped:
+        x, y, z = map(float, place)
+        turn = Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
+        header = Header(stamp=Time.of(time.time()), frame_id=MAP_FRAME)
+        return PoseStamped(header, Pose(Point(x, y, self._height if self._flat else z), turn))
+
+
+def _velocity(before: Telemetry | None, place: Place, now: float) -> Place:
+    """By the pose before; that of before, where both came at once."""
+    if before is None:
+        return (0.0, 0.0, 0.0)
+    seconds = now - before.time_s
+    if seconds < _AT_ONCE_S:
+        return before.velocity
+    x, y, z = ((new - old) / seconds for new, old in zip(place, before.position, strict=True))
+    return (x, y, z)
+
+
+def yaw_of(turn: Quaternion) -> float:
+    """The heading that a rotation has, radians; 0 of one that is none."""
+    values = np.array([turn.x, turn.y, turn.z, turn.w])
+    return float(angles(quaternion_rotation(values))[2]) if np.linalg.norm(values) > 0 else 0.0
