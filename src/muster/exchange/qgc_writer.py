@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.exchange import qgc_format as qgc
+from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.itinerary import Itinerary, Passage
-from muster.mission.model import Mission, Robot, Zone
+from muster.mission.model import Mission, Point, Robot, Zone
 
 Item = dict[str, Any]
 
@@ -68,6 +69,11 @@ class PlanFiles:
         zones = enumerate(self._zones(itinerary.robot))
         return [k for k, zone in zones if zone is not None and _has_height(zone) and _crosses(itinerary, zone)]
 
+    def crosses_antimeridian(self, itinerary: Itinerary) -> bool:
+        """Whether its fence does: its longitudes jump there, which autopilots may not expect."""
+        polygons = (polygon for polygon, _ in self._fenced(itinerary))
+        return any(crosses(self.earth.spots([*polygon, polygon[0]])) for polygon in polygons)
+
     def _zones(self, robot: Robot) -> list[Zone | None]:
         zones = () if self.mission.map is None else self.mission.map.zones
         return [zone if robot.kind in zone.forbidden_to else None for zone in zones]
@@ -101,18 +107,22 @@ class PlanFiles:
             yield _item(qgc.NAV_WAYPOINT, [0, 0, 0, None], last, _above(last, home))
 
     def _fence(self, itinerary: Itinerary) -> list[dict[str, Any]]:
+        return [
+            {"inclusion": inside, "polygon": self._clockwise(corners), "version": 1}
+            for corners, inside in self._fenced(itinerary)
+        ]
+
+    def _fenced(self, itinerary: Itinerary) -> list[tuple[Sequence[Point], bool]]:
+        """The polygons of its fence, and whether it is to stay inside."""
         area = self.mission.map
         if area is None:
             return []
         out = set(self.stopping_zones(itinerary))
         zones = [z for k, z in enumerate(self._zones(itinerary.robot)) if z is not None and k not in out]
         bounds = [] if area.boundary is None else [(area.boundary, True)]
-        polygons = [*bounds, *((zone.polygon, False) for zone in zones)]
-        return [
-            {"inclusion": inside, "polygon": self._clockwise(corners), "version": 1} for corners, inside in polygons
-        ]
+        return [*bounds, *((zone.polygon, False) for zone in zones)]
 
-    def _clockwise(self, polygon: Sequence[tuple[float, ...]]) -> list[list[float]]:
+    def _clockwise(self, polygon: Sequence[Point]) -> list[list[float]]:
         return [[spot.lat, spot.lon] for spot in self.earth.spots(anticlockwise(polygon)[::-1])]
 
     def _rally_points(self, itinerary: Itinerary, home: Spot) -> list[list[float]]:
