@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -194,21 +195,24 @@ def _as_wished(itinerary: Itinerary, roads: Roads | None, wishes: _Wishes) -> It
     return itinerary.at_least(wishes.altitude)
 
 
-def _notes(plans: PlanFiles, itinerary: Itinerary) -> list[str]:
+def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     """What a person has to know of one robot's file."""
-    name = itinerary.robot.id
-    notes = [
-        f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
-        for k in plans.stopping_zones(itinerary)
-    ]
-    if plans.crosses_antimeridian(itinerary):
+    from muster.exchange.antimeridian import crosses
+    from muster.exchange.fence import Fence
+
+    name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
+    for k in fence.passed:
+        yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
+    for broken in fence.broken:
+        how = "does not stay in" if broken == "the boundary" else "leads through"
+        yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
+    if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):
         told = "autopilots may take the outside of such a fence for its inside"
-        notes.append(f"warning: {name}: its fence crosses the meridian of 180 degrees; {told}")
+        yield f"warning: {name}: its fence crosses the meridian of 180 degrees; {told}"
     low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
     if itinerary.robot.kind == "air" and low:
         where = f"task {low[0].task}" if low[0].task else "a way point"
-        notes.append(f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height")
-    return notes
+        yield f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height"
 
 
 def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: float | None) -> None:
