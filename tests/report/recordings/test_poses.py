@@ -126,7 +126,7 @@ def test_errors_are_the_distances_to_the_reference(form, recording, tmp_path):
     off = {one.robot: one for one in deviations(recording, reference)}
     count = len(recording.tracks.times_s)
     assert reference.begins_s == pytest.approx(BEGINS, abs=1e-5)
-    assert off["r_0"].samples == pytest.approx(count, abs=1)
+    assert off["r_0"].samples == count
     assert off["r_0"].error.mean == pytest.approx(0.5, abs=1e-5)  # the mission is in the plane
     assert off["r_0"].error.total == pytest.approx(0.5 * off["r_0"].samples, abs=1e-3)
     assert off["r_1"].error.most == pytest.approx(0.0, abs=1e-5)
