@@ -1,12 +1,16 @@
 """A plan carried out by a fleet behind a bridge: here a simulated world stands behind it, in virtual time."""
 
 import threading
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import muster
-from muster._live import carry_out_live
+from muster._live import from_where_they_stand
+from muster.execution.record import NoObserver
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.report.record import read_record
 from muster.simulation import KinematicWorld
 
 
@@ -48,7 +52,7 @@ def mission(count=2):
 
 
 def flown(there, fleet, **how):
-    return carry_out_live(there, muster.solve(there, iterations=50), fleet, **how)
+    return muster.carry_out(there, muster.solve(there, iterations=50), fleet, **how)
 
 
 def test_a_fleet_carries_a_plan_out():
@@ -88,3 +92,55 @@ def test_an_error_stops_the_robots():
     with pytest.raises(RuntimeError):
         flown(there, fleet, on_happening=broken)
     assert fleet.stopped == 1
+
+
+def test_a_record_has_where_robots_said_that_they_were(tmp_path):
+    there = mission()
+    joins = Robot(id="new", position=(9.0, 9.0), radius_m=0.2)
+    fleet = WorldAsFleet(there, [Event(at_s=3, robot_joins=joins)])
+    report = flown(there, fleet, record=tmp_path / "record.mcap")
+    recording = read_record(tmp_path / "record.mcap")
+    assert recording.complete
+    assert recording.report["tasks_done"] == list(report.tasks_done)
+    assert [robot.id for robot in recording.robots] == ["r_0", "r_1", "new"]
+    last = [fleet.ports[name].telemetry().position for name in recording.tracks.robots]
+    assert recording.tracks.positions[-1] == pytest.approx(np.array(last), abs=0.05)
+    assert np.isnan(recording.tracks.positions[0, 2]).all()  # not there yet
+
+
+def test_how_near_robots_came_is_not_claimed():
+    report = flown(mission(), WorldAsFleet(mission()))
+    assert (report.contacts, report.min_distance_m) == (None, None)
+
+
+class Full(NoObserver):
+    """Keeps what it is told until the disk is full."""
+
+    def __init__(self, room):
+        self.room = room
+
+    def on_step(self, now, *states):
+        self.room -= 1
+        if self.room < 0:
+            raise OSError(28, "No space left on device", "record.mcap")
+
+    def on_report(self, report):
+        raise AssertionError("nothing more is told")
+
+
+def test_no_robot_stops_for_a_full_disk():
+    there = mission()
+    full, whole = Full(room=5), []
+    fleet = WorldAsFleet(there)
+    report = flown(there, fleet, observers=[full], on_happening=whole.append)
+    assert len(report.tasks_done) == 4
+    assert fleet.stopped == 0
+    assert full.room == -1
+    assert report.remarks == ("no more is kept: [Errno 28] No space left on device: 'record.mcap'",)
+
+
+def test_robots_start_where_they_stand():
+    there = mission()
+    fleet = WorldAsFleet(replace(there, robots=tuple(replace(r, position=(1.0, r.position[1])) for r in there.robots)))
+    fleet.advance(0.1)
+    assert [robot.position for robot in from_where_they_stand(there, fleet).robots] == [(1.0, 0.0), (1.0, 3.0)]

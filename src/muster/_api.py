@@ -1,9 +1,10 @@
-"""Muster from Python: load, solve, verify, plot. Heavy parts are imported where they are used."""
+"""Muster from Python: load, solve, verify, simulate, carry out, plot. Heavy parts are imported where they are used."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,9 +17,12 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
+    import threading
+
     from muster._negotiated.simulation import Negotiation
     from muster.allocation.stop import Progress
-    from muster.execution import Report
+    from muster.bridges.fleet import Fleet
+    from muster.execution import Happening, Recorder, Report
     from muster.report.film import Footage
     from muster.verification import Verdict
 
@@ -181,7 +185,7 @@ def simulate(
     seed: int = 0,
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
-    observers: Sequence[Any] = (),
+    observers: Sequence[Recorder] = (),
     **how: Any,
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
@@ -214,26 +218,91 @@ def simulate(
     """
     _require_mission(mission)
     carry_out = _carrying_out(mission, plan)
-    with ExitStack() as stack:
-        recorders: list[Any] = list(observers)
-        if record is not None:
-            from muster.report.record import RecordWriter
-
-            recorders.append(stack.enter_context(RecordWriter(record, mission)))
-        if film is not None:
-            footage = _footage(mission, film)
-            recorders.append(footage)
-            how["on_world"] = footage.on_world
-        if recorders:
-            from muster.report.recorders import Recorders
-
-            how["recorder"] = Recorders(*recorders)
-        report = carry_out(seed=seed, **how)
+    if film is not None:
+        footage = _footage(mission, film)
+        observers = (*observers, footage)
+        how["on_world"] = footage.on_world
+    with _recorded(mission, record, observers) as recorder:
+        report = carry_out(seed=seed, recorder=recorder, **how)
     if isinstance(film, str | Path):
         from muster.report.film import write_film
 
         write_film(film, footage)
     return report
+
+
+def carry_out(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    *,
+    seed: int = 0,
+    record: str | Path | None = None,
+    observers: Sequence[Recorder] = (),
+    on_happening: Callable[[Happening], None] | None = None,
+    halt: threading.Event | None = None,
+) -> Report:
+    """Carry a plan out with real robots, in real time, to its end; what is left is planned again when robots fail.
+
+    Parameters
+    ----------
+    fleet
+        the robots, behind a bridge of `muster.bridges`; stays open.
+    seed
+        of planning anew.
+    record
+        a file (.mcap) that is to hold what happened; needs the extra `record`.
+    observers
+        who else is told, such as `muster.report.live.FoxgloveServer`.
+    on_happening
+        is told what happens, as it happens.
+    halt
+        where it is set, by another thread or by `on_happening`, robots stop where they are, and it ends.
+
+    Returns
+    -------
+    its remarks say so if a record broke off, as on a full disk: robots are not left alone for that.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+    from muster._live import carry_out_live
+
+    _require_mission(mission)
+    remarks: list[str] = []
+    with _recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
+        report = carry_out_live(
+            mission, plan, fleet, seed=seed, recorder=recorder, on_happening=on_happening, halt=halt
+        )
+    return replace(report, remarks=(*report.remarks, *remarks))
+
+
+@contextmanager
+def _recorded(
+    mission: Mission,
+    record: str | Path | None,
+    observers: Sequence[Recorder],
+    on_failure: Callable[[OSError], None] | None = None,
+) -> Iterator[Recorder | None]:
+    """Who is told of a mission while it is carried out, a file among them if one is wanted; None: nobody."""
+    recorders = list(observers)
+    if record is not None:
+        from muster.report.record import RecordWriter
+
+        recorders.append(file := RecordWriter(record, mission))
+    if not recorders:
+        yield None
+        return
+    from muster.report.recorders import Recorders
+
+    told = Recorders(*recorders, on_failure=on_failure)
+    try:
+        yield told
+    finally:
+        if record is not None:
+            told.forgiving(file.close)
 
 
 def _footage(mission: Mission, film: str | Path | Footage) -> Footage:

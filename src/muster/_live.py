@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from muster.bridges.fleet import Fleet
-from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
+from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.motion.port import RobotPort
 from muster.motion.roads import Roads
 
 if TYPE_CHECKING:
-    from muster.execution.executor import Happening
-    from muster.execution.report import Report
+    from muster.execution import Happening, Report
 
 LOOK_S = 0.2
 """Seconds between two looks at the robots, where nothing is heard before."""
@@ -26,7 +29,7 @@ def carry_out_live(
     fleet: Fleet,
     *,
     seed: int = 0,
-    observer: Observer | None = None,
+    recorder: Recorder | None = None,
     on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
@@ -38,8 +41,8 @@ def carry_out_live(
         has a port for each robot of the mission, and stays open.
     seed
         of planning anew.
-    observer
-        is told all that happens, such as a record's writer.
+    recorder
+        is told all that happens, and where robots say that they are.
     on_happening
         is told what happens, as it happens.
 
@@ -57,16 +60,18 @@ def carry_out_live(
         way=way_of(mission, roads),
         travel=travel,
         replan=Reallocation(travel=travel, seed=seed),
-        observer=observer,
+        observer=recorder,
         now=fleet.time_s,
     )
     halt, told = halt or threading.Event(), 0
-    executor.tick(fleet.time_s)
     try:
+        executor.tick(fleet.time_s)
         while not executor.done and not halt.is_set():
             for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
                 executor.report_if_it_fits(event)
             executor.tick(fleet.time_s)
+            if recorder is not None:
+                _tell_places(recorder, fleet.time_s, executor.crew, fleet.ports)
             if on_happening is not None:
                 for happening in executor.happenings[told:]:
                     on_happening(happening)
@@ -74,4 +79,27 @@ def carry_out_live(
     finally:
         if not executor.done:
             fleet.stop()
-    return report_of(executor.account, contacts=0, min_distance_m=None)
+    report = report_of(executor.account)
+    if recorder is not None:
+        recorder.on_report(report.as_dict())
+    return report
+
+
+def from_where_they_stand(mission: Mission, fleet: Fleet) -> Mission:
+    """The mission with robots that start where they say that they are; the others start as the mission has it."""
+    said = {robot.id: fleet.ports[robot.id].telemetry() for robot in mission.robots}
+    robots = (
+        replace(robot, position=there.position[: mission.dimensions]) if (there := said[robot.id]) else robot
+        for robot in mission.robots
+    )
+    return replace(mission, robots=tuple(robots))
+
+
+def _tell_places(recorder: Recorder, now: float, robots: Iterable[str], ports: Mapping[str, RobotPort]) -> None:
+    """A step of a record, by what robots last said; NaN of those that were not heard."""
+    rows = []
+    for robot in robots:
+        said = ports[robot].telemetry()
+        rows.append([np.nan] * 7 if said is None else [*said.position, said.heading, *said.velocity])
+    states = np.array(rows, dtype=float).reshape(-1, 7)
+    recorder.on_step(now, states[:, :3], states[:, 3], states[:, 4:])

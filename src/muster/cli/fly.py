@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exits import DONE
 from muster.cli.halting import ctrl_c_halts
-from muster.cli.options import (
-    Finite,
-    format_option,
-    load_mission,
-    mission_argument,
-    quiet_option,
-    require_complete_option,
-    say_of_plan,
-)
+from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.real import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, json_text, read_plan
+from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
     from muster.bridges.mavlink import MavlinkFleet
-    from muster.execution.executor import Happening
 
-_FILE = click.Path(path_type=Path)
 _AT_END = ("hold", "return", "land")
 
 
@@ -40,20 +31,13 @@ _AT_END = ("hold", "return", "land")
     metavar="ROBOT=ENDPOINT",
     help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD].",
 )
-@click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
 @click.option("--offboard", is_flag=True, help="Say way points one by one instead of uploading missions.")
 @click.option("--height", type=Finite(0.5, 500), metavar="M", help="Of flight above home, for a mission in the plane.")
 @click.option("--low-battery", type=Finite(1, 99), default=25, show_default=True, metavar="%", help="Return below it.")
 @click.option("--wait", type=Finite(0.1, 600), default=10, show_default=True, metavar="S", help="For drones to answer.")
 @click.option("--at-end", type=click.Choice(_AT_END), default="hold", show_default=True, help="When all is done.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
-@click.option(
-    "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."
-)
-@require_complete_option
-@format_option
-@quiet_option
+@real_options
 def command(
     mission: str,
     robots: Path | None,
@@ -61,41 +45,35 @@ def command(
     salesmen: int | None,
     depot: str | None,
     endpoints: tuple[str, ...],
-    plan: Path | None,
     arm: bool,
     offboard: bool,
     height: float | None,
     low_battery: float,
     wait: float,
     at_end: str,
-    seed: int,
-    time_limit: float,
-    require_complete: bool,
-    form: str,
-    quiet: bool,
-    verbose: bool,
+    **asked: Any,
 ) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 
     Without --arm nothing flies: the drones are listened to, and it is shown what they would be told. Ctrl-C
     lets them hover. Read docs/mavlink.md before the first flight.
     """
-    from muster import solve
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
 
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    wishes = Wishes(**asked)
+    require_outputs(wishes, (mission, robots, suitability))
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    given = read_wanted(wishes, loaded)
     settings = Settings(arm=arm, offboard=offboard, low_battery=low_battery / 100)
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
     try:
-        planned = solve(loaded, seed=seed, time_limit=time_limit) if plan is None else read_plan(plan)
-        if plan is not None:
-            say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
+        plan = given or planned(wishes, loaded)
         fleet.connect(wait)
         if not arm:
-            _show(loaded, planned, fleet, form)
+            _show(loaded, plan, fleet, wishes.form)
             return DONE
-        return _fly(loaded, planned, fleet, seed, at_end, form, quiet=quiet, verbose=verbose, whole=require_complete)
+        return _fly(loaded, plan, fleet, at_end, wishes)
     finally:
         fleet.close()
 
@@ -139,38 +117,11 @@ def _degrees(value: float | None) -> str:
     return "-" if value is None else f"{value:.7f}"
 
 
-def _fly(
-    mission: Mission,
-    plan: Plan,
-    fleet: MavlinkFleet,
-    seed: int,
-    at_end: str,
-    form: str,
-    *,
-    quiet: bool,
-    verbose: bool,
-    whole: bool,
-) -> int:
-    from muster._live import carry_out_live
-    from muster.cli.report_tables import print_report
-
+def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: str, wishes: Wishes) -> int:
     with ctrl_c_halts() as halt:
-        report = carry_out_live(mission, plan, fleet, seed=seed, on_happening=None if quiet else _tell, halt=halt)
+        report = carried_out(mission, plan, fleet, wishes, halt)
         if not halt.is_set() and at_end != "hold":
             {"return": fleet.go_back, "land": fleet.land}[at_end]()
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
-    if form == "json":
-        click.echo(json_text(report.as_dict()), nl=False)
-    else:
-        print_report(report.as_dict(), mission, with_tasks=verbose)
-    if halt.is_set():
-        click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission: drones were told to hover", err=True)
-        return INTERRUPTED
-    return INCOMPLETE if whole and report.tasks_lost else DONE
-
-
-def _tell(happening: Happening) -> None:
-    from muster.report.record.messages import event_line
-
-    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)
+    return reported(mission, report, wishes, halt, "drones were told to hover")

@@ -1,14 +1,17 @@
-"""A mission shown while it is carried out, to those who connect with Foxglove."""
+"""A mission shown while it is carried out: told on standard error, and to those who connect with Foxglove."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.mission.model import Mission
+
+if TYPE_CHECKING:
+    from muster.execution import Happening
 
 foxglove_option = click.option(
     "--foxglove",
@@ -30,3 +33,10 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
         if not quiet:
             click.echo(f"foxglove: {server.address}", err=True)
         yield (server,)
+
+
+def tell(happening: Happening) -> None:
+    """Say what happens, as it happens."""
+    from muster.report.record.messages import event_line
+
+    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)

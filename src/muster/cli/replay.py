@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
+from muster.cli.keeping import draw_record, drawing_options
 from muster.cli.options import Finite, format_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.recordings import errors_against, print_errors, require_recordings, show_recording, write_for_ros
@@ -23,9 +24,7 @@ _FILE = click.Path(path_type=Path)
 
 @click.command()
 @click.argument("record", type=_FILE)
-@click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
-@click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
-@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@drawing_options
 @click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap).")
 @click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag).")
 @click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has.")
@@ -63,7 +62,7 @@ def command(
     if not recording.complete and not quiet:
         until = f"breaks off at {recording.duration_s:.1f} s"
         click.echo(f"warning: {record}: {until}; what is whole is shown", err=True)
-    _show(recording, html, plot, gantt)
+    draw_record(recording, html, plot, gantt)
     write_for_ros(recording, ros2, ros1, begins, quiet=quiet)
     off = None if reference is None else errors_against(recording, reference, topics, begins, quiet=quiet)
     if form == "json":
@@ -75,31 +74,6 @@ def command(
         if off is not None:
             print_errors(off)
     return DONE
-
-
-def show_record(file: Path, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    """Write what is wanted of a record's page, picture and time chart."""
-    from muster.report.record import read_record
-
-    if html is not None or plot is not None or gantt is not None:
-        _show(read_record(file), html, plot, gantt)
-
-
-def _show(recording: Recording, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    if html is not None:
-        from muster.report.page import write_page
-
-        write_page(html, recording)
-    if plot is not None:
-        from muster.report.files import save_figure
-        from muster.report.flown import plot_flown
-
-        save_figure(plot_flown(recording), plot)
-    if gantt is not None:
-        from muster.report.files import save_figure
-        from muster.report.flown_gantt import plot_flown_gantt
-
-        save_figure(plot_flown_gantt(recording), gantt)
 
 
 def _answer(recording: Recording) -> dict[str, Any]:

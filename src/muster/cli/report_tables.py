@@ -39,17 +39,22 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
     done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
     known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
-    least = report.get("min_distance_m")
-    distance = "-" if least is None else f"{number(least)} m"
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
         ("tasks done", f"{done} of {known}"),
         ("objective", _objective(report.get("objective"), unit)),
         ("waiting", f"{number(report.get('waiting_s'))} s"),
-        ("least distance", f"{distance}, {counted(report.get('contacts', 0), 'contact')}"),
+        ("least distance", _nearness(report)),
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _nearness(report: Report) -> str:
+    """How near robots came to each other, where somebody measured it."""
+    least, contacts = report.get("min_distance_m"), report.get("contacts")
+    distance = "-" if least is None else f"{number(least)} m"
+    return "not measured" if contacts is None else f"{distance}, {counted(contacts, 'contact')}"
 
 
 def _print_found(report: Report, mission: Mission) -> None:

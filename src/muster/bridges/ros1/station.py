@@ -17,6 +17,7 @@ from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MissionError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 
 _ACTIVITIES = {
@@ -101,6 +102,12 @@ class Station:
             self._say("/system_monitor/robots", rows)
             for row in rows:
                 self._say(self._fleet.topics(row["robot"]) + "/status", row)
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        """Where robots are is in what they say."""
+
+    def on_report(self, report: Mapping[str, Any]) -> None:
+        """The figures are printed."""
 
     def close(self) -> None:
         """Take services and topics back."""

@@ -7,7 +7,8 @@ chunks but the one in the making, and `read_record` reads them.
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
@@ -65,9 +66,11 @@ class RecordWriter(Teller):
         self._clock: Clock = clock or SystemClock()
         self._flush_s, self._flushed = flush_s, self._clock.now()
         self._chunk_bytes, self._waiting_bytes = chunk_bytes, 0
-        self._file: IO[bytes] = Path(path).open("wb")  # noqa: SIM115 - closed by `close`
+        self._path = Path(path)
+        self._file: IO[bytes] = self._path.open("wb")
         try:
-            self._writer, self._channels = _started(self._file)
+            with self._named_errors():
+                self._writer, self._channels = _started(self._file)
             self._write_mission(mission)
         except OSError:
             with suppress(OSError):
@@ -83,7 +86,7 @@ class RecordWriter(Teller):
     def close(self) -> None:
         """End the file in order, with its index; may be called again."""
         if not self._file.closed:
-            with self._file:
+            with self._named_errors(), self._file:
                 self._writer.finish()
 
     def _write_mission(self, mission: Mission) -> None:
@@ -99,8 +102,17 @@ class RecordWriter(Teller):
             self._flush()
 
     def _flush(self) -> None:
-        self._writer.flush()
+        with self._named_errors():
+            self._writer.flush()
         self._flushed, self._waiting_bytes = self._clock.now(), 0
+
+    @contextmanager
+    def _named_errors(self) -> Iterator[None]:
+        """Errors of writing do not say by themselves which file it is."""
+        try:
+            yield
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._path)) from None
 
 
 def require_mcap() -> None:

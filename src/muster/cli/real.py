@@ -1,0 +1,161 @@
+"""What verbs that command real robots have in common: what is asked for, waiting, carrying out, the report."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import click
+
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.keeping import drawing_options, kept_record, record_option
+from muster.cli.live import foxglove_option, shown_live, tell
+from muster.cli.options import Verb, format_option, quiet_option, require_complete_option, say_of_plan
+from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.report_tables import print_report
+from muster.mission.errors import NetworkError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, json_text, read_plan
+
+if TYPE_CHECKING:
+    from muster.bridges.fleet import Fleet
+    from muster.execution import Recorder, Report
+
+_FILE = click.Path(path_type=Path)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wishes:
+    """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
+
+    plan: Path | None
+    seed: int
+    time_limit: float
+    record: Path | None
+    html: Path | None
+    plot: Path | None
+    gantt: Path | None
+    foxglove: int | None
+    require_complete: bool
+    form: str
+    quiet: bool
+    verbose: bool
+
+
+def real_options(verb: Verb) -> Verb:
+    """The options of which `Wishes` is made."""
+    options = (
+        click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
+        click.option(
+            "--time-limit",
+            type=click.FloatRange(min=0),
+            default=2.0,
+            show_default=True,
+            metavar="S",
+            help="Of planning.",
+        ),
+        record_option,
+        drawing_options,
+        foxglove_option,
+        require_complete_option,
+        format_option,
+        quiet_option,
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
+
+
+def require_outputs(wishes: Wishes, inputs: tuple[str | Path | None, ...]) -> None:
+    """Find out before robots move that a file cannot be written, or would replace one that is read."""
+    files = (wishes.record, wishes.html, wishes.plot, wishes.gantt)
+    require_writable(None, files, inputs, (wishes.plan,))
+    require_drawable(wishes.plot, wishes.gantt)
+
+
+def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
+    """The plan that was given, before robots are looked for; None: there is none."""
+    if wishes.plan is None:
+        return None
+    plan = read_plan(wishes.plan)
+    say_of_plan(plan, wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
+    return plan
+
+
+def planned(wishes: Wishes, mission: Mission) -> Plan:
+    """A plan made now."""
+    from muster import solve
+
+    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
+
+
+class _Heard(Protocol):
+    def unheard(self) -> Mapping[str, str]:
+        """Robots of the mission that have not said where they are, and what is missing."""
+        ...
+
+
+def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float) -> None:
+    """Until each robot of the mission has said where it is, or `halt` is set.
+
+    Raises
+    ------
+    NetworkError
+        if one does not in time.
+    """
+    until = time.monotonic() + wait_s
+    while (unheard := fleet.unheard()) and not halt.is_set():
+        if time.monotonic() > until:
+            robot, why = next(iter(unheard.items()))
+            more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
+            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected its pose")
+        time.sleep(0.05)
+
+
+def carried_out(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    wishes: Wishes,
+    halt: threading.Event,
+    observers: Sequence[Recorder] = (),
+) -> Report:
+    """Carry a plan out; what happens is told, recorded and shown as was asked for."""
+    from muster import carry_out
+
+    kept = kept_record(wishes.record, wishes.html, wishes.plot, wishes.gantt)
+    with kept as file, shown_live(mission, wishes.foxglove, quiet=wishes.quiet) as viewers:
+        return carry_out(
+            mission,
+            plan,
+            fleet,
+            seed=wishes.seed,
+            record=file,
+            observers=(*observers, *viewers),
+            on_happening=None if wishes.quiet else tell,
+            halt=halt,
+        )
+
+
+def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.Event, left: str) -> int:
+    """Print what came of it; returns the exit code.
+
+    Parameters
+    ----------
+    left
+        what robots do if it was interrupted: "the robots were told to stand".
+    """
+    figures: dict[str, Any] = report.as_dict()
+    if wishes.form == "json":
+        click.echo(json_text(figures), nl=False)
+    else:
+        print_report(figures, mission, with_tasks=wishes.verbose)
+    if halt.is_set():
+        click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
+        return INTERRUPTED
+    return INCOMPLETE if wishes.require_complete and report.tasks_lost else DONE
