@@ -110,6 +110,8 @@ def test_an_unknown_format(export):
     [
         (["--to", "qgc"], "-o missing; expected a folder for the .plan files"),
         (["--to", "qgc", "-o", "bay.yaml"], "-o: bay.yaml is a file; expected a folder, or a name for a new one"),
+        (["--to", "kml", "--altitude", "9"], "--altitude given; expected it with --to qgc, not kml"),
+        (["--to", "csv", "--firmware", "px4"], "--firmware given; expected it with --to qgc, not csv"),
         (["--to", "csv", "-o", "bay.yaml"], "bay.yaml: given twice; expected a file that is neither read nor written"),
         (["--to", "csv", "-o", "bay.json"], "bay.json: given twice; expected a file that is neither read nor written"),
         (["--to", "gpx", "-o", "no/x.gpx"], "no/x.gpx: cannot be written; expected a file in a folder that exists"),

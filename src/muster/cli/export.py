@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, load_mission, mission_argument, quiet_option, say_of_plan
@@ -30,7 +31,7 @@ FORMATS = ("qgc", "geojson", "gpx", "kml", "csv")
 
 @dataclass(frozen=True)
 class _Wishes:
-    """What is asked for of plan files."""
+    """What is asked for of plan files: the options that are theirs, by name."""
 
     altitude: float | None
     clearance: float
@@ -102,6 +103,7 @@ def command(
             raise ParameterError("-o missing; expected a folder for the .plan files")
         require_folder(output, "-o")
     else:
+        _require_none_of_qgc(form)
         require_writable(None, (output,), (mission, robots, suitability), (plan,))
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = read_plan(plan)
@@ -120,6 +122,14 @@ def command(
     else:
         output.write_text(text, encoding="utf-8", newline="")
     return DONE
+
+
+def _require_none_of_qgc(form: str) -> None:
+    """Refuse wishes of plan files for a format that does not know them."""
+    context = click.get_current_context()
+    for field in fields(_Wishes):
+        if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
+            raise ParameterError(f"--{field.name} given; expected it with --to qgc, not {form}")
 
 
 def _admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
