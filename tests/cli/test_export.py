@@ -42,6 +42,31 @@ def test_robots_that_come_near_each_other_are_named(export, muster):
     assert " apart at " not in err
 
 
+def test_ways_that_a_fence_would_stop_are_named(export):
+    Path("bay.yaml").write_text(BAY.replace("ceiling_m: 4", "ceiling_m: 14"), encoding="utf-8")
+    _, _, err = export("--to", "qgc", "-o", "plans")
+    assert "warning: d2: its way leads through zone 1; its fence will stop it" in err.splitlines()
+
+
+def test_a_fence_across_the_meridian_of_180_degrees_is_named(export):
+    Path("bay.yaml").write_text(BAY.replace("lon_deg: -124.06", "lon_deg: 179.9995"), encoding="utf-8")
+    code, _, err = export("--to", "qgc", "-o", "plans")
+    assert code == 0
+    assert "warning: rover: its fence crosses the meridian of 180 degrees; autopilots may take" in err
+
+
+@pytest.mark.parametrize(("metres", "more"), [("0", True), ("0.2", False)])
+def test_way_points_around_corners_are_joined(metres, more, export):
+    around = "[[3, 10], [20, 10], [20, 25], [3, 25]]"
+    text = BAY.replace("{travel: euclidean}", "{travel: map}").replace(
+        "[[60, 20], [90, 20], [90, 60], [60, 60]]", around
+    )
+    Path("bay.yaml").write_text(text, encoding="utf-8")
+    assert export("--to", "qgc", "-o", "plans", "--tolerance", metres)[0] == 0
+    items = json.loads(Path("plans/rover.plan").read_text(encoding="utf-8"))["mission"]["items"]
+    assert (len(items) > 5) == more
+
+
 def test_quiet_writes_without_a_word(export):
     assert export("--to", "qgc", "-o", "plans", "-q") == (0, "", "")
 
@@ -85,6 +110,8 @@ def test_an_unknown_format(export):
     [
         (["--to", "qgc"], "-o missing; expected a folder for the .plan files"),
         (["--to", "qgc", "-o", "bay.yaml"], "-o: bay.yaml is a file; expected a folder, or a name for a new one"),
+        (["--to", "kml", "--altitude", "9"], "--altitude given; expected it with --to qgc, not kml"),
+        (["--to", "csv", "--firmware", "px4"], "--firmware given; expected it with --to qgc, not csv"),
         (["--to", "csv", "-o", "bay.yaml"], "bay.yaml: given twice; expected a file that is neither read nor written"),
         (["--to", "csv", "-o", "bay.json"], "bay.json: given twice; expected a file that is neither read nor written"),
         (["--to", "gpx", "-o", "no/x.gpx"], "no/x.gpx: cannot be written; expected a file in a folder that exists"),

@@ -1,5 +1,6 @@
 """GeoJSON, GPX and KML of a plan: which of latitude and longitude comes first, winding, order of elements, odd ids."""
 
+import csv
 import json
 import re
 from xml.etree import ElementTree as Tree
@@ -170,3 +171,12 @@ def test_csv_needs_no_origin(tmp_path):
     mission, verdict, _ = bay(tmp_path, re.sub("origin_wgs84.*\n", "", BAY))
     lines = csv_text(mission, verdict, None).splitlines()
     assert lines[1].startswith("d1,1,b,40.0,90.0,15.0,,,")
+
+
+@pytest.mark.parametrize("begin", ["=", "+", "-", "@"])
+def test_no_id_in_csv_is_a_formula(begin, tmp_path):
+    name = f"{begin}1+2"
+    mission, verdict, _ = bay(tmp_path, BAY.replace("id: left", f'id: "{name}"'))
+    *_, left = csv.reader(csv_text(mission, verdict, None).splitlines())
+    assert left[:3] == ["", "", f"'{name}"]
+    assert float(left[3]) == 30  # numbers stay numbers

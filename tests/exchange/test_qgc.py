@@ -1,28 +1,18 @@
 """QGroundControl plan files: the documented format, latitude first, and the way back to a mission."""
 
 import json
-import tempfile
-from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from tests.exchange.bay import ALT, BAY, LAT, LON, bay
 from tests.exchange.documented import PLAN
-from tests.mission.strategies import examples
 
 from muster import load
 from muster.exchange.earth import Earth
-from muster.exchange.itinerary import itineraries
-from muster.exchange.qgc_reader import read_plan_files
 from muster.exchange.qgc_writer import PlanFiles
 from muster.mission.errors import MissionError
-from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
-from muster.mission.model import Mission, Origin, Robot, Task
-from muster.mission.plan import Plan, Route
-from muster.verification import verify
+from muster.mission.geodesy import wgs84_to_enu
 
 ORIGIN = (LAT, LON, ALT)
 WRITTEN_M = 2e-4
@@ -151,64 +141,6 @@ def test_least_heights_are_above_the_start_and_end_on_the_ground(tmp_path):
     assert items(raised)[-1]["params"][6] == pytest.approx(1, abs=0.01)
 
 
-coordinates = st.tuples(*[st.floats(-3000, 3000)] * 2, st.floats(0, 500))
-holds = st.none() | st.floats(0.1, 600).map(lambda seconds: round(seconds, 2))
-
-
-@st.composite
-def flights(draw):
-    """A mission anywhere on Earth but the poles, and a plan that does all of it."""
-    origin = Origin(
-        lat_deg=draw(st.floats(-85, 85)), lon_deg=draw(st.floats(-179.9, 179.9)), alt_m=draw(st.floats(-50, 4000))
-    )
-    robots = [
-        Robot(
-            id=f"r_{k}",
-            position=draw(coordinates),
-            kind="ground" if k % 2 else "air",
-            speed_mps=draw(st.sampled_from([0.5, 1.0, 7.3])),
-            return_to_start=draw(st.booleans()),
-        )
-        for k in range(draw(st.integers(1, 3)))
-    ]
-    tasks = [
-        Task(id=str(k), position=draw(coordinates), duration_s=draw(holds)) for k in range(draw(st.integers(1, 6)))
-    ]
-    routes = tuple(Route(r.id, tuple(t.id for t in tasks[k :: len(robots)])) for k, r in enumerate(robots))
-    return Mission(origin_wgs84=origin, robots=tuple(robots), tasks=tuple(tasks)), Plan(routes=routes)
-
-
-@examples(40)
-@given(flights())
-def test_a_mission_exported_and_imported_is_the_same_within_a_centimetre(flight):
-    mission, plan = flight
-    verdict = verify(mission, plan)
-    assert verdict.valid
-    written = files_of(mission, verdict, itineraries(mission, verdict))
-    with tempfile.TemporaryDirectory() as folder:
-        for name, data in written.items():
-            jsonschema.validate(data, PLAN)
-            (Path(folder) / f"{name}.plan").write_text(json.dumps(data), encoding="utf-8")
-        again = read_plan_files(folder)
-    robots = {robot.id: robot for robot in mission.robots}
-    tasks = [next(t for t in mission.tasks if t.id == name) for route in plan.routes for name in route.tasks]
-    assert [robot.id for robot in again.robots] == list(written)
-    for robot in again.robots:
-        same = robots[robot.id]
-        assert (robot.kind, robot.speed_mps, robot.end_position) == (same.kind, same.speed_mps, None)
-        assert bool(robot.return_to_start) == same.return_to_start
-    assert [task.duration_s for task in again.tasks] == pytest.approx([task.duration_s or None for task in tasks])
-    here = [*(robots[name].position for name in written), *(task.position for task in tasks)]
-    there = [place.position for place in (*again.robots, *again.tasks)]
-    assert np.abs(on_earth(there, again, mission) - np.array(here)).max() < 0.01
-
-
-def on_earth(points, of, seen_from):
-    """Points of one mission's map frame in that of another."""
-    origins = [(m.origin_wgs84.lat_deg, m.origin_wgs84.lon_deg, m.origin_wgs84.alt_m) for m in (of, seen_from)]
-    return wgs84_to_enu(enu_to_wgs84(points, origins[0]), origins[1])
-
-
 def test_ends_come_back(files, tmp_path):
     for name, plan in files.items():
         (tmp_path / f"{name}.plan").write_text(json.dumps(plan), encoding="utf-8")
@@ -267,6 +199,49 @@ def test_no_plan_file_at_all(text, tmp_path):
     (tmp_path / "x.plan").write_text(text, encoding="utf-8")
     with pytest.raises(MissionError):
         load(tmp_path / "x.plan")
+
+
+def fence(polygons, **others):
+    return lambda plan: plan.update(geoFence={"polygons": polygons, "version": 2, **others})
+
+
+SQUARE = {"inclusion": True, "polygon": [[LAT, LON], [LAT + 0.1, LON], [LAT, LON + 0.1]]}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda p: p.update(geoFence=3), "geoFence: 3; expected a mapping with polygons"),
+        (fence([], circles=[{"inclusion": True}]), "geoFence.circles: "),
+        (fence([{**SQUARE, "inclusion": False}]), "geoFence.polygons: not the mission's boundary; expected one"),
+        (fence([SQUARE, SQUARE]), "geoFence.polygons: not the mission's boundary; expected one polygon"),
+        (fence([{**SQUARE, "inclusion": 1}]), "geoFence.polygons[0].inclusion: 1; expected true or false"),
+        (fence([{"inclusion": True}]), "geoFence.polygons[0].polygon: missing; expected a list of corners"),
+        (fence([{**SQUARE, "polygon": [[LON, LAT]] * 3}]), "geoFence.polygons[0].polygon[0]: "),
+    ],
+)
+def test_a_fence_that_is_no_map_is_refused_in_a_line(change, said, files, tmp_path):
+    change(files["d2"])
+    file = tmp_path / "x.plan"
+    file.write_text(json.dumps(files["d2"]), encoding="utf-8")
+    with pytest.raises(MissionError) as error:
+        load(file)
+    assert f"{file}: {said}" in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_fences_are_of_one_mission(files, tmp_path):
+    fence([SQUARE])(files["d2"])
+    for name in ("d1", "d2"):
+        (tmp_path / f"{name}.plan").write_text(json.dumps(files[name]), encoding="utf-8")
+    with pytest.raises(MissionError, match="expected one polygon with inclusion, the same in all files"):
+        load(tmp_path)
+
+
+def test_a_file_without_a_fence_is_a_mission_without_a_map(files, tmp_path):
+    del files["d2"]["geoFence"]
+    (tmp_path / "d2.plan").write_text(json.dumps(files["d2"]), encoding="utf-8")
+    assert load(tmp_path / "d2.plan").map is None
 
 
 def test_a_folder_without_plan_files(tmp_path):

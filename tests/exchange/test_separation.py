@@ -92,3 +92,31 @@ def _moves(walk, times):
         if before.place != after.place:
             moving |= (times >= before.leaves_s) & (times <= after.arrives_s)
     return moving
+
+
+@pytest.mark.parametrize(("waits_s", "near"), [(5, 0), (11, 1)])
+def test_who_works_at_the_crossing_is_in_the_way_while_it_works(waits_s, near):
+    """It is there from 3 s on; the other comes by at 10 s, and within 1 m from 9 s on."""
+    works = itinerary("works", ((0, -3, 5), 0, 0), ((0, 0, 5), 3, 3 + waits_s), ((0, 30, 5), 4 + waits_s, 4 + waits_s))
+    assert len(meetings([EAST, works])) == near
+
+
+def test_one_that_crosses_twice_is_named_once_where_it_is_nearest():
+    back = itinerary("back", ((-5, 0.6, 5), 0, 5), ((-5, 0.3, 5), 5, 5), ((-5, 9, 5), 6, 14), ((5, 0, 5), 15, 15))
+    (meeting,) = meetings([EAST, back])
+    assert (meeting.time_s, meeting.distance_m) == (15, 0)
+
+
+def test_fifty_robots_of_forty_tasks():
+    """All 1225 pairs: on rings of their own, 3 m apart, none meets; one that is on the ring of another does."""
+    team = [ring(f"r{k}", 10 + 3 * k, k) for k in range(50)]
+    assert meetings(team) == ()
+    (meeting,) = meetings([*team[:49], ring("last", 10, 5)])
+    assert meeting.robots == ("r0", "last")
+
+
+def ring(name, radius_m, begins_s):
+    """Forty tasks of 3 s on a circle, 8 s on the way to each."""
+    turns = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    spots = [(radius_m * np.cos(turn), radius_m * np.sin(turn), 0.0) for turn in turns]
+    return itinerary(name, *((spot, begins_s + 11.0 * k, begins_s + 11.0 * k + 3) for k, spot in enumerate(spots)))

@@ -90,6 +90,16 @@ def _is_told_what_holds(viewer, mission):
     assert state["robots"]["r_0"]["x"] == 1.5
 
 
+def test_who_watches_is_told_the_report_before_the_server_closes(mission):
+    with FoxgloveServer(mission, 0) as server, viewing(server, "/muster/state", "/muster/report") as viewer:
+        until_asked(server, "/muster/state", "/muster/report")
+        for k in range(300):
+            server.on_step(0.1 * k, np.zeros((2, 3)), np.zeros(2), np.zeros((2, 3)))
+        server.on_report({"mission_time_s": 30.0, "tasks_done": [], "tasks_lost": []})
+        server.close()
+        assert viewer.hear("/muster/report")[1]["report"]["mission_time_s"] == 30.0
+
+
 def test_a_port_that_is_taken_and_an_address_of_others(mission):
     with FoxgloveServer(mission, 0) as server:
         port = int(server.address.rpartition(":")[2])

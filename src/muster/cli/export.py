@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, load_mission, mission_argument, quiet_option, say_of_plan
@@ -19,9 +23,20 @@ from muster.mission.plan import Plan, read_plan
 if TYPE_CHECKING:
     from muster.exchange.itinerary import Itinerary
     from muster.exchange.qgc_writer import PlanFiles
+    from muster.motion.roads import Roads
     from muster.verification import Verdict
 
 FORMATS = ("qgc", "geojson", "gpx", "kml", "csv")
+
+
+@dataclass(frozen=True)
+class _Wishes:
+    """What is asked for of plan files: the options that are theirs, by name."""
+
+    altitude: float | None
+    clearance: float
+    tolerance: float
+    firmware: str
 
 
 def _format(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -51,6 +66,14 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
     help="qgc: warn where bodies come nearer to each other.",
 )
 @click.option(
+    "--tolerance",
+    type=Finite(0, 1e3),
+    default=0.1,
+    show_default=True,
+    metavar="M",
+    help="qgc: around corners of a map join way points, no farther than this from the way; 0 keeps all.",
+)
+@click.option(
     "--firmware", type=click.Choice(["px4", "ardupilot"]), default="px4", show_default=True, help="qgc: of the robots."
 )
 @quiet_option
@@ -65,6 +88,7 @@ def command(
     output: Path | None,
     altitude: float | None,
     clearance: float,
+    tolerance: float,
     firmware: str,
     quiet: bool,
     verbose: bool,
@@ -79,6 +103,7 @@ def command(
             raise ParameterError("-o missing; expected a folder for the .plan files")
         require_folder(output, "-o")
     else:
+        _require_none_of_qgc(form)
         require_writable(None, (output,), (mission, robots, suitability), (plan,))
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = read_plan(plan)
@@ -86,7 +111,8 @@ def command(
     verdict = _admissible(loaded, given, plan)
     if form == "qgc":
         assert output is not None
-        messages = _write_plan_files(loaded, verdict, output, (mission, plan), altitude, clearance, firmware)
+        wishes = _Wishes(altitude, clearance, tolerance, firmware)
+        messages = _write_plan_files(loaded, verdict, output, (mission, plan), wishes)
         for message in () if quiet else messages:
             click.echo(message, err=True)
         return DONE
@@ -96,6 +122,14 @@ def command(
     else:
         output.write_text(text, encoding="utf-8", newline="")
     return DONE
+
+
+def _require_none_of_qgc(form: str) -> None:
+    """Refuse wishes of plan files for a format that does not know them."""
+    context = click.get_current_context()
+    for field in fields(_Wishes):
+        if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
+            raise ParameterError(f"--{field.name} given; expected it with --to qgc, not {form}")
 
 
 def _admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
@@ -129,28 +163,24 @@ def _text(mission: Mission, verdict: Verdict, form: str) -> str:
 
 
 def _write_plan_files(
-    mission: Mission,
-    verdict: Verdict,
-    folder: Path,
-    inputs: tuple[str | Path, ...],
-    altitude: float | None,
-    clearance: float,
-    firmware: str,
+    mission: Mission, verdict: Verdict, folder: Path, inputs: tuple[str | Path, ...], wishes: _Wishes
 ) -> list[str]:
     """Write a file for each robot that has tasks; returns what a person has to know before anything flies."""
     from muster.exchange.earth import Earth
     from muster.exchange.itinerary import itineraries
     from muster.exchange.qgc_writer import PlanFiles
     from muster.exchange.separation import meetings
+    from muster.motion.roads import Roads
 
     earth = Earth.of(mission, "--to qgc")
-    whole = itineraries(mission, verdict)
-    _require_heights(mission, whole, altitude)
-    team = [i if altitude is None or i.robot.kind == "ground" else i.at_least(altitude) for i in whole]
+    roads = Roads.of(mission) if mission.travel_rule == "map" else None
+    whole = itineraries(mission, verdict, roads)
+    _require_heights(mission, whole, wishes.altitude)
+    team = [_as_wished(itinerary, roads, wishes) for itinerary in whole]
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
     files = dict(zip(_file_names([i.robot.id for i in busy]), busy, strict=True))
     _require_free(folder, files, inputs)
-    plans = PlanFiles(mission, earth, team, firmware)
+    plans = PlanFiles(mission, earth, team, wishes.firmware)
     texts = {name: json.dumps(plans.plan(i), indent=4, sort_keys=True) + "\n" for name, i in files.items()}
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
@@ -159,21 +189,40 @@ def _write_plan_files(
     messages += [message for i in busy for message in _notes(plans, i)]
     if mission.map is not None and mission.map.boundary is None:
         messages.append("warning: the map is an image; expected a boundary for a fence, the files have none")
-    return messages + [f"warning: {meeting}" for meeting in meetings(team, clearance)]
+    return messages + [f"warning: {meeting}" for meeting in meetings(team, wishes.clearance)]
 
 
-def _notes(plans: PlanFiles, itinerary: Itinerary) -> list[str]:
+def _as_wished(itinerary: Itinerary, roads: Roads | None, wishes: _Wishes) -> Itinerary:
+    """With fewer bends around corners, and a drone no lower than it may fly."""
+    from muster.exchange.thinning import thinned
+    from muster.motion.world import body_of
+
+    if roads is not None and wishes.tolerance:
+        clear = partial(roads.clear, body_of(itinerary.robot))
+        itinerary = thinned(itinerary, wishes.tolerance, clear)
+    if wishes.altitude is None or itinerary.robot.kind == "ground":
+        return itinerary
+    return itinerary.at_least(wishes.altitude)
+
+
+def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     """What a person has to know of one robot's file."""
-    name = itinerary.robot.id
-    notes = [
-        f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
-        for k in plans.stopping_zones(itinerary)
-    ]
+    from muster.exchange.antimeridian import crosses
+    from muster.exchange.fence import Fence
+
+    name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
+    for k in fence.passed:
+        yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
+    for broken in fence.broken:
+        how = "does not stay in" if broken == "the boundary" else "leads through"
+        yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
+    if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):
+        told = "autopilots may take the outside of such a fence for its inside"
+        yield f"warning: {name}: its fence crosses the meridian of 180 degrees; {told}"
     low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
     if itinerary.robot.kind == "air" and low:
         where = f"task {low[0].task}" if low[0].task else "a way point"
-        notes.append(f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height")
-    return notes
+        yield f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height"
 
 
 def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: float | None) -> None:

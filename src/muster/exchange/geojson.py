@@ -1,15 +1,18 @@
 """A plan as GeoJSON (RFC 7946): longitude first, then latitude, and in 3-D metres above the ellipsoid (section 4).
 
-Polygons are closed and follow the right-hand rule (section 3.1.6). Numbers in properties are those of the schedule.
+Polygons are closed and follow the right-hand rule (section 3.1.6). What crosses the meridian of 180 degrees is cut
+there (section 3.1.9). Numbers in properties are those of the schedule.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
+from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
-from muster.exchange.survey import Feature, Survey
+from muster.exchange.survey import AREAS, Feature, Survey
 
 
 def geojson_text(survey: Survey) -> str:
@@ -24,15 +27,21 @@ def _feature(feature: Feature) -> dict[str, Any]:
 
 
 def _geometry(feature: Feature) -> dict[str, Any]:
-    places = [_coordinates(spot, feature) for spot in feature.spots]
     if feature.kind == "route":
-        return {"type": "LineString", "coordinates": places}
-    if feature.kind in ("boundary", "zone"):
-        return {"type": "Polygon", "coordinates": [[*places, places[0]]]}
-    return {"type": "Point", "coordinates": places[0]}
+        return _one_or_many("LineString", [_places(line, feature) for line in cut_line(feature.spots)])
+    if feature.kind in AREAS:
+        rings = [_places([*ring, ring[0]], feature) for ring in cut_ring(feature.spots)]
+        return _one_or_many("Polygon", [[ring] for ring in rings])
+    return {"type": "Point", "coordinates": _places(feature.spots, feature)[0]}
 
 
-def _coordinates(spot: Spot, feature: Feature) -> list[float]:
+def _one_or_many(kind: str, pieces: list[Any]) -> dict[str, Any]:
+    if len(pieces) == 1:
+        return {"type": kind, "coordinates": pieces[0]}
+    return {"type": f"Multi{kind}", "coordinates": pieces}
+
+
+def _places(spots: Sequence[Spot], feature: Feature) -> list[list[float]]:
     """[longitude, latitude], and the height of what has one: areas lie on the ground."""
-    flat = feature.heights_m is None or feature.kind in ("boundary", "zone")
-    return [spot.lon, spot.lat] if flat else [spot.lon, spot.lat, spot.alt]
+    flat = feature.heights_m is None or feature.kind in AREAS
+    return [[spot.lon, spot.lat] if flat else [spot.lon, spot.lat, spot.alt] for spot in spots]

@@ -13,6 +13,7 @@ from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
 from muster.motion.port import Place
+from muster.motion.roads import Roads
 from muster.verification import RouteFigures, Verdict, Visit
 
 
@@ -67,13 +68,15 @@ class Itinerary:
         return replace(self, passages=(self.start, *raised, *(self.passages[-1:] if self.has_end else ())))
 
 
-def itineraries(mission: Mission, verdict: Verdict) -> tuple[Itinerary, ...]:
+def itineraries(mission: Mission, verdict: Verdict, roads: Roads | None = None) -> tuple[Itinerary, ...]:
     """The itinerary of every robot, in mission order; a robot without tasks stays at its start.
 
     Parameters
     ----------
     verdict
         of a plan that is admissible.
+    roads
+        over the mission's map, if they are known.
 
     Raises
     ------
@@ -82,7 +85,7 @@ def itineraries(mission: Mission, verdict: Verdict) -> tuple[Itinerary, ...]:
     MissionError, MissingExtraError
         for travel over a map, as `Roads.of`.
     """
-    way = way_of(mission)
+    way = way_of(mission, roads)
     tasks = {task.id: task for task in mission.tasks}
     pairs = zip(mission.robots, verdict.routes, strict=True)
     return tuple(_itinerary(mission, robot, figures, tasks, way) for robot, figures in pairs)

@@ -1,7 +1,7 @@
 """QGroundControl plan files as a mission: one robot a file, every way point a task, the first home the origin.
 
 A way point's hold is the task's duration. The order of way points is not kept: what is to be planned anew is who goes
-where, and when. Way points of take-off, landing and return to launch say where the robot ends. Fences are not read.
+where, and when. Way points of take-off, landing and return to launch say where the robot ends. Fences are the map.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from muster.exchange import qgc_format as qgc
+from muster.exchange.qgc_fences import Corner, Fences, map_of
 from muster.mission.errors import Finding, MissionError
 from muster.mission.geodesy import wgs84_to_enu
 from muster.mission.kinds import shown
@@ -45,6 +46,11 @@ class _Vehicle:
     """Number of the item, place, and seconds of hold."""
     returns: bool
     lands_at: Degrees | None
+    fences: Fences
+
+    @property
+    def kind(self) -> str:
+        return "ground" if self.ground else "air"
 
 
 def read_plan_files(path: str | Path) -> Mission:
@@ -55,12 +61,13 @@ def read_plan_files(path: str | Path) -> Mission:
     Raises
     ------
     MissionError
-        with what is wrong with the first file that is wrong.
+        with what is wrong with the first file that is wrong, or has another boundary than those before.
     MissingExtraError
         if pymap3d is not installed.
     """
     path = Path(path)
-    vehicles = [_Reading(file).vehicle() for file in _files(path)]
+    readings = [_Reading(file) for file in _files(path)]
+    vehicles = [reading.vehicle() for reading in readings]
     lat, lon, alt = vehicles[0].home
     spatial = not all(vehicle.ground for vehicle in vehicles)
 
@@ -68,6 +75,12 @@ def read_plan_files(path: str | Path) -> Mission:
         point: list[float] = wgs84_to_enu([place], vehicles[0].home)[0].tolist()
         return point if spatial else point[:2]
 
+    def on_map(corner: Corner) -> Corner:
+        east, north, _ = wgs84_to_enu([(*corner, alt)], vehicles[0].home)[0].tolist()
+        return east, north
+
+    fences = [vehicle.fences for vehicle in vehicles]
+    chart = map_of(fences, [v.kind for v in vehicles], on_map, lambda k: readings[k].without_boundary())
     data = {
         "schema": SCHEMA,
         "name": path.stem,
@@ -78,7 +91,7 @@ def read_plan_files(path: str | Path) -> Mission:
             for vehicle in vehicles
             for number, place, hold in vehicle.stops
         ],
-    }
+    } | ({} if chart is None else {"map": chart})
     return mission_from(data, Source(str(path)), [])
 
 
@@ -98,7 +111,7 @@ def _robot(vehicle: _Vehicle, position: list[float], metres: Callable[[Degrees],
         "id": vehicle.name,
         "position": position,
         "speed_mps": vehicle.speed_mps,
-        "kind": "ground" if vehicle.ground else "air",
+        "kind": vehicle.kind,
     }
     if vehicle.returns:
         return data | {"return_to_start": True}
@@ -143,7 +156,35 @@ class _Reading:
             stops=stops,
             returns=any(item["command"] == qgc.NAV_RETURN_TO_LAUNCH for _, item, _ in commands),
             lands_at=landings[-1] if landings else None,
+            fences=self._fences(data.get("geoFence", {})),
         )
+
+    def without_boundary(self) -> MissionError:
+        """What is wrong if its fence has another boundary than those of the other files, none, or several."""
+        expected = "one polygon with inclusion, the same in all files"
+        return MissionError(
+            [Finding(str(self._file), None, "geoFence.polygons", "not the mission's boundary", expected)]
+        )
+
+    def _fences(self, data: object) -> Fences:
+        if not isinstance(data, dict):
+            raise self._refused("geoFence", data, "a mapping with polygons")
+        if data.get("circles"):
+            raise self._refused("geoFence.circles", data["circles"], "none: polygons alone are read")
+        rings: dict[bool, list[tuple[Corner, ...]]] = {True: [], False: []}
+        for k, polygon in enumerate(data.get("polygons") or []):
+            at = f"geoFence.polygons[{k}]"
+            inside = polygon.get("inclusion") if isinstance(polygon, dict) else polygon
+            if not isinstance(inside, bool):
+                raise self._refused(f"{at}.inclusion", inside, "true or false")
+            corners = self._of(polygon, "polygon", list, "a list of corners", f"{at}.polygon")
+            rings[inside].append(tuple(self._corner(c, f"{at}.polygon[{j}]") for j, c in enumerate(corners)))
+        return Fences(tuple(rings[True]), tuple(rings[False]))
+
+    def _corner(self, value: object, at: str) -> Corner:
+        if not isinstance(value, list) or len(value) != 2:
+            raise self._refused(at, value, "[latitude, longitude] in degrees")
+        return self._place([*value, 0.0], at)[:2]
 
     def _json(self) -> dict[str, Any]:
         try:
@@ -195,7 +236,7 @@ class _Reading:
 
     def _place(self, value: object, at: str) -> Degrees:
         if not isinstance(value, list) or len(value) != 3 or not all(map(_is_number, value)):
-            raise self._refused(at, value, "[latitude, longitude, altitude] in degrees and metres")
+            raise self._refused(at, value, "latitude and longitude in degrees, altitude in metres")
         lat, lon, height = (float(number) for number in value)
         if abs(lat) > 90 or abs(lon) > 180:
             raise self._refused(at, value, "a latitude from -90 to 90, then a longitude from -180 to 180")

@@ -13,8 +13,9 @@ from typing import Any
 
 from muster.exchange import qgc_format as qgc
 from muster.exchange.earth import Earth, Spot, anticlockwise
+from muster.exchange.fence import Fence
 from muster.exchange.itinerary import Itinerary, Passage
-from muster.mission.model import Mission, Robot, Zone
+from muster.mission.model import Mission, Point
 
 Item = dict[str, Any]
 
@@ -60,18 +61,6 @@ class PlanFiles:
             "version": 1,
         }
 
-    def stopping_zones(self, itinerary: Itinerary) -> list[int]:
-        """Zones, by their index, that its fence leaves out: they have a height, and its way leads over or under them.
-
-        A fence has no heights: with such a zone in it, it would stop the plan itself.
-        """
-        zones = enumerate(self._zones(itinerary.robot))
-        return [k for k, zone in zones if zone is not None and _has_height(zone) and _crosses(itinerary, zone)]
-
-    def _zones(self, robot: Robot) -> list[Zone | None]:
-        zones = () if self.mission.map is None else self.mission.map.zones
-        return [zone if robot.kind in zone.forbidden_to else None for zone in zones]
-
     def _items(self, itinerary: Itinerary, home: Spot) -> Iterator[Item]:
         robot = itinerary.robot
         spots = self.earth.spots(passage.place for passage in itinerary.passages)
@@ -101,18 +90,12 @@ class PlanFiles:
             yield _item(qgc.NAV_WAYPOINT, [0, 0, 0, None], last, _above(last, home))
 
     def _fence(self, itinerary: Itinerary) -> list[dict[str, Any]]:
-        area = self.mission.map
-        if area is None:
-            return []
-        out = set(self.stopping_zones(itinerary))
-        zones = [z for k, z in enumerate(self._zones(itinerary.robot)) if z is not None and k not in out]
-        bounds = [] if area.boundary is None else [(area.boundary, True)]
-        polygons = [*bounds, *((zone.polygon, False) for zone in zones)]
         return [
-            {"inclusion": inside, "polygon": self._clockwise(corners), "version": 1} for corners, inside in polygons
+            {"inclusion": inside, "polygon": self._clockwise(corners), "version": 1}
+            for corners, inside in Fence.of(self.mission, itinerary).polygons
         ]
 
-    def _clockwise(self, polygon: Sequence[tuple[float, ...]]) -> list[list[float]]:
+    def _clockwise(self, polygon: Sequence[Point]) -> list[list[float]]:
         return [[spot.lat, spot.lon] for spot in self.earth.spots(anticlockwise(polygon)[::-1])]
 
     def _rally_points(self, itinerary: Itinerary, home: Spot) -> list[list[float]]:
@@ -152,15 +135,3 @@ def _above(spot: Spot, home: Spot) -> float:
 def _compass_deg(heading: float) -> float:
     """Radians from east, anticlockwise, as degrees from north, clockwise, in [0, 360)."""
     return round((90.0 - math.degrees(heading)) % 360.0, 6) % 360.0
-
-
-def _has_height(zone: Zone) -> bool:
-    return zone.floor_m is not None or zone.ceiling_m is not None
-
-
-def _crosses(itinerary: Itinerary, zone: Zone) -> bool:
-    import shapely
-
-    points = [passage.place[:2] for passage in itinerary.passages]
-    line = shapely.LineString(points) if len(set(points)) > 1 else shapely.Point(points[0])
-    return bool(shapely.intersects(line, shapely.Polygon(zone.polygon)))

@@ -1,4 +1,8 @@
-"""A plan as CSV for spreadsheets: a line for each visit in the order of routes, then one for each task left out."""
+"""A plan as CSV for spreadsheets: a line for each visit in the order of routes, then one for each task left out.
+
+Spreadsheets take a cell that begins with =, +, - or @ for a formula and run it, in quotes too: an id that does gets an
+apostrophe before it, which marks text (OWASP, "CSV Injection").
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,8 @@ from collections.abc import Iterator
 from muster.exchange.earth import Earth
 from muster.mission.model import Mission, Task
 from muster.verification import Verdict
+
+_BEGIN_FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 
 
 def csv_text(mission: Mission, verdict: Verdict, earth: Earth | None) -> str:
@@ -27,10 +33,16 @@ def _rows(mission: Mission, verdict: Verdict, earth: Earth | None) -> Iterator[t
     for route in verdict.routes:
         for order, v in enumerate(route.visits, 1):
             done.add(v.task)
-            yield (route.robot, order, v.task, *where[v.task], v.arrives_s, v.starts_s, v.ends_s, v.arrival_usage)
+            times = (v.arrives_s, v.starts_s, v.ends_s, v.arrival_usage)
+            yield (_text(route.robot), order, _text(v.task), *where[v.task], *times)
     for task in mission.tasks:
         if task.id not in done:
-            yield ("", "", task.id, *where[task.id], "", "", "", "")
+            yield ("", "", _text(task.id), *where[task.id], "", "", "", "")
+
+
+def _text(name: str) -> str:
+    """An id that no spreadsheet takes for a formula."""
+    return f"'{name}" if name.startswith(_BEGIN_FORMULAS) else name
 
 
 def _places(mission: Mission, earth: Earth | None) -> dict[str, tuple[object, ...]]:

@@ -13,6 +13,9 @@ from muster.verification import Verdict
 
 Properties = dict[str, Any]
 
+AREAS = ("boundary", "zone")
+"""The kinds of features that are areas."""
+
 
 @dataclass(frozen=True)
 class Feature:

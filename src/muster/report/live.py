@@ -6,6 +6,7 @@ Who connects later is told the scene and the map anew, and the plan in force. No
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Mapping
 from types import TracebackType
 from typing import Any, Self
@@ -18,6 +19,8 @@ from muster.report.record.teller import Teller
 
 _LASTING = ("/map", "/muster/plan")
 """Topics whose last message holds until the next."""
+_LAST_WORDS_S = 0.5
+"""The server that stops drops what it has not yet sent, and tells nobody what it has."""
 
 
 class FoxgloveServer(Teller):
@@ -47,6 +50,7 @@ class FoxgloveServer(Teller):
         self._entities: dict[str, Mapping[str, Any]] = {}
         self._last: dict[str, Mapping[str, Any]] = {}
         self._asked: set[str] = set()
+        self._watched = False
         self._lock = threading.Lock()
         self._channels = {topic: _channel(foxglove, context, topic) for topic in TOPICS}
         self._tell_mission()
@@ -66,8 +70,10 @@ class FoxgloveServer(Teller):
         self.close()
 
     def close(self) -> None:
-        """Close all connections; may be called again."""
+        """Close all connections, once who watches has had time to hear the last messages; may be called again."""
         if self._server is not None:
+            if self._watched:
+                time.sleep(_LAST_WORDS_S)
             self._server.stop()
             self._server = None
 
@@ -78,6 +84,7 @@ class FoxgloveServer(Teller):
         """Somebody has begun to listen; called by threads of the server."""
         with self._lock:
             self._asked.add(topic)
+            self._watched = True
 
     def _write(self, topic: str, now: float, message: Mapping[str, Any]) -> None:
         if topic == "/scene":

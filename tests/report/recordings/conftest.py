@@ -42,35 +42,39 @@ def pose(time, place, frame="map"):
 
 def write(form, file, told):
     """Write (topic, seconds, message) as a recording, by the writers of others."""
-    if form == "mcap":
-        _write_mcap(file, told)
-    elif form == "rosbag1":
-        _write_bag1(file, told)
-    else:
-        _write_bag2(file, told, form)
+    kind, _, packed = form.partition("-")
+    {"mcap": _write_mcap, "rosbag1": _write_bag1, "rosbag2": _write_bag2}[kind](file, told, packed)
     return Path(file)
 
 
-def _write_mcap(file, told):
-    from mcap.writer import Writer
+def _write_mcap(file, told, packed):
+    from mcap.writer import CompressionType, Writer
 
+    ros, encoding, to_bytes = (ROS1, "ros1", to_ros1) if packed == "ros1" else (ROS2, "cdr", to_cdr)
+    compression = {"plain": CompressionType.NONE, "lz4": CompressionType.LZ4}.get(packed, CompressionType.ZSTD)
     with Path(file).open("wb") as stream:
-        writer = Writer(stream, chunk_size=50_000)
-        writer.start(profile="ros2", library="others")
+        writer = Writer(stream, chunk_size=50_000, compression=compression)
+        writer.start(profile="ros1" if packed == "ros1" else "ros2", library="others")
         channels = {}
         for topic, time, message in told:
             if topic not in channels:
                 kind = type(message)
-                schema = writer.register_schema(type_name(kind, ROS2), "ros2msg", definition(kind, ROS2).encode())
-                channels[topic] = writer.register_channel(topic, "cdr", schema)
-            writer.add_message(channels[topic], round(time * 1e9), to_cdr(message), round(time * 1e9))
+                text = definition(kind, ros).encode()
+                schema = writer.register_schema(
+                    type_name(kind, ros), "ros1msg" if packed == "ros1" else "ros2msg", text
+                )
+                channels[topic] = writer.register_channel(topic, encoding, schema)
+            writer.add_message(channels[topic], round(time * 1e9), to_bytes(message), round(time * 1e9))
         writer.finish()
 
 
-def _write_bag1(file, told):
+def _write_bag1(file, told, packed):
     from rosbags.rosbag1 import Writer
 
-    with Writer(Path(file)) as writer:
+    writer = Writer(Path(file))
+    if packed:
+        writer.set_compression(Writer.CompressionFormat[packed.upper()])
+    with writer:
         links = {}
         for topic, time, message in told:
             if topic not in links:
@@ -80,13 +84,17 @@ def _write_bag1(file, told):
             writer.write(links[topic], round(time * 1e9), to_ros1(message))
 
 
-def _write_bag2(folder, told, form):
-    from rosbags.rosbag2 import StoragePlugin, Writer
-    from rosbags.typesys import Stores, get_typestore
+def _write_bag2(folder, told, packed):
+    from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-    storage = StoragePlugin.MCAP if form == "rosbag2-mcap" else StoragePlugin.SQLITE3
+    storage = StoragePlugin.MCAP if packed == "mcap" else StoragePlugin.SQLITE3
     store = get_typestore(Stores.ROS2_HUMBLE)
-    with Writer(Path(folder), version=9, storage_plugin=storage) as writer:
+    store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
+    writer = Writer(Path(folder), version=9, storage_plugin=storage)
+    if packed in ("file", "message"):
+        writer.set_compression(CompressionMode[packed.upper()], CompressionFormat.ZSTD)
+    with writer:
         links = {}
         for topic, time, message in told:
             if topic not in links:

@@ -1,5 +1,7 @@
 """Recordings that others made, and how far a record is from them."""
 
+import bz2
+import gzip
 from dataclasses import replace
 
 import numpy as np
@@ -9,13 +11,15 @@ from tests.report.recordings.conftest import odometry, pose, told_of, write
 from muster.bridges.ros2.messages import Header, String, TFMessage, Time, Transform, TransformStamped, Vector3
 from muster.mission.errors import InputError, ParameterError
 from muster.mission.model import Map
+from muster.motion.grid import Grid
 from muster.report.recordings import Reference, deviations, is_recording, read_poses
 
-FORMS = ("mcap", "rosbag1", "rosbag2", "rosbag2-mcap")
+FORMS = ("mcap", "mcap-ros1", "rosbag1", "rosbag2", "rosbag2-mcap")
+PACKED = ("mcap-plain", "mcap-lz4", "rosbag1-bz2", "rosbag1-lz4", "rosbag2-file", "rosbag2-message")
 BEGINS = 1_600_000_000.0
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", [*FORMS, *PACKED])
 def test_poses_of_every_kind_are_read(form, tmp_path):
     header = Header(stamp=Time.of(5.0), frame_id="/map")
     moved = TransformStamped(header, "/base_link", Transform(Vector3(7.0, 8.0, 9.0)))
@@ -24,20 +28,18 @@ def test_poses_of_every_kind_are_read(form, tmp_path):
         ("/robot/odom", 6.0, odometry(0.0, (2, 2, 3))),
         ("/pose", 5.0, pose(5.25, (4, 5, 6))),
         ("/words", 5.0, String("nothing")),
+        ("/tf", 5.0, TFMessage((moved,))),
     ]
-    if form in ("mcap", "rosbag1"):  # rosbags cannot write tf2_msgs to the others by itself
-        told.append(("/tf", 5.0, TFMessage((moved,))))
     file = write(form, tmp_path / "others", told)
     tracks = read_poses(file).tracks
     assert is_recording(file)
-    assert set(tracks) - {"/tf:base_link"} == {"/pose", "/robot/odom"}
+    assert set(tracks) == {"/pose", "/robot/odom", "/tf:base_link"}
     assert tracks["/robot/odom"].times_s.tolist() == [4.5, 6.0]  # a header without time: when it was recorded
     assert tracks["/robot/odom"].positions.tolist() == [[1, 2, 3], [2, 2, 3]]
     assert tracks["/robot/odom"].frame == "odom"
     assert tracks["/pose"].times_s.tolist() == [5.25]
-    if len(told) == 5:
-        assert tracks["/tf:base_link"].positions.tolist() == [[7, 8, 9]]
-        assert tracks["/tf:base_link"].frame == "map"
+    assert tracks["/tf:base_link"].positions.tolist() == [[7, 8, 9]]
+    assert tracks["/tf:base_link"].frame == "map"
 
 
 def test_a_recording_that_breaks_off_is_read_as_far_as_it_is_whole(tmp_path):
@@ -46,6 +48,40 @@ def test_a_recording_that_breaks_off_is_read_as_far_as_it_is_whole(tmp_path):
     found = read_poses(file)
     assert not found.complete
     assert 0 < len(found.tracks["/pose"].times_s) < 9000
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_poses_are_in_the_order_of_their_headers(form, tmp_path):
+    stamps = (5.0, 3.0, 4.0, 1.0)
+    told = [("/pose", 10.0 + k, pose(stamp, (k, 0, 0))) for k, stamp in enumerate(stamps)]
+    track = read_poses(write(form, tmp_path / "r", told)).tracks["/pose"]
+    assert track.times_s.tolist() == [1, 3, 4, 5]
+    assert track.positions[:, 0].tolist() == [3, 1, 2, 0]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_recording_of_nothing(form, tmp_path):
+    file = write(form, tmp_path / "r", [])
+    with pytest.raises(InputError, match="holds no poses"):
+        read_poses(file)
+
+
+@pytest.mark.parametrize("form", ["rosbag1", "rosbag1-bz2", "rosbag1-lz4"])
+def test_a_bag_of_ros1_that_breaks_off_is_refused_with_what_mends_it(form, tmp_path):
+    file = write(form, tmp_path / "r.bag", [("/pose", k * 0.1, pose(k * 0.1, (k, 0, 0))) for k in range(2000)])
+    file.write_bytes(file.read_bytes()[: -(file.stat().st_size // 3)])
+    with pytest.raises(InputError, match="rosbag reindex mends bags that break off"):
+        read_poses(file)
+
+
+def test_a_folder_of_rosbag2_that_breaks_off_is_refused(tmp_path):
+    folder = write("rosbag2", tmp_path / "r", [("/pose", k * 0.1, pose(k * 0.1, (k, 0, 0))) for k in range(2000)])
+    (file,) = folder.glob("*.db3")
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    with pytest.raises(InputError) as error:
+        read_poses(folder)
+    assert str(error.value).startswith(f"{folder}: Cannot open database")
+    assert "\n" not in str(error.value)
 
 
 def test_a_record_is_no_recording(record_file, tmp_path):
@@ -59,6 +95,8 @@ def test_a_record_is_no_recording(record_file, tmp_path):
         ("absent.bag", None, "No such file"),
         ("text.bag", b"hello", "no recording"),
         ("empty.bag", b"#ROSBAG V2.0\n", "expected a recording of ROS"),
+        ("whole.bag.gz", gzip.compress(b"#ROSBAG V2.0\n"), "packed as a whole, to be unpacked first"),
+        ("whole.bag.bz2", bz2.compress(b"#ROSBAG V2.0\n"), "packed as a whole, to be unpacked first"),
         ("empty.mcap", b"\x89MCAP0\r\n", "holds no poses"),
     ],
 )
@@ -88,7 +126,7 @@ def test_errors_are_the_distances_to_the_reference(form, recording, tmp_path):
     off = {one.robot: one for one in deviations(recording, reference)}
     count = len(recording.tracks.times_s)
     assert reference.begins_s == pytest.approx(BEGINS, abs=1e-5)
-    assert off["r_0"].samples == pytest.approx(count, abs=1)
+    assert off["r_0"].samples == count
     assert off["r_0"].error.mean == pytest.approx(0.5, abs=1e-5)  # the mission is in the plane
     assert off["r_0"].error.total == pytest.approx(0.5 * off["r_0"].samples, abs=1e-3)
     assert off["r_1"].error.most == pytest.approx(0.0, abs=1e-5)
@@ -128,6 +166,17 @@ def test_risk_is_by_the_distance_to_the_map(recording, tmp_path):
         float((1 / (9.0 - np.abs(recording.tracks.positions[:, 0, :2]).max(axis=1))).sum())
     )
     assert deviations(recording, reference)[0].risk is None
+
+
+def test_risk_over_an_image_is_by_the_distance_to_its_blocked_cells(recording, tmp_path):
+    blocked = np.zeros((200, 200), dtype=bool)
+    blocked[:, 0] = True  # the wall of the west: x from -10.0 to -9.5
+    chart = Map(image="floor.png", resolution_m=0.5, origin=(-10.0, -50.0, 0.0))
+    image = Grid(blocked, 0.5, (-10.0, -50.0, 0.0))
+    within = replace(recording, mission=replace(recording.mission, map=chart), image=image)
+    tracks = read_poses(write("rosbag1", tmp_path / "r", told_of(recording, "r_0", "/r_0/odom"))).tracks
+    (off,) = deviations(within, Reference.of(within, tracks, {}))
+    assert off.risk == pytest.approx(float((1 / (9.5 + recording.tracks.positions[:, 0, 0])).sum()))
 
 
 @pytest.mark.parametrize("form", ["mcap", "rosbag1"])

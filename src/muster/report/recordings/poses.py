@@ -34,6 +34,8 @@ Floats = npt.NDArray[np.float64]
 
 _EXPECTED = "a recording of ROS with poses: MCAP, a folder of rosbag2, or a bag of ROS 1"
 _MCAP, _BAG = b"\x89MCAP0\r\n", b"#ROSBAG V2.0"
+_PACKED = (b"\x1f\x8b", b"BZh", b"\x28\xb5\x2f\xfd")
+"""How files of gzip, bzip2 and zstd begin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +166,8 @@ def _raw_messages(file: Path, ended: list[bool]) -> Iterator[_Raw]:
         elif begin.startswith(_MCAP):
             stream.seek(0)
             yield from _from_mcap(stream, ended)
+        elif begin.startswith(_PACKED):
+            raise ParameterError("packed as a whole, to be unpacked first")
         else:
             raise ParameterError("no recording")
 
@@ -204,5 +208,6 @@ def _from_bag(path: Path, module: str, decode: Callable[..., Any]) -> Iterator[_
     except OSError:
         raise
     except Exception as error:  # of damaged bags rosbags says what its own code met: assertions, keys, struct.error
-        reason = str(error).rstrip(".").partition("\n")[0]
-        raise ParameterError(reason or f"a damaged bag ({type(error).__name__})") from None
+        reason = str(error).rstrip(".").partition("\n")[0] or type(error).__name__
+        mend = "; rosbag reindex mends bags that break off" if module == "rosbag1" else ""
+        raise ParameterError(f"{reason}{mend}") from None

@@ -17,6 +17,9 @@ from muster.report.recordings.poses import PoseTrack
 
 Floats = npt.NDArray[np.float64]
 
+_CLOCK_S = 1e-6
+"""To so much seconds since 1970 are exact."""
+
 
 @dataclass(frozen=True)
 class Reference:
@@ -132,7 +135,8 @@ def _deviation(recording: Recording, robot: str, track: PoseTrack, begins_s: flo
     actual, size = recording.tracks, recording.mission.dimensions
     places = actual.positions[:, actual.robots.index(robot)]
     times = track.times_s - begins_s
-    within = np.isfinite(places).all(axis=1) & (actual.times_s >= times[0]) & (actual.times_s <= times[-1])
+    since, until = times[0] - _CLOCK_S, times[-1] + _CLOCK_S
+    within = np.isfinite(places).all(axis=1) & (actual.times_s >= since) & (actual.times_s <= until)
     if not within.any():
         span = f"{times[0]:.1f} to {times[-1]:.1f} s of the mission"
         raise ParameterError(f"{track.topic}: {span}; expected a time in which the record has poses of {robot!r}")
