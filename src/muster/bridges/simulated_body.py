@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from muster.bridges.ros1.follower import Follower
-from muster.bridges.ros1.steering import STILL, Driven, Steering, Velocity
+from muster.bridges.follower import Follower
+from muster.bridges.steering import STILL, Driven, Steering, Velocity
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu, wrapped
 from muster.motion.grid import Floats

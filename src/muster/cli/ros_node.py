@@ -18,8 +18,8 @@ from muster.mission.errors import MusterError
 @click.argument("duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner"]))
 def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float) -> None:
     """Do a DUTY until standard input ends."""
+    from muster.bridges.discovery import topics_in
     from muster.bridges.ros1.child import live
-    from muster.bridges.ros1.discovery import topics_in
 
     topics = topics_in(namespace)
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from muster.bridges.discovery import robots_in
+from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import Forward, MissionClock
-from muster.bridges.ros1.discovery import robots_in
-from muster.bridges.ros1.follower import Follower
-from muster.bridges.ros1.steering import STILL, Driven, Steering
+from muster.bridges.steering import STILL, Driven, Steering
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu
 from muster.motion.kinematics.registry import KINEMATICS

@@ -10,9 +10,9 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
+from muster.bridges.discovery import NAME
 from muster.bridges.ros1.board import Board
 from muster.bridges.ros1.described import task_of
-from muster.bridges.ros1.discovery import NAME
 from muster.bridges.ros1.fleet import Ros1Fleet
 from muster.bridges.ros1.parcels import packed, unpacked
 from muster.bridges.ros1.questions import COMMANDS, PLANNING, Answerer, Asker, Data

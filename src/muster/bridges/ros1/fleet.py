@@ -13,14 +13,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from muster.bridges.discovery import NAME, robots_in
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.described import described
-from muster.bridges.ros1.discovery import NAME, robots_in
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
-from muster.bridges.ros1.steering import STILL, Steering
+from muster.bridges.steering import STILL, Steering
 from muster.mission.errors import MissionError, NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from muster.bridges.ros1.ros import PoseStamped, String, TransformStamped, Twist, rospy
-from muster.bridges.ros1.steering import Velocity
+from muster.bridges.steering import Velocity
 from muster.motion.frames import Floats, angles, quaternion_rotation, transform
 from muster.motion.port import Place
 

@@ -10,12 +10,12 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
+from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import MissionClock
-from muster.bridges.ros1.follower import Follower
 from muster.bridges.ros1.map_frame import OWN, MapFrame
 from muster.bridges.ros1.messages import matrix_of, place_and_heading, pose_stamped, tf_of, twist_of
 from muster.bridges.ros1.ros import Odometry, PoseStamped, Twist, rospy
-from muster.bridges.ros1.steering import STILL, Driven, Velocity
+from muster.bridges.steering import STILL, Driven, Velocity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import Floats

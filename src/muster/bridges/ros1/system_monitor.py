@@ -13,10 +13,10 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from muster.bridges.ros1.discovery import SHARED, robots_in
+from muster.bridges.discovery import SHARED, robots_in
+from muster.bridges.odometer import Odometer
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.messages import matrix_of, place_and_heading, text_of
-from muster.bridges.ros1.odometer import Odometer
 from muster.bridges.ros1.ros import Odometry, PoseStamped, String, rospy
 from muster.motion.port import Place
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from muster.bridges.described import robot_as_said
-from muster.bridges.ros1.discovery import robots_in
+from muster.bridges.discovery import robots_in
 from muster.bridges.ros2.messages import String
 from muster.bridges.ros2.port import Ros2Port
 from muster.bridges.ros2.wire import Reader, Wire

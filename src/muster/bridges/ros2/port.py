@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.bridges.ros1.follower import Follower
+from muster.bridges.follower import Follower
 from muster.bridges.ros2.goals import Goals
 from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
 from muster.bridges.ros2.wire import Wire

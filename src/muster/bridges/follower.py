@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from muster.bridges.ros1.odometer import Odometer, distance
+from muster.bridges.odometer import Odometer, distance
 from muster.motion.frames import wrapped
 from muster.motion.port import Place, Waypoint
 
