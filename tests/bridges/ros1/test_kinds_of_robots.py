@@ -109,12 +109,12 @@ def test_a_plan_is_carried_out_from_where_the_robot_stands(ros, one, tmp_path):
 
 
 def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
-    own_ros.start(ros.file("robot.py"), "r_0", 0, 0)
+    own_ros.start(own_ros.file("robot.py"), "r_0", 0, 0)
     own_ros.set("/wrong/muster", {"speed_mps": -1.0})
     own_ros.set("/text/muster", "fast")
     own_ros.set("/right/muster", {"speed_mps": 2.0})
     for k, name in enumerate(("wrong", "text", "right")):
-        own_ros.start(ros.file("robot.py"), name, 5 + k, 5)
+        own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
     carried = own_ros.muster(one, *QUICK, "--on-start")
     lines = []
     for line in carried.stderr:
