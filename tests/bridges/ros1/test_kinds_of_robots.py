@@ -108,20 +108,20 @@ def test_a_plan_is_carried_out_from_where_the_robot_stands(ros, one, tmp_path):
     assert "robot r_0 begins at (1.00, 3.00), where it stands, not at (0.00, 0.00): 3.16 m away\n" in err
 
 
-def test_a_robot_that_says_what_it_cannot_mean_does_not_join(ros, one):
-    ros.start(ros.file("robot.py"), "r_0", 0, 0)
-    ros.set("/wrong/muster", {"speed_mps": -1.0})
-    ros.set("/text/muster", "fast")
-    ros.set("/right/muster", {"speed_mps": 2.0})
+def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
+    own_ros.start(own_ros.file("robot.py"), "r_0", 0, 0)
+    own_ros.set("/wrong/muster", {"speed_mps": -1.0})
+    own_ros.set("/text/muster", "fast")
+    own_ros.set("/right/muster", {"speed_mps": 2.0})
     for k, name in enumerate(("wrong", "text", "right")):
-        ros.start(ros.file("robot.py"), name, 5 + k, 5)
-    carried = ros.muster(one, *QUICK, "--on-start")
+        own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
+    carried = own_ros.muster(one, *QUICK, "--on-start")
     lines = []
     for line in carried.stderr:
         lines += [line] if "does not join" in line else []
         if len(lines) == 2:
             break
-    ros.call("/command_interface/start").communicate(timeout=20)
+    own_ros.call("/command_interface/start").communicate(timeout=20)
     _, told = done(carried)
     assert [line.split()[-1] for line in told.splitlines() if "robot joins" in line] == ["right"]
     text, wrong = sorted(lines)
