@@ -41,6 +41,11 @@ class Follower:
         return self._waypoints[self.passed] if self.passed < len(self._waypoints) else None
 
     @property
+    def waits(self) -> bool:
+        """Whether it has passed all, or never had any; who was told to stay where it is does that."""
+        return self.aim is None and (self.order == 0 or self.passed > 0)
+
+    @property
     def stays(self) -> bool:
         """Whether it is at a way point, for its hold."""
         return self._held_since is not None

@@ -46,6 +46,8 @@ class Driven:
         None: it stands.
     arrived
         whether it is at the aim: then it turns to its heading.
+    waits
+        whether it has done what it was told, and may be moved aside.
     """
 
     robot: Robot
@@ -54,6 +56,7 @@ class Driven:
     velocity: Place
     aim: Waypoint | None
     arrived: bool
+    waits: bool = False
 
     @property
     def goes(self) -> bool:

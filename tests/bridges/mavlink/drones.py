@@ -32,7 +32,7 @@ class Sky:
         for k, robot in enumerate(there.robots):
             start = (*robot.position, 0.0)[:3]
             drone = SimulatedAutopilot(
-                kind, origin_at(origin, start), (faults or {}).get(robot.id, Faults()), system=k + 1, seed=k, **more
+                kind, origin_at(origin, start), (faults or {}).get(robot.id, Faults()), system=k + 1, seed=k + 1, **more
             )
             end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             end.bind(("127.0.0.1", 0))

@@ -33,7 +33,7 @@ def test_a_mission_is_flown(kind, offboard):
 
 @KINDS
 def test_lost_packets_do_no_harm(kind):
-    lossy = {f"r_{k}": Faults(loss=0.1, repeat_reached=True) for k in range(2)}
+    lossy = {f"r_{k}": Faults(loss=0.2, repeat_reached=True) for k in range(2)}
     report, fleet, _, _ = flown(mission(2), kind, lossy, link_lost_s=8)
     assert len(report.tasks_done) == 4
     assert fleet.faults == []

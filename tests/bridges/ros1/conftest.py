@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import xmlrpc.client
 from contextlib import contextmanager
@@ -16,12 +17,15 @@ from muster.bridges.ros1.extra import require_rospy
 from muster.bridges.ros1.master import running_master
 from muster.mission.errors import MissingExtraError
 
+GUARD_S = 120.0
+"""No process of these tests takes so long."""
+
 
 class Ros:
     """Nodes under one master, each a process; all end with the test."""
 
     def __init__(self, master, folder):
-        self.master, self.folder, self._processes = master, folder, []
+        self.master, self.folder, self._processes, self._guards = master, folder, [], []
         self._environment = os.environ | master.environment
 
     def start(self, *arguments):
@@ -36,6 +40,10 @@ class Ros:
             start_new_session=True,  # so that Ctrl-C can be sent as a terminal does: to a group
         )
         self._processes.append(started)
+        guard = threading.Timer(GUARD_S, started.kill)  # so that a test that waits for a line fails, and does not hang
+        guard.daemon = True
+        guard.start()
+        self._guards.append(guard)
         return started
 
     def file(self, name):
@@ -72,6 +80,8 @@ class Ros:
         return Listener(heard, file)
 
     def close(self):
+        for guard in self._guards:
+            guard.cancel()
         for process in self._processes:
             process.kill()
             process.communicate()

@@ -1,7 +1,6 @@
 """The TCF thesis' 11T-2R on a real ROS master: robots are processes, one joins, one is killed, all tasks are done.
 
-Its work is as shipped: tasks, prerequisites, types, suitability, the ground patrol. Robots are faster than in the file,
-and slimmer: of three as wide as its 0.3 m one that waits at task 4 stands where another's patrol has a corner.
+Its work is as shipped: tasks, prerequisites, types, suitability, the ground patrol, bodies. Robots are faster.
 """
 
 import json
@@ -13,7 +12,7 @@ import pytest
 from muster import load
 from muster.library.shelf import mission_path
 
-SPEED, YAW_RATE, RADIUS = 1.2, 6.0, 0.1
+SPEED, YAW_RATE, RADIUS = 1.2, 6.0, 0.3
 ROBOTS = {"r_0": (-2.021, 1.461, "beta"), "r_1": (-2.023, -0.661, "epsilon"), "r_2": (-2.0, 0.4, "tau")}
 """The third is in no mission file: it is discovered. Its type can do what the two others can, but for the patrol."""
 

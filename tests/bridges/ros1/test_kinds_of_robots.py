@@ -115,15 +115,8 @@ def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
     own_ros.set("/right/muster", {"speed_mps": 2.0})
     for k, name in enumerate(("wrong", "text", "right")):
         own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
-    carried = own_ros.muster(one, *QUICK, "--on-start")
-    lines = []
-    for line in carried.stderr:
-        lines += [line] if "does not join" in line else []
-        if len(lines) == 2:
-            break
-    own_ros.call("/command_interface/start").communicate(timeout=20)
-    _, told = done(carried)
+    _, told = done(own_ros.muster(one, *QUICK))
     assert [line.split()[-1] for line in told.splitlines() if "robot joins" in line] == ["right"]
-    text, wrong = sorted(lines)
+    text, wrong = sorted(line for line in told.splitlines() if "does not join" in line)
     assert "text does not join: /text/muster" in text
     assert "wrong does not join: /wrong/muster: speed_mps: -1.0; expected" in wrong

@@ -13,17 +13,22 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from muster.bridges.discovery import NAME, robots_in
+from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.described import described
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
-from muster.bridges.steering import STILL, Steering
+from muster.bridges.steering import STILL, Driven, Steering
 from muster.mission.errors import MissionError, NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
+from muster.motion.port import Place
+from muster.motion.world import World
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
@@ -85,6 +90,7 @@ class Ros1Fleet:
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._room = MakingRoom(arrival_m=arrival_m, may_stand=_free_places(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
@@ -230,7 +236,8 @@ class Ros1Fleet:
 
     def _steer(self) -> None:
         drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
-        team = [driven for driven in drivens if driven is not None]
+        present = [driven for driven in drivens if driven is not None]
+        team = self._room.arranged(self.clock.unpaused_s, present)
         told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
         for driven in team:
             self._ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
@@ -269,3 +276,16 @@ class Ros1Fleet:
                     self._ports[name] = port
                 del self._strangers[name]
                 self.report(Event(at_s=self.time_s, robot_joins=port.body))
+
+
+def _free_places(mission: Mission) -> Callable[[Driven, Place], bool]:
+    """Whether a robot may stand at a place of the mission's map."""
+    if mission.map is None:
+        return lambda _, __: True
+    world = World.of(mission)
+
+    def free(driven: Driven, place: Place) -> bool:
+        robot, point = driven.robot, np.array([place[: mission.dimensions]])
+        return bool(world.clearance(point, robot.kind, robot.radius_m)[0] > robot.radius_m)
+
+    return free

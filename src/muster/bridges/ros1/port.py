@@ -116,9 +116,11 @@ class Ros1Port:
         said = self._last_word
         if said is None:
             return None
-        aim = None if paused or self._clock.unpaused_s - self._heard_s > within_s else self._follower.aim
+        stands = paused or self._clock.unpaused_s - self._heard_s > within_s
+        aim = None if stands else self._follower.aim
         arrived = aim is not None and self._follower.is_at(said.position, aim)
-        return Driven(self.body, said.position, said.heading, said.velocity, aim, arrived)
+        waits = self._follower.waits and not stands
+        return Driven(self.body, said.position, said.heading, said.velocity, aim, arrived, waits)
 
     def speak(self, driven: Driven, velocity: Velocity) -> None:
         """Tell the robot what it is to do now, and others where it goes."""
