@@ -70,6 +70,8 @@ def command(
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
     try:
         plan = given or planned(wishes, loaded)
+        if not wishes.quiet:
+            _warn(loaded, plan, height)
         fleet.connect(wait)
         if not arm:
             _show(loaded, plan, fleet, wishes.form)
@@ -87,6 +89,22 @@ def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
             raise ParameterError(f"--endpoint: {text}; expected ROBOT=ENDPOINT, once for each robot")
         named[robot] = endpoint
     return named
+
+
+def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
+    """Say what a person should know before drones fly that do not see each other."""
+    from muster import verify
+    from muster.exchange.itinerary import itineraries
+    from muster.exchange.separation import meetings
+
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        first = verdict.violations[0]
+        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
+        click.echo(f"warning: the plan is not admissible: {first.kind}: {told}; muster verify says more", err=True)
+        return
+    for meeting in meetings([way if height is None else way.at_least(height) for way in itineraries(mission, verdict)]):
+        click.echo(f"warning: {meeting}", err=True)
 
 
 def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> None:

@@ -117,6 +117,16 @@ def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed:
         time.sleep(0.05)
 
 
+def from_here(mission: Mission, fleet: Fleet) -> Mission:
+    """The mission from where robots stand; who stands elsewhere than it says is told of."""
+    from muster._live import elsewhere, from_where_they_stand
+
+    there = from_where_they_stand(mission, fleet)
+    for line in elsewhere(mission, there):
+        click.echo(line, err=True)
+    return there
+
+
 def carried_out(
     mission: Mission,
     plan: Plan,

@@ -16,6 +16,7 @@ from muster.cli.options import Finite, load_mission, optional_mission_argument
 from muster.cli.real import (
     Wishes,
     carried_out,
+    from_here,
     read_wanted,
     real_options,
     reported,
@@ -203,16 +204,12 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
 
 def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
     """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
-    from muster._live import elsewhere, from_where_they_stand
-
     fleet, wishes = work.fleet_of(mission), work.wishes
     try:
         wait_for_robots(fleet, controller.halt, work.wait_s)
         if controller.halt.is_set():
             return None
-        there = from_where_they_stand(mission, fleet)
-        for line in elsewhere(mission, there):
-            click.echo(line, err=True)
+        there = from_here(mission, fleet)
         plan = work.plan or controller.plan(there, seed=wishes.seed, time_limit=wishes.time_limit)
         if plan is None or controller.halt.is_set():
             return None

@@ -13,6 +13,7 @@ from muster.cli.options import Finite, load_mission, mission_argument
 from muster.cli.real import (
     Wishes,
     carried_out,
+    from_here,
     planned,
     read_wanted,
     real_options,
@@ -71,7 +72,6 @@ def command(
 
     Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are.
     """
-    from muster._live import from_where_they_stand
     from muster.bridges.ros2.fleet import Ros2Fleet
     from muster.bridges.ros2.port import Arrival
     from muster.bridges.ros2.wire import open_wire
@@ -94,7 +94,7 @@ def command(
             if halt.is_set():
                 click.echo("interrupted; nothing was sent", err=True)
                 return INTERRUPTED
-            there = from_where_they_stand(loaded, fleet)
+            there = from_here(loaded, fleet)
             report = carried_out(there, given or planned(wishes, there), fleet, wishes, halt)
         finally:
             fleet.close()

@@ -228,3 +228,28 @@ def test_faults_by_name():
     for wrong in ("nonsense", "loss", "loss=x", "refuse_arm=1"):
         with pytest.raises(ParameterError, match="--faults"):
             faults_of(wrong)
+
+
+CROSSING = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+robots:
+  - {id: r_0, position: [0, 0, 0], kind: air, speed_mps: 5, radius_m: 0.5, skills: [a]}
+  - {id: r_1, position: [50, 50, 0], kind: air, speed_mps: 5, radius_m: 0.5, skills: [b]}
+tasks:
+  - {id: t_0, position: [50, 50, 0], requires: [a]}
+  - {id: t_1, position: [0, 0, 0], requires: [b]}
+"""
+
+
+@pytest.mark.parametrize("apart", [False, True])
+def test_drones_that_would_meet_are_told_of(tmp_path, port, capsys, apart):
+    text = CROSSING.replace("position: [50, 50, 0], kind", "position: [50, 50, 20], kind") if apart else CROSSING
+    text = text.replace("position: [0, 0, 0], requires", "position: [0, 0, 20], requires") if apart else text
+    (tmp_path / "m.yaml").write_text(text)
+    ends = [arg for k in range(2) for arg in ("--endpoint", f"r_{k}=udp:127.0.0.1:{port}#{k + 1}")]
+    assert run(["fly", str(tmp_path / "m.yaml"), *ends, "--wait", "0.1", "--time-limit", "0.1"]) == 2
+    *told, error = capsys.readouterr().err.splitlines()
+    assert "no heartbeat" in error
+    meeting = r"warning: r_0 and r_1: 0\.00 m apart at 7\.1 s of the schedule; expected at least 1\.00 m"
+    assert [bool(re.fullmatch(meeting, line)) for line in told] == ([] if apart else [True])
