@@ -56,9 +56,9 @@ def test_ardupilot_has_home_first_and_is_armed_in_guided():
 def test_what_is_not_answered_is_said_again_and_again_then_given_up():
     talk = Talk(link_lost_s=100)
     said = [*talk.fly((10.0, 0.0, 8.0))]
-    for _ in range(20):
+    for _ in range(30):
         said += talk.after(0.5)
-    assert [message.get_type() for message in said] == ["MISSION_COUNT"] * 5
+    assert [message.get_type() for message in said] == ["MISSION_COUNT"] * 8
     assert talk.session.fault.kind is Kind.NO_ANSWER
 
 

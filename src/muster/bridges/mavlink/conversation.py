@@ -34,8 +34,8 @@ class Ask:
     messages: Sequence[Message]
     answer: Callable[[Message], Any]
     what: str
-    within_s: float = 0.75
-    tries: int = 10
+    within_s: float = 1.5
+    tries: int = 8
     may_fail: bool = False
 
 
