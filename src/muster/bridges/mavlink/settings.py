@@ -34,7 +34,7 @@ class Settings:
     lowest_m: float = 2.0
     accept_m: float = 1.0
     low_battery: float = 0.25
-    link_lost_s: float = 3.0
+    link_lost_s: float = 5.0
     far_m: float = 20.0
 
     def __post_init__(self) -> None:
