@@ -149,7 +149,7 @@ def test_refused_for_the_moment_is_asked_again_then_a_fault():
 def test_a_silent_heartbeat_is_a_lost_link_and_a_dead_drone_is_told_nothing():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    assert [talk.after(1.0) for _ in range(5)] == [[]] * 5
+    assert [talk.after(1.0) for _ in range(6)] == [[]] * 6
     assert talk.session.fault.kind is Kind.LINK_LOST
 
 
