@@ -62,7 +62,7 @@ def test_a_fleet_carries_a_plan_out():
     report = flown(there, fleet, on_happening=heard.append)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2", "t_3"}
     assert heard[-1].kind == "mission_ended"
-    assert fleet.stopped == 0
+    assert fleet.stopped == 1
 
 
 def test_who_fails_is_planned_for_and_who_is_discovered_helps():
@@ -143,7 +143,6 @@ def test_no_robot_stops_for_a_full_disk():
     fleet = WorldAsFleet(there)
     report = flown(there, fleet, observers=[full], on_happening=whole.append)
     assert len(report.tasks_done) == 4
-    assert fleet.stopped == 0
     assert full.room == -1
     assert report.remarks == ("no more is kept: [Errno 28] No space left on device: 'record.mcap'",)
 
@@ -153,3 +152,25 @@ def test_robots_start_where_they_stand():
     fleet = WorldAsFleet(replace(there, robots=tuple(replace(r, position=(1.0, r.position[1])) for r in there.robots)))
     fleet.advance(0.1)
     assert [robot.position for robot in from_where_they_stand(there, fleet).robots] == [(1.0, 0.0), (1.0, 3.0)]
+
+
+def test_who_is_halted_before_it_begins_sends_nobody():
+    there, halt = mission(), threading.Event()
+    halt.set()
+    fleet = WorldAsFleet(there)
+    report = flown(there, fleet, halt=halt)
+    assert [port.telemetry().order for port in fleet.ports.values()] == [0, 0]
+    assert (report.tasks_done, fleet.stopped) == ((), 1)
+
+
+def test_no_robot_stops_for_a_viewer_that_breaks():
+    class Broken(NoObserver):
+        def on_step(self, now, *states):
+            raise RuntimeError("channel closed")
+
+        def on_report(self, report):
+            raise AssertionError("nothing more is told")
+
+    report = flown(mission(), WorldAsFleet(mission()), observers=[Broken()])
+    assert len(report.tasks_done) == 4
+    assert report.remarks == ("no more is kept: channel closed",)

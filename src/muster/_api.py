@@ -284,7 +284,7 @@ def _recorded(
     mission: Mission,
     record: str | Path | None,
     observers: Sequence[Recorder],
-    on_failure: Callable[[OSError], None] | None = None,
+    on_failure: Callable[[Exception], None] | None = None,
 ) -> Iterator[Recorder | None]:
     """Who is told of a mission while it is carried out, a file among them if one is wanted; None: nobody."""
     recorders = list(observers)

@@ -36,7 +36,7 @@ def carry_out_live(
     on_happening: Callable[[Happening], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
-    """Let a fleet carry a plan out to its end, or until `halt` is set: then robots stop where they are.
+    """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
 
     Parameters
     ----------
@@ -68,10 +68,7 @@ def carry_out_live(
     )
     halt, told = halt or threading.Event(), 0
     try:
-        executor.tick(fleet.time_s)
-        while not executor.done and not halt.is_set():
-            for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
-                executor.report_if_it_fits(event, reason_of(event))
+        while not halt.is_set():
             executor.tick(fleet.time_s)
             if recorder is not None:
                 _tell_places(recorder, fleet.time_s, executor.crew, fleet.ports)
@@ -79,9 +76,12 @@ def carry_out_live(
                 for happening in executor.happenings[told:]:
                     on_happening(happening)
                 told = len(executor.happenings)
+            if executor.done:
+                break
+            for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
+                executor.report_if_it_fits(event, reason_of(event))
     finally:
-        if not executor.done:
-            fleet.stop()
+        fleet.stop()
     report = report_of(executor.account)
     if recorder is not None:
         recorder.on_report(report.as_dict())

@@ -46,7 +46,10 @@ class Fleet(Protocol):
         ...
 
     def stop(self) -> None:
-        """Let every robot stay where it is, safely: hold, hover; nothing lands and nothing is disarmed."""
+        """Let every robot stay where it is, safely: hold, hover; nothing lands and nothing is disarmed.
+
+        Comes at the end of every mission, also where it was interrupted, or an error ends it.
+        """
         ...
 
     def close(self) -> None:

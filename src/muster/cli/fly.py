@@ -13,6 +13,7 @@ from muster.cli.halting import ctrl_c_halts
 from muster.cli.options import Finite, load_mission, mission_argument
 from muster.cli.real import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
 from muster.mission.errors import ParameterError
+from muster.mission.interrupts import TO_END
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 
@@ -137,17 +138,16 @@ def _degrees(value: float | None) -> str:
 
 
 def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: str, wishes: Wishes) -> int:
-    with ctrl_c_halts() as halt:
-        report = carried_out(mission, plan, fleet, wishes, halt)
-        if not halt.is_set():
-            _end(fleet, at_end, halt)
+    with ctrl_c_halts(TO_END) as halt:
+        report = carried_out(mission, plan, fleet, wishes, halt, at_end=lambda: _end(fleet, at_end, halt))
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
     return reported(mission, report, wishes, halt, "drones were told to hover")
 
 
 def _end(fleet: MavlinkFleet, at_end: str, halt: threading.Event) -> None:
-    """What drones do when all is done; to hover they must be told: way points said one by one end now."""
-    {"hold": fleet.stop, "return": fleet.go_back, "land": fleet.land}[at_end]()
-    if halt.is_set():  # Ctrl-C meanwhile
-        fleet.stop()
+    """What drones do when all is done, other than to hover."""
+    if at_end != "hold" and not halt.is_set():
+        {"return": fleet.go_back, "land": fleet.land}[at_end]()
+        if halt.is_set():  # Ctrl-C meanwhile
+            fleet.stop()

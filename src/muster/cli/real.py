@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -17,7 +17,7 @@ from muster.cli.live import foxglove_option, shown_live, tell
 from muster.cli.options import Verb, format_option, quiet_option, require_complete_option, say_of_plan
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.report_tables import print_report
-from muster.mission.errors import NetworkError
+from muster.mission.errors import MusterError, NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 
@@ -134,22 +134,37 @@ def carried_out(
     wishes: Wishes,
     halt: threading.Event,
     observers: Sequence[Recorder] = (),
+    at_end: Callable[[], None] = lambda: None,
 ) -> Report:
-    """Carry a plan out; what happens is told, recorded and shown as was asked for."""
+    """Carry a plan out; what happens is told, recorded and shown as was asked for.
+
+    Parameters
+    ----------
+    at_end
+        what else robots are told when all is done; comes before anything is drawn, which takes its time.
+    """
     from muster import carry_out
 
-    kept = kept_record(wishes.record, wishes.html, wishes.plot, wishes.gantt)
-    with kept as file, shown_live(mission, wishes.foxglove, quiet=wishes.quiet) as viewers:
-        return carry_out(
-            mission,
-            plan,
-            fleet,
-            seed=wishes.seed,
-            record=file,
-            observers=(*observers, *viewers),
-            on_happening=None if wishes.quiet else tell,
-            halt=halt,
-        )
+    report = None
+    try:
+        kept = kept_record(wishes.record, wishes.html, wishes.plot, wishes.gantt)
+        with kept as file, shown_live(mission, wishes.foxglove, quiet=wishes.quiet) as viewers:
+            report = carry_out(
+                mission,
+                plan,
+                fleet,
+                seed=wishes.seed,
+                record=file,
+                observers=(*observers, *viewers),
+                on_happening=None if wishes.quiet else tell,
+                halt=halt,
+            )
+            at_end()
+    except (OSError, MusterError) as error:
+        if report is None:
+            raise
+        click.echo(f"warning: {error}", err=True)  # what is drawn counts less than the report
+    return report
 
 
 def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.Event, left: str) -> int:

@@ -24,6 +24,7 @@ from muster.cli.real import (
     wait_for_robots,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
+from muster.mission.interrupts import TO_END
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
@@ -166,7 +167,7 @@ def _with_nodes(
             controller.start()
     elif not work.wishes.quiet:
         click.echo("waits for command_interface/load and start", err=True)
-    with ctrl_c_halts() as asked:
+    with ctrl_c_halts(TO_END) as asked:
         children = Children(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
         with children:
             code = _one(controller, work, children)

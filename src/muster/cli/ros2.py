@@ -21,6 +21,7 @@ from muster.cli.real import (
     require_outputs,
     wait_for_robots,
 )
+from muster.mission.interrupts import TO_END
 
 _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 
@@ -80,7 +81,7 @@ def command(
     require_outputs(wishes, (mission, robots, suitability))
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
     given = read_wanted(wishes, loaded)
-    with ctrl_c_halts() as halt:
+    with ctrl_c_halts(TO_END) as halt:
         fleet = Ros2Fleet(
             loaded,
             wire=open_wire(by, domain),
@@ -91,11 +92,12 @@ def command(
         )
         try:
             wait_for_robots(fleet, halt, wait_s, _NEEDED[give])
+            there = from_here(loaded, fleet)
+            plan = given or planned(wishes, there)
             if halt.is_set():
                 click.echo("interrupted; nothing was sent", err=True)
                 return INTERRUPTED
-            there = from_here(loaded, fleet)
-            report = carried_out(there, given or planned(wishes, there), fleet, wishes, halt)
+            report = carried_out(there, plan, fleet, wishes, halt)
         finally:
             fleet.close()
     return reported(there, report, wishes, halt, "the robots were told to stay where they are")

@@ -18,11 +18,11 @@ class Recorders:
     Parameters
     ----------
     on_failure
-        is told of an error of the operating system, a full disk: who raised it is told nothing more, as nobody waits
-        for a record where robots move. None: the error goes on to who tells.
+        is told of an error, such as that of a full disk: who raised it is told nothing more, as nobody waits for a
+        record where robots move. None: the error goes on to who tells.
     """
 
-    def __init__(self, *recorders: Recorder, on_failure: Callable[[OSError], None] | None = None) -> None:
+    def __init__(self, *recorders: Recorder, on_failure: Callable[[Exception], None] | None = None) -> None:
         self._recorders, self._on_failure = list(recorders), on_failure
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
@@ -44,7 +44,7 @@ class Recorders:
         """Do something that may fail as telling may; returns whether it did not."""
         try:
             act()
-        except OSError as error:
+        except Exception as error:
             if self._on_failure is None:
                 raise
             self._on_failure(error)
