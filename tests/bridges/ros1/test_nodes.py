@@ -209,7 +209,8 @@ def test_a_master_that_goes_away_ends_the_whole(own_ros, end):
     own_ros.master.send_signal(end)
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
-    assert err == f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay\n"
+    line = f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay"
+    assert err.splitlines()[-1] == line  # before it rospy may say a word of its own
     assert alive(children) == []
     assert robot.poll() is None
 
