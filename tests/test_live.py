@@ -89,6 +89,8 @@ def test_halted_it_stops_the_robots():
     report = flown(there, fleet, halt=halt, on_happening=lambda happening: halt.set())
     assert fleet.stopped == 1
     assert len(report.tasks_done) < 4
+    left = [f"t_{k}" for k in range(4) if f"t_{k}" not in report.tasks_done]
+    assert report.remarks == (f"interrupted; not done: {', '.join(left)}",)
 
 
 def test_an_error_stops_the_robots():
@@ -174,3 +176,16 @@ def test_no_robot_stops_for_a_viewer_that_breaks():
     report = flown(mission(), WorldAsFleet(mission()), observers=[Broken()])
     assert len(report.tasks_done) == 4
     assert report.remarks == ("no more is kept: channel closed",)
+
+
+def test_the_clock_of_a_mission_begins_with_it(tmp_path):
+    there = mission()
+    fleet, heard = WorldAsFleet(there, [Event(at_s=8, robot_fails="r_0")]), []
+    fleet.world.advance(5.0)  # robots were waited for
+    report = flown(there, fleet, on_happening=heard.append, record=tmp_path / "record.mcap")
+    (failed,) = [happening.at_s for happening in heard if happening.kind == "robot_fails"]
+    assert failed == pytest.approx(3.0, abs=0.2)
+    assert heard[-1].at_s == pytest.approx(report.mission_time_s)
+    recording = read_record(tmp_path / "record.mcap")
+    assert recording.tracks.times_s[0] == pytest.approx(0.0, abs=0.2)
+    assert recording.duration_s == pytest.approx(report.mission_time_s)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster._from_zero import FromZero
 from muster.bridges.fleet import Fleet, reason_of
 from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
 from muster.mission.model import Mission
@@ -38,6 +39,8 @@ def carry_out_live(
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
 
+    The mission's clock begins now.
+
     Parameters
     ----------
     fleet
@@ -54,6 +57,7 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
+    fleet = FromZero(fleet)
     roads = Roads.of(mission) if mission.travel_rule == "map" else None
     travel = travel_of(mission, roads)
     executor = Executor(
@@ -64,7 +68,6 @@ def carry_out_live(
         travel=travel,
         replan=Reallocation(travel=travel, seed=seed),
         observer=recorder,
-        now=fleet.time_s,
     )
     halt, told = halt or threading.Event(), 0
     try:
@@ -83,6 +86,9 @@ def carry_out_live(
     finally:
         fleet.stop()
     report = report_of(executor.account)
+    if not executor.done:
+        left = ", ".join(task.id for task in executor.ledger.open)
+        report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
     if recorder is not None:
         recorder.on_report(report.as_dict())
     return report

@@ -1,6 +1,7 @@
 """What the verbs that command real robots share: a simulated world stands behind the fleet, in virtual time."""
 
 import signal
+import socket
 import threading
 
 import pytest
@@ -9,6 +10,7 @@ from tests.test_live import WorldAsFleet, mission
 import muster
 from muster.cli import real
 from muster.cli.halting import ctrl_c_halts
+from muster.cli.main import run
 from muster.cli.real import Wishes, carried_out, reported
 from muster.mission.interrupts import TO_END
 
@@ -77,3 +79,24 @@ def test_robots_that_do_not_say_where_they_are_are_named():
 
     with pytest.raises(muster.MusterError, match=r"robot r_0: nothing on /r_0/odom within 0.1 s \(and 1 more\)"):
         real.wait_for_robots(Silent(), threading.Event(), 0.1)
+
+
+def test_a_plan_that_breaks_a_rule_moves_no_robot(tmp_path):
+    there = mission()
+    text = '{"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["t_0", "t_9"]}]}'
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(muster.PlanError, match=r"plan.json.*t_9.*expected an admissible plan of mission mission"):
+        real.read_wanted(Wishes(**{**ASKED, "plan": tmp_path / "plan.json"}), there)
+
+
+def test_a_port_that_is_taken_is_told_before_robots_move():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(muster.MusterError, match=rf"--foxglove: 127.0.0.1:{port}: Address already in use"):
+            real.require_outputs(Wishes(**{**ASKED, "foxglove": port}), ())
+
+
+@pytest.mark.parametrize("name", ["9 bad/", "a-b", "a//b", "é"])
+def test_a_namespace_that_is_none_is_told(name, capsys):
+    assert run(["ros2", "6T-2R", "--namespace", name]) == 2
+    assert f"Invalid value for '--namespace': {name!r}; expected names such as" in capsys.readouterr().err

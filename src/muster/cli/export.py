@@ -13,12 +13,12 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, load_mission, mission_argument, quiet_option, say_of_plan
+from muster.cli.options import Finite, load_mission, mission_argument, quiet_option, require_admissible, say_of_plan
 from muster.cli.outputs import require_folder, require_writable
-from muster.mission.errors import Finding, ParameterError, PlanError
+from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, read_plan
+from muster.mission.plan import read_plan
 
 if TYPE_CHECKING:
     from muster.exchange.itinerary import Itinerary
@@ -108,7 +108,7 @@ def command(
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = read_plan(plan)
     say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
-    verdict = _admissible(loaded, given, plan)
+    verdict = require_admissible(loaded, given, plan)
     if form == "qgc":
         assert output is not None
         wishes = _Wishes(altitude, clearance, tolerance, firmware)
@@ -130,20 +130,6 @@ def _require_none_of_qgc(form: str) -> None:
     for field in fields(_Wishes):
         if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
             raise ParameterError(f"--{field.name} given; expected it with --to qgc, not {form}")
-
-
-def _admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
-    """What the judge says; a plan that breaks a rule is not handed on to robots."""
-    from muster.verification import verify
-
-    verdict = verify(mission, plan)
-    if not verdict.valid:
-        first, *others = verdict.violations
-        more = f" and {len(others)} more" if others else ""
-        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
-        expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
-        raise PlanError([Finding(str(file), None, first.kind, f"{told}{more}", expected)])
-    return verdict
 
 
 def _text(mission: Mission, verdict: Verdict, form: str) -> str:

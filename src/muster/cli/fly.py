@@ -93,18 +93,13 @@ def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
 
 
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
-    """Say what a person should know before drones fly that do not see each other."""
+    """Say where drones, which do not see each other, would meet."""
     from muster import verify
     from muster.exchange.itinerary import itineraries
     from muster.exchange.separation import meetings
 
-    verdict = verify(mission, plan)
-    if not verdict.valid:
-        first = verdict.violations[0]
-        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
-        click.echo(f"warning: the plan is not admissible: {first.kind}: {told}; muster verify says more", err=True)
-        return
-    for meeting in meetings([way if height is None else way.at_least(height) for way in itineraries(mission, verdict)]):
+    ways = itineraries(mission, verify(mission, plan))
+    for meeting in meetings([way if height is None else way.at_least(height) for way in ways]):
         click.echo(f"warning: {meeting}", err=True)
 
 

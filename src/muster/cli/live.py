@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 
 if TYPE_CHECKING:
@@ -19,6 +21,24 @@ foxglove_option = click.option(
     metavar="PORT",
     help="Show it live to Foxglove on this computer (ws://127.0.0.1:PORT); 0: any free port.",
 )
+
+
+def require_free_port(port: int | None) -> None:
+    """Find out before robots move that a mission cannot be shown on a port.
+
+    Raises
+    ------
+    NetworkError
+        if it is taken, or not for everybody.
+    """
+    if port is None:
+        return
+    try:
+        socket.create_server(("127.0.0.1", port)).close()
+    except OSError as error:
+        raise NetworkError(
+            f"--foxglove: 127.0.0.1:{port}: {error.strerror}; expected a free port of this computer"
+        ) from None
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -13,8 +14,15 @@ import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.keeping import drawing_options, kept_record, record_option
-from muster.cli.live import foxglove_option, shown_live, tell
-from muster.cli.options import Verb, format_option, quiet_option, require_complete_option, say_of_plan
+from muster.cli.live import foxglove_option, require_free_port, shown_live, tell
+from muster.cli.options import (
+    Verb,
+    format_option,
+    quiet_option,
+    require_admissible,
+    require_complete_option,
+    say_of_plan,
+)
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.report_tables import print_report
 from muster.mission.errors import MusterError, NetworkError
@@ -71,19 +79,34 @@ def real_options(verb: Verb) -> Verb:
     return verb
 
 
+def namespace_of(_: click.Context, __: click.Parameter, value: str) -> str:
+    """Checks a namespace of ROS: names with slashes between them."""
+    if value.strip("/") and not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*", value.strip("/")):
+        raise click.BadParameter(f"{value!r}; expected names such as team or lab/team: letters, digits, _")
+    return value
+
+
 def require_outputs(wishes: Wishes, inputs: tuple[str | Path | None, ...]) -> None:
     """Find out before robots move that a file cannot be written, or would replace one that is read."""
     files = (wishes.record, wishes.html, wishes.plot, wishes.gantt)
     require_writable(None, files, inputs, (wishes.plan,))
     require_drawable(wishes.plot, wishes.gantt)
+    require_free_port(wishes.foxglove)
 
 
 def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
-    """The plan that was given, before robots are looked for; None: there is none."""
+    """The plan that was given, before robots are looked for; None: there is none.
+
+    Raises
+    ------
+    PlanError
+        if it is none, or breaks a rule of the mission.
+    """
     if wishes.plan is None:
         return None
     plan = read_plan(wishes.plan)
     say_of_plan(plan, wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
+    require_admissible(mission, plan, wishes.plan)
     return plan
 
 

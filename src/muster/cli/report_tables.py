@@ -23,7 +23,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     unit = "s" if mission.rules.usage == "time" else "m"
     columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
     rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
-    print_table(columns, rows, title=f"{mission.name}: carried out", right=columns[1:])
+    print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
     if report.get("reallocations"):
         of_tasks = "; of tasks by the one in force then" if with_tasks else ""
@@ -34,6 +34,13 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     if lost:
         print_table(("task lost", "reason"), lost)
     _print_found(report, mission)
+    for remark in report.get("remarks", ()):
+        click.echo(f"{'remark':<17} {remark}")
+
+
+def _how(report: Report) -> str:
+    remarks = report.get("remarks", ())
+    return "interrupted" if any(remark.startswith("interrupted") for remark in remarks) else "carried out"
 
 
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
@@ -78,8 +85,6 @@ def _print_found(report: Report, mission: Mission) -> None:
     missed = [str(tag.id) for tag in mission.tags if not any(_is(row, tag) for row in found)]
     if missed:
         click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(missed)}")
-    for remark in report.get("remarks", ()):
-        click.echo(f"{'cameras':<17} {remark}")
 
 
 def _is(row: Report, tag: Tag) -> bool:

@@ -17,6 +17,7 @@ from muster.cli.real import (
     Wishes,
     carried_out,
     from_here,
+    namespace_of,
     read_wanted,
     real_options,
     reported,
@@ -47,7 +48,13 @@ _LEFT = "the robots were told to stand"
     show_default=True,
     help="What robots take: velocities, or goals on WP.",
 )
-@click.option("--namespace", default="", metavar="NAME", help="In which the robots' own are.  [default: the root]")
+@click.option(
+    "--namespace",
+    callback=namespace_of,
+    default="",
+    metavar="NAME",
+    help="In which the robots' own are.  [default: the root]",
+)
 @click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
 @click.option(
     "--wait",

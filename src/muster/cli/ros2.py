@@ -14,6 +14,7 @@ from muster.cli.real import (
     Wishes,
     carried_out,
     from_here,
+    namespace_of,
     planned,
     read_wanted,
     real_options,
@@ -29,7 +30,13 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 @click.command()
 @mission_argument
 @click.option("--domain", type=int, metavar="N", help="Of ROS 2, 0 to 232.  [default: ROS_DOMAIN_ID, or 0]")
-@click.option("--namespace", default="", metavar="NAME", help="In which the robots' own are.  [default: the root]")
+@click.option(
+    "--namespace",
+    callback=namespace_of,
+    default="",
+    metavar="NAME",
+    help="In which the robots' own are.  [default: the root]",
+)
 @click.option(
     "--give",
     type=click.Choice(["goals", "nav2"]),

@@ -33,7 +33,7 @@ def _rows(mission: Mission, verdict: Verdict, earth: Earth | None) -> Iterator[t
     for route in verdict.routes:
         for order, v in enumerate(route.visits, 1):
             done.add(v.task)
-            times = (v.arrives_s, v.starts_s, v.ends_s, v.arrival_usage)
+            times = (round(value, 4) for value in (v.arrives_s, v.starts_s, v.ends_s, v.arrival_usage))
             yield (_text(route.robot), order, _text(v.task), *where[v.task], *times)
     for task in mission.tasks:
         if task.id not in done:

@@ -306,7 +306,9 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
-        gone = {hand.robot.id: f"{OUT[hand.out]} at {hand.out_s:g} s" for hand in self.crew.values() if hand.out}
+        gone = {
+            hand.robot.id: f"{OUT[hand.out]} at {round(hand.out_s, 1):g} s" for hand in self.crew.values() if hand.out
+        }
         return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
 
     def tell(self, kind: str, data: Mapping[str, Any]) -> None:

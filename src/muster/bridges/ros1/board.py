@@ -35,20 +35,26 @@ _ACTIVITIES = {
 
 
 class Board:
-    """A `Recorder`, and the place of the latched topics."""
+    """A `Recorder`, and the place of the latched topics.
+
+    Attributes
+    ----------
+    now_s
+        the mission's clock when it was told last.
+    """
 
     def __init__(self) -> None:
         self._topics = {
             name: rospy.Publisher(f"/muster/{name}", String, queue_size=100, latch=name != "events")
             for name in ("status", "mission", "plan", "robots", "events")
         }
-        self._done = 0
+        self.now_s, self._done = 0.0, 0
         self._robots: dict[str, dict[str, str]] = {}
 
     def show_mission(self, mission: Mission) -> None:
         """Tell which is to be carried out next."""
         self._say("mission", packed(mission))
-        self._done = 0
+        self.now_s, self._done = 0.0, 0
         self._robots = {robot.id: {"activity": "idle"} for robot in mission.robots}
         self._say("robots", self._robots)
 
@@ -85,6 +91,7 @@ class Board:
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`: where robots are is in what they say."""
+        self.now_s = now
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """See `Recorder`: the figures are printed."""

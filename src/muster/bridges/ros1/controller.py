@@ -210,5 +210,5 @@ class Controller:
     def _become(self, state: State, reason: str = "") -> None:
         with self._lock:
             self._state = state
-            now = None if self._fleet is None else self._fleet.time_s
+            now = None if self._fleet is None else self.board.now_s
             self.board.show_status(state, self._name, now, reason)
