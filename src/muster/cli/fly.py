@@ -107,8 +107,9 @@ def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> None:
     """What each drone would be told, in order."""
     from muster.bridges.mavlink.dry_run import lines_of
     from muster.cli.tables import print_table
+    from muster.execution import way_of
 
-    rows = lines_of(mission, plan, fleet)
+    rows = lines_of(mission, plan, fleet, way_of(mission))
     if form == "json":
         click.echo(json_text({"would_send": [row.as_dict() for row in rows]}), nl=False)
         return

@@ -253,3 +253,26 @@ def test_drones_that_would_meet_are_told_of(tmp_path, port, capsys, apart):
     assert "no heartbeat" in error
     meeting = r"warning: r_0 and r_1: 0\.00 m apart at 7\.1 s of the schedule; expected at least 1\.00 m"
     assert [bool(re.fullmatch(meeting, line)) for line in told] == ([] if apart else [True])
+
+
+ZONE = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+robots: [{id: r_0, position: [0, 0, 0], kind: air, speed_mps: 20, radius_m: 0.5}]
+tasks: [{id: behind, position: [40, 0, 10]}]
+map:
+  boundary: [[-50, -50], [100, -50], [100, 50], [-50, 50]]
+  zones: [{polygon: [[15, -30], [25, -30], [25, 10], [15, 10]], forbidden_to: [air]}]
+"""
+
+
+def test_ways_around_zones_are_shown_before_anything_flies(tmp_path, sky, port, capsys):
+    (tmp_path / "m.yaml").write_text(ZONE)
+    sky()
+    how = ("--endpoint", f"r_0=udp:127.0.0.1:{port}", "--time-limit", "0.1", "--format", "json")
+    assert run(["fly", str(tmp_path / "m.yaml"), *how]) == 0
+    rows = json.loads(capsys.readouterr().out)["would_send"]
+    assert len(rows) >= 3
+    norths = [(row["lat_deg"] - 35.53) * 111_000 for row in rows]
+    assert max(norths[:-1]) > 10.4  # around the zone's corner, with room for the body
+    assert norths[-1] == pytest.approx(0, abs=0.1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan
 from muster.motion import actions
 from muster.motion.actions import Impossible
-from muster.motion.port import Waypoint
+from muster.motion.port import Place, Waypoint
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,17 @@ class Line:
         return asdict(self)
 
 
-def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet) -> list[Line]:
-    """Every way point of a plan's works, robot by robot. Ways around zones between works are found in flight.
+Way = Callable[[Robot, Place, Place], Sequence[Place] | None]
+"""The places that a robot passes from one place to another, the last included; None where there is no way."""
+
+
+def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet, way: Way) -> list[Line]:
+    """Every way point of a plan, robot by robot: of works, and around zones on the way there and in between.
 
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have, or a work lies outside the fence.
+        if the plan names robots or tasks that the mission does not have, or a way point lies outside the fence.
     """
     tasks, robots = {task.id: task for task in mission.tasks}, {robot.id: robot for robot in mission.robots}
     lines: list[Line] = []
@@ -46,19 +50,30 @@ def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet) -> list[Line]:
         for name in route.tasks:
             if route.robot not in robots or name not in tasks:
                 raise ParameterError(f"plan: {route.robot} does {name}; expected robots and tasks of the mission")
-            lines += _work(tasks[name], robots[route.robot], fleet.sessions[route.robot])
+        if route.tasks:
+            lines += _route(robots[route.robot], [tasks[name] for name in route.tasks], fleet, way)
     return lines
 
 
-def _work(task: Task, robot: Robot, session: Session) -> Iterator[Line]:
-    doing = actions.plan(task, robot)
-    if isinstance(doing, Impossible):
-        raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
-    waypoints = session.craft.flown(doing.waypoints)
-    refusal = session.fence(waypoints[0].position, waypoints)
-    if refusal:
-        raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")
-    yield from (_line(robot.id, task.id, waypoint, session) for waypoint in waypoints)
+def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -> Iterator[Line]:
+    session = fleet.sessions[robot.id]
+    here = session.craft.seen.start
+    for task in tasks:
+        doing = actions.plan(task, robot)
+        if isinstance(doing, Impossible):
+            raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
+        waypoints: list[Waypoint] = []
+        for waypoint in doing.waypoints:
+            places = way(robot, here, waypoint.position)
+            if places is None:
+                raise ParameterError(f"plan: {robot.id} does {task.id}; there is no way for it")
+            waypoints += [*map(Waypoint, places[:-1]), waypoint]
+            here = waypoint.position
+        flown = session.craft.flown(waypoints)
+        refusal = session.fence(flown[0].position, flown)
+        if refusal:
+            raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")
+        yield from (_line(robot.id, task.id, waypoint, session) for waypoint in flown)
 
 
 def _line(robot: str, task: str, waypoint: Waypoint, session: Session) -> Line:
