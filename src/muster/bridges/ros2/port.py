@@ -2,8 +2,8 @@
 
 | topic | type | |
 |---|---|---|
-| `<robot>/pose` | PoseStamped, frame `map` | where it is |
-| `<robot>/odom` | Odometry | how fast it is; where it is, if it has no `pose`, its frame taken as `map` |
+| `<robot>/pose` | PoseStamped, frame `map` | where it is; its navigation's feedback says so too |
+| `<robot>/odom` | Odometry | where it went from there, once poses have stopped; without any, where it is |
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from muster.bridges.follower import Follower
 from muster.bridges.ros2.goals import Goals
 from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
+from muster.bridges.ros2.reckoning import Reckoning
 from muster.bridges.ros2.wire import Wire
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
@@ -68,7 +69,7 @@ class Ros2Port:
         self._poses = wire.reader(f"{topics}/pose", PoseStamped)
         self._odometry = wire.reader(f"{topics}/odom", Odometry)
         self._said: Telemetry | None = None
-        self._has_pose = False
+        self._reckoning = Reckoning()
         self._height = 0.0
         self._refused = ""
 
@@ -118,35 +119,43 @@ class Ros2Port:
             self._refused = ended.reason
             if not ended.reason:
                 self._follower.arrive(now)
+        heard = self._take_in(now)
+        passed = self._follower.wait(now) or heard
+        if self._said is not None and (passed or ended is not None):
+            order, count = self._follower.order, self._follower.passed
+            self._said = replace(self._said, order=order, passed=count, refused=self._refused)
+        if passed:
+            self._speak()
+        return passed
+
+    def _take_in(self, now: float) -> bool:
+        """Where it has said that it is; returns whether it has passed a way point with that."""
         passed = [self._take_odometry(odometry, now) for odometry in self._odometry.take()]
         passed += [self._take_pose(pose, now) for pose in (*self._poses.take(), *self.goals.poses())]
-        if any(passed):
-            self._speak()
         return any(passed)
 
     def _take_pose(self, pose: PoseStamped, now: float) -> bool:
-        """Who is localised does not go by odometry any more."""
-        if pose.header.frame_id.lstrip("/") != MAP_FRAME:
+        found = _place_and_heading(pose.pose)
+        if found is None or pose.header.frame_id.lstrip("/") != MAP_FRAME:
             return False
-        self._has_pose = True
-        return self._is_at(pose.pose, now, None)
+        self._reckoning.tie(now, *found)
+        return self._is_at(*found, now, None)
 
     def _take_odometry(self, odometry: Odometry, now: float) -> bool:
-        if self._has_pose:
+        """Who is localised does not go by odometry, as long as that lasts."""
+        found = _place_and_heading(odometry.pose.pose)
+        there = None if found is None else self._reckoning.reckon(now, *found)
+        if there is None:
             return False
         linear = odometry.twist.twist.linear
-        yaw = yaw_of(odometry.pose.pose.orientation)
-        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], yaw).tolist()
-        return self._is_at(odometry.pose.pose, now, (x, y, z))
+        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], there[1]).tolist()
+        return self._is_at(*there, now, (x, y, z))
 
-    def _is_at(self, pose: Pose, now: float, velocity: Place | None) -> bool:
+    def _is_at(self, place: Place, heading: float, now: float, velocity: Place | None) -> bool:
         """It is there; returns whether it has passed a way point with that."""
-        at, follower = pose.position, self._follower
-        heading = yaw_of(pose.orientation)
-        if not all(map(math.isfinite, (at.x, at.y, at.z, heading))):
-            return False
-        place = (at.x, at.y, 0.0 if self._flat else at.z)
-        self._height = at.z
+        follower = self._follower
+        self._height = place[2]
+        place = (*place[:2], 0.0) if self._flat else place
         passed = follower.hear(now, place, heading)
         speed = _velocity(self._said, place, now) if velocity is None else velocity
         counted = follower.odometry_m, follower.order, follower.passed
@@ -169,6 +178,12 @@ class Ros2Port:
         turn = Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
         header = Header(stamp=Time.of(time.time()), frame_id=MAP_FRAME)
         return PoseStamped(header, Pose(Point(x, y, self._height if self._flat else z), turn))
+
+
+def _place_and_heading(pose: Pose) -> tuple[Place, float] | None:
+    """Metres and radians; None where they are no numbers."""
+    place, heading = (pose.position.x, pose.position.y, pose.position.z), yaw_of(pose.orientation)
+    return (place, heading) if all(map(math.isfinite, (*place, heading))) else None
 
 
 def _velocity(before: Telemetry | None, place: Place, now: float) -> Place:
