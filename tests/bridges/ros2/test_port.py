@@ -3,93 +3,27 @@
 import math
 
 import pytest
+from tests.bridges.ros2.fake_wire import Navigator, Told, Wire, moved, posed
 
 from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
-from muster.bridges.ros2.messages import (
-    Header,
-    Odometry,
-    Point,
-    Pose,
-    PoseStamped,
-    PoseWithCovariance,
-    Quaternion,
-    Twist,
-    TwistWithCovariance,
-    Vector3,
-)
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.bridges.ros2.wire import Outcome
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
 
 
-class Heard(list):
-    def take(self):
-        taken = self[:]
-        self.clear()
-        return taken
-
-
-class Wire:
-    """Readers by their topics, to which a test appends."""
-
-    def __init__(self):
-        self.heard = {}
-
-    def reader(self, topic, _):
-        return self.heard.setdefault(topic, Heard())
-
-
-class Navigation(Heard):
-    """Feedback is appended."""
-
-    outcome = None
-
-    def cancel(self):
-        self.outcome = Outcome("canceled")
-
-
-class Navigator:
-    ready = True
-
-    def __init__(self):
-        self.given = []
-
-    def go(self, goal):
-        self.given.append((goal, Navigation()))
-        return self.given[-1][1]
-
-
-class Told(list):
-    listeners = 1
-
-    def write(self, goal):
-        self.append((goal.pose.position.x, goal.pose.position.y))
-
-
-def pose(x, y=0.0, heading=0.0):
-    return Pose(Point(x, y, 0.0), Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)))
-
-
-def posed(*at, frame="map"):
-    return PoseStamped(Header(frame_id=frame), pose(*at))
-
-
-def moved(*at, ahead=0.0):
-    twist = TwistWithCovariance(Twist(Vector3(ahead, 0.0, 0.0), Vector3()))
-    return Odometry(Header(frame_id="odom"), "base_link", PoseWithCovariance(pose(*at)), twist)
-
-
 class There:
     """A port, and what the robot says on its topics."""
 
     def __init__(self, goals):
-        wire = Wire()
-        self.port = Ros2Port(Robot(id="r", position=(0.0, 0.0)), wire, "/r", goals, Arrival(), flat=True)
+        self.wire = wire = Wire()
+        robot = Robot(id="r", position=(0.0, 0.0))
+        self.port = Ros2Port(robot, wire, "/r", goals, Arrival(), flat=True, clock=wire.now)
         self.poses, self.odometry = wire.heard["/r/pose"], wire.heard["/r/odom"]
 
     def hear(self, now):
-        return self.port.hear(now)
+        self.wire.now_s = now
+        return self.port.hear()
 
 
 @pytest.fixture
@@ -163,3 +97,55 @@ def test_poses_in_other_frames_and_such_as_are_none_do_not_count():
     robot.odometry += [moved(math.inf), moved(3.0)]
     robot.hear(0.0)
     assert robot.port.telemetry().position == (3.0, 0.0, 0.0)
+
+
+def test_who_is_cancelled_stays_where_it_said_last_that_it_is():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.poses.append(posed(0.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.poses.append(posed(1.0))
+    robot.hear(1.0)
+    robot.poses.append(posed(1.2))  # not taken in yet
+    robot.port.cancel()
+    assert told == [(50.0, 0.0), (1.2, 0.0)]
+    assert robot.port.at_rest
+
+
+def test_who_is_silent_keeps_its_goal_until_it_is_heard():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.poses.append(posed(1.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.hear(5.0)
+    robot.port.cancel()
+    robot.hear(6.0)
+    assert told == [(50.0, 0.0)]
+    assert not robot.port.at_rest
+    robot.poses.append(posed(6.0))
+    robot.hear(7.0)
+    robot.poses.append(posed(6.1))
+    robot.hear(7.1)
+    assert told == [(50.0, 0.0), (6.0, 0.0)]
+    assert robot.port.at_rest
+
+
+def test_what_is_sent_to_a_silent_robot_holds_when_it_is_heard():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.port.cancel()
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.poses.append(posed(6.0))
+    robot.hear(7.0)
+    assert set(told) == {(50.0, 0.0)}
+
+
+def test_nav2_cancels_without_a_pose(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.port.cancel()
+    robot.hear(1.0)
+    assert navigator.given[0][1].outcome == Outcome("canceled")
+    assert robot.port.at_rest

@@ -7,7 +7,9 @@ thread that calls `advance`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Literal
 
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
@@ -17,6 +19,7 @@ from muster.bridges.ros2.names import ros_names
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.bridges.ros2.wire import Wire, open_wire
 from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 
 Give = Literal["goals", "nav2"]
@@ -24,6 +27,7 @@ _POLL_S = 0.02
 _LAST_WORDS_S = 0.2
 """That what was said last takes to arrive."""
 _STOPS_WITHIN_S = 2.0
+_log = logging.getLogger(__name__)
 
 
 class Ros2Fleet:
@@ -90,7 +94,7 @@ class Ros2Fleet:
         """See `Fleet`: returns before, where a way point is passed or a robot joins."""
         while True:
             self._wire.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
-            passed = [port.hear(self.time_s) for port in self._ports.values()]
+            passed = [port.hear() for port in self._ports.values()]
             events = self._joined()
             if events or any(passed) or self.time_s >= until_s:
                 return events
@@ -101,13 +105,36 @@ class Ros2Fleet:
         return {name: port.missing for name, port in self._ports.items() if port.missing}
 
     def stop(self) -> None:
-        """See `Fleet`: goals become where robots are, or are cancelled."""
-        for port in self._ports.values():
-            port.cancel()
-        until = self.time_s + _STOPS_WITHIN_S
-        self._hear_for(_LAST_WORDS_S)
-        while self.time_s < until and not all(port.goals.at_rest for port in self._ports.values()):
-            self._hear_for(_POLL_S)
+        """See `Fleet`: goals become where robots are, or are cancelled. One that fails does not keep it from others.
+
+        Raises
+        ------
+        NetworkError
+            if a robot could not be told; all others were.
+        """
+        failed: dict[str, Exception] = {}
+        _try(failed, "", partial(self._wire.wait, 0.0))
+        for name, port in self._ports.items():
+            _try(failed, name, port.cancel)
+        until, wait_s = self.time_s + _STOPS_WITHIN_S, _LAST_WORDS_S
+        while True:
+            _try(failed, "", partial(self._wire.wait, wait_s))
+            for name, port in self._ports.items():
+                _try(failed, name, port.hear)
+            if self.time_s >= until or all(port.at_rest for port in self._ports.values()):
+                break
+            wait_s = _POLL_S
+        self._say_who_was_not_told(failed)
+
+    def _say_who_was_not_told(self, failed: Mapping[str, Exception]) -> None:
+        lines = [f"ROS 2: {failed['']}"] if "" in failed else []
+        for name, port in self._ports.items():
+            if port.is_to_stay and name in failed:
+                lines.append(f"robot {name} was not told to stay: {failed[name]}")
+            elif port.is_to_stay:
+                _log.warning("robot %s was not heard, and not told to stay: it may go on to its last goal", name)
+        if lines:
+            raise NetworkError("; ".join(lines)) from next(iter(failed.values()))
 
     def close(self) -> None:
         """See `Fleet`."""
@@ -116,7 +143,7 @@ class Ros2Fleet:
     def _hear_for(self, seconds: float) -> None:
         self._wire.wait(seconds)
         for port in self._ports.values():
-            port.hear(self.time_s)
+            port.hear()
 
     def _joined(self) -> list[Event]:
         found = [] if self._newcomers is None else self._newcomers.look(self.time_s)
@@ -126,7 +153,9 @@ class Ros2Fleet:
 
     def _reached(self, robot: Robot, name: str) -> Ros2Port:
         topics = "/".join(["", *filter(None, [self._namespace]), name])
-        return Ros2Port(robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat)
+        return Ros2Port(
+            robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat, clock=lambda: self.time_s
+        )
 
     def _goals(self, topics: str) -> Goals:
         if self._give == "nav2":
@@ -138,3 +167,11 @@ class Ros2Fleet:
             return self._reached(robot, robot.id)
 
         return Newcomers(self._wire, self._namespace, names.values(), reach, flat=self._flat)
+
+
+def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:
+    """Act, and go on where that fails, whatever the reason: others are still to be told."""
+    try:
+        act()
+    except Exception as error:
+        failed[whose] = error

@@ -83,7 +83,7 @@ class Newcomers:
                 del self._strangers[name]
                 return None
             stranger.port = self._reach(robot)
-        stranger.port.hear(now)
+        stranger.port.hear()
         there = stranger.port.telemetry()
         if there is None:
             return None

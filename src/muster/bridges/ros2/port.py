@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +28,8 @@ from muster.motion.port import Place, Telemetry, Waypoint
 MAP_FRAME = "map"
 _AT_ONCE_S = 0.01
 """Poses that come closer to each other say nothing of the velocity."""
+_FRESH_S = 0.5
+"""Who said for longer not where it is, is elsewhere by now: that place is none to stay at."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,10 +62,22 @@ class Ros2Port:
         how it is told where to go.
     flat
         whether the mission is in the plane: heights are then the robot's own affair.
+    clock
+        seconds of the mission's.
     """
 
-    def __init__(self, robot: Robot, wire: Wire, topics: str, goals: Goals, arrival: Arrival, *, flat: bool) -> None:
-        self.body, self.topics, self.goals, self._flat = robot, topics, goals, flat
+    def __init__(
+        self,
+        robot: Robot,
+        wire: Wire,
+        topics: str,
+        goals: Goals,
+        arrival: Arrival,
+        *,
+        flat: bool,
+        clock: Callable[[], float],
+    ) -> None:
+        self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
         near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
         self._follower = Follower(**near, flat=flat or robot.kind == "ground")
         self._poses = wire.reader(f"{topics}/pose", PoseStamped)
@@ -72,6 +86,7 @@ class Ros2Port:
         self._reckoning = Reckoning()
         self._height = 0.0
         self._refused = ""
+        self.is_to_stay = False  # and was not told yet
 
     @property
     def robot(self) -> str:
@@ -83,6 +98,11 @@ class Ros2Port:
         if self._said is None:
             return f"nothing on {self.topics}/pose or {self.topics}/odom"
         return "" if self.goals.ready else f"no server of {self.topics}/navigate_to_pose"
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it was told all, and nothing is under way, as far as that is said."""
+        return self.goals.at_rest and not self.is_to_stay
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`.
@@ -96,11 +116,12 @@ class Ros2Port:
             if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
                 raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
         order = self._follower.take(waypoints)
-        self._refused = ""
+        self._refused, self.is_to_stay = "", not waypoints
         if waypoints:
             self._speak()
         else:
-            self.goals.withdraw(None if self._said is None else self._stamped(self._said.position, self._said.heading))
+            self._take_in(self._clock())
+            self._let_stay()
         return order
 
     def cancel(self) -> int:
@@ -111,8 +132,9 @@ class Ros2Port:
         """See `RobotPort`."""
         return self._said
 
-    def hear(self, now: float) -> bool:
+    def hear(self) -> bool:
         """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
+        now = self._clock()
         under_way = self._follower.aim is not None and not self._follower.stays
         ended = self.goals.hear(now, under_way=under_way)
         if ended is not None and under_way:
@@ -126,7 +148,16 @@ class Ros2Port:
             self._said = replace(self._said, order=order, passed=count, refused=self._refused)
         if passed:
             self._speak()
+        if self.is_to_stay:
+            self._let_stay()
         return passed
+
+    def _let_stay(self) -> None:
+        """Where it is; one that is not heard keeps its goal until it is."""
+        said = self._said
+        lost = said is None or self._clock() - said.time_s > _FRESH_S
+        here = None if said is None or lost else self._stamped(said.position, said.heading)
+        self.is_to_stay = not self.goals.withdraw(here)
 
     def _take_in(self, now: float) -> bool:
         """Where it has said that it is; returns whether it has passed a way point with that."""
