@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Literal
 
+from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Newcomers
 from muster.bridges.ros2.messages import PoseStamped
@@ -67,7 +68,8 @@ class Ros2Fleet:
     ) -> None:
         self._clock: Clock = clock or SystemClock()
         self._begin = self._clock.now()
-        self._namespace, self._give, self._arrival = namespace.strip("/"), give, arrival or Arrival()
+        self._namespace, self._topics = namespace, topics_in(namespace)
+        self._give, self._arrival = give, arrival or Arrival()
         self._flat = mission.dimensions == 2
         self._wire = open_wire() if wire is None else wire
         self._ports: dict[str, Ros2Port] = {}
@@ -133,6 +135,10 @@ class Ros2Fleet:
                 lines.append(f"robot {name} was not told to stay: {failed[name]}")
             elif port.is_to_stay:
                 _log.warning("robot %s was not heard, and not told to stay: it may go on to its last goal", name)
+            elif not port.at_rest:
+                _log.warning(
+                    "robot %s was told to stay, and does not say within %g s that it does", name, _STOPS_WITHIN_S
+                )
         if lines:
             raise NetworkError("; ".join(lines)) from next(iter(failed.values()))
 
@@ -152,7 +158,7 @@ class Ros2Fleet:
         return [Event(at_s=self.time_s, robot_joins=port.body) for port in found]
 
     def _reached(self, robot: Robot, name: str) -> Ros2Port:
-        topics = "/".join(["", *filter(None, [self._namespace]), name])
+        topics = self._topics(name)
         return Ros2Port(
             robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat, clock=lambda: self.time_s
         )
