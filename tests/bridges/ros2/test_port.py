@@ -6,8 +6,9 @@ import pytest
 from tests.bridges.ros2.fake_wire import Navigator, Told, Wire, moved, posed
 
 from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
-from muster.bridges.ros2.port import Arrival, Ros2Port
+from muster.bridges.ros2.port import Arrival, Ros2Port, yaw_of
 from muster.bridges.ros2.wire import Outcome
+from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
 
@@ -149,3 +150,40 @@ def test_nav2_cancels_without_a_pose(navigator):
     robot.hear(1.0)
     assert navigator.given[0][1].outcome == Outcome("canceled")
     assert robot.port.at_rest
+
+
+def test_the_velocity_is_that_between_poses():
+    robot = There(PoseGoals(Told()))
+    robot.poses.append(posed(0.0))
+    robot.hear(0.0)
+    assert robot.port.telemetry().velocity == (0.0, 0.0, 0.0)
+    robot.poses.append(posed(1.0, 2.0))
+    robot.hear(2.0)
+    assert robot.port.telemetry().velocity == (0.5, 1.0, 0.0)
+    robot.poses.append(posed(1.1, 2.0))
+    robot.hear(2.001)
+    assert robot.port.telemetry().velocity == (0.5, 1.0, 0.0)  # of that which came before
+
+
+@pytest.mark.parametrize(
+    ("waypoint", "wanted"),
+    [
+        (Waypoint((0.0, 5.0, 0.0)), math.pi / 2),
+        (Waypoint((0.0, 5.0, 0.0), heading=1.0), 1.0),
+        (Waypoint((0.0, 0.0, 0.0)), -2.0),  # it is there, and stays as it stands
+    ],
+)
+def test_a_goal_has_the_heading_of_the_way_there_if_none_is_wanted(navigator, waypoint, wanted):
+    robot = There(Nav2Goals(navigator))
+    robot.poses.append(posed(0.0, 0.0, -2.0))
+    robot.hear(0.0)
+    robot.port.send([waypoint])
+    assert yaw_of(navigator.given[0][0].pose.orientation) == pytest.approx(wanted)
+
+
+def test_way_points_that_are_none_are_not_sent():
+    told = Told()
+    robot = There(PoseGoals(told))
+    with pytest.raises(ParameterError, match=r"^way point of r: .*expected finite numbers$"):
+        robot.port.send([Waypoint((math.nan, 0.0, 0.0))])
+    assert told == []

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from muster.bridges.follower import Follower
+from muster.bridges.heard import goal_heading, require_finite, velocity_by
 from muster.bridges.ros2.goals import Goals
 from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
 from muster.bridges.ros2.reckoning import Reckoning
@@ -26,8 +27,6 @@ from muster.motion.frames import angles, flu_to_enu, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 
 MAP_FRAME = "map"
-_AT_ONCE_S = 0.01
-"""Poses that come closer to each other say nothing of the velocity."""
 _FRESH_S = 0.5
 """Who said for longer not where it is, is elsewhere by now: that place is none to stay at."""
 
@@ -112,9 +111,7 @@ class Ros2Port:
         ParameterError
             if a number of a way point is not finite.
         """
-        for point in waypoints:
-            if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
-                raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
+        require_finite(self.robot, waypoints)
         order = self._follower.take(waypoints)
         self._refused, self.is_to_stay = "", not waypoints
         if waypoints:
@@ -188,7 +185,7 @@ class Ros2Port:
         self._height = place[2]
         place = (*place[:2], 0.0) if self._flat else place
         passed = follower.hear(now, place, heading)
-        speed = _velocity(self._said, place, now) if velocity is None else velocity
+        speed = velocity_by(self._said, place, now) if velocity is None else velocity
         counted = follower.odometry_m, follower.order, follower.passed
         self._said = Telemetry(now, place, heading, speed, *counted, refused=self._refused)
         return passed
@@ -198,11 +195,7 @@ class Ros2Port:
         aim = self._follower.aim
         if aim is None:
             return
-        heading = aim.heading
-        if heading is None:
-            here = aim.position if self._said is None else self._said.position
-            heading = math.atan2(aim.position[1] - here[1], aim.position[0] - here[0])
-        self.goals.give(self._stamped(aim.position, heading))
+        self.goals.give(self._stamped(aim.position, goal_heading(aim, self._said)))
 
     def _stamped(self, place: Place, heading: float) -> PoseStamped:
         x, y, z = map(float, place)
@@ -215,17 +208,6 @@ def _place_and_heading(pose: Pose) -> tuple[Place, float] | None:
     """Metres and radians; None where they are no numbers."""
     place, heading = (pose.position.x, pose.position.y, pose.position.z), yaw_of(pose.orientation)
     return (place, heading) if all(map(math.isfinite, (*place, heading))) else None
-
-
-def _velocity(before: Telemetry | None, place: Place, now: float) -> Place:
-    """By the pose before; that of before, where both came at once."""
-    if before is None:
-        return (0.0, 0.0, 0.0)
-    seconds = now - before.time_s
-    if seconds < _AT_ONCE_S:
-        return before.velocity
-    x, y, z = ((new - old) / seconds for new, old in zip(place, before.position, strict=True))
-    return (x, y, z)
 
 
 def yaw_of(turn: Quaternion) -> float:
