@@ -65,6 +65,14 @@ class Follower:
             self._held_since = None
         return self.passed > before
 
+    def wait(self, now: float) -> bool:
+        """Nothing was heard, but time goes on; returns whether a hold is over, and its way point passed with that."""
+        if self.aim is None or self._held_since is None or now - self._held_since < self.aim.hold_s:
+            return False
+        self.passed += 1
+        self._held_since = None
+        return True
+
     def arrive(self, now: float) -> None:
         """It is at its way point, as one says who knows better than its poses do."""
         if self.aim is not None and self._held_since is None:

@@ -152,12 +152,19 @@ class Future:
 
     def __init__(self, context):
         self._context, self._result, self._done, self._callbacks = context, None, False, []
+        self._exception = None
 
     def done(self):
         return self._done
 
     def result(self):
+        if self._exception is not None:
+            raise self._exception
         return self._result
+
+    def set_exception(self, exception):
+        self._exception = exception
+        self.set_result(None)
 
     def set_result(self, result):
         self._result, self._done = result, True
@@ -179,6 +186,8 @@ class ClientGoalHandle:
         return self._goal.result
 
     def cancel_goal_async(self):
+        if self._goal.how == "deaf":
+            raise RuntimeError("no client")
         self._goal.cancel_asked = True
         return Future(self._client.context)
 
@@ -204,7 +213,9 @@ class Nav2:
     Parameters
     ----------
     script
-        for each goal how it ends: `go` (it arrives), `abort`, `reject`, `hang`; the last holds for all that follow.
+        for each goal how it ends: `go` (it arrives), `abort`, `reject`, `hang`; `lose`, `break`: whether it is
+        accepted, or how it ended, does not come through; `deaf`: it cannot be cancelled; the last holds for all
+        that follow.
     brakes
         looks that it takes to end a goal that is cancelled.
     """
@@ -229,6 +240,9 @@ class Nav2:
         goal.result = Future(client.context)
         self.goals.append(goal)
         assert self._under_way is None, "two goals at once"
+        if how == "lose":
+            answer.set_exception(RuntimeError("no answer\nto the goal"))
+            return
         handle = ClientGoalHandle(client, goal, how != "reject")
         if handle.accepted:
             self._under_way = goal
@@ -242,6 +256,9 @@ class Nav2:
                 self._end(goal, 5)
         elif goal is not None and goal.how == "abort":
             self._end(goal, 6, 9003, "no way")
+        elif goal is not None and goal.how == "break":
+            self._under_way = None
+            goal.result.set_exception(RuntimeError("no result"))
         elif goal is not None and goal.how == "go":
             x, y = self.place
             way = ((goal.at[0] - x) ** 2 + (goal.at[1] - y) ** 2) ** 0.5

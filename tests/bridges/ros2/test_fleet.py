@@ -7,15 +7,16 @@ import pytest
 
 import muster
 from muster._live import carry_out_live
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.port import Waypoint
 
 pytest.importorskip("cyclonedds")
 
 from muster.bridges.ros2.dds import Participant
+from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
-from muster.bridges.ros2.messages import MESSAGES
+from muster.bridges.ros2.messages import MESSAGES, PoseStamped
 
 pytestmark = pytest.mark.usefixtures("loopback")
 
@@ -98,13 +99,25 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
 @pytest.mark.parametrize("name", sorted(MESSAGES))
 def test_types_of_dds_are_written_as_messages_are(name):
     from muster.bridges.ros2.cdr import to_cdr
-    from muster.bridges.ros2.dds import _idl, _message, _sample
+    from muster.bridges.ros2.dds import _idl
 
     sent = MESSAGES[name]()
     package, _, kind = name.partition("/")
-    assert _sample(sent).serialize() == to_cdr(sent)
+    assert to_foreign(sent, _idl).serialize() == to_cdr(sent)
     assert _idl(MESSAGES[name]).__idl_typename__ == f"{package}::msg::dds_::{kind}_"
-    assert _message(MESSAGES[name], _sample(sent)) == sent
+    assert from_foreign(MESSAGES[name], to_foreign(sent, _idl)) == sent
+
+
+def test_what_cannot_be_written_is_one_line():
+    from cyclonedds.core import DDSException
+
+    def fails(_):
+        raise DDSException(DDSException.DDS_RETCODE_TIMEOUT, "Occurred while writing")
+
+    writer = Participant().writer("/r_0/goal_pose", PoseStamped)
+    writer._writer.write = fails
+    with pytest.raises(NetworkError, match=r"^/r_0/goal_pose: DDS: \[DDS_RETCODE_TIMEOUT\] .*writing$"):
+        writer.write(PoseStamped())
 
 
 def test_bad_domains_and_no_extra(monkeypatch):

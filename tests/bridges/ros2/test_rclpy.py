@@ -7,11 +7,12 @@ import pytest
 from tests.bridges.ros2 import fake_rclpy
 
 from muster._live import carry_out_live
+from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
-from muster.bridges.ros2.messages import MESSAGES, Odometry, PoseStamped, String
-from muster.bridges.ros2.rclpy_wire import RclpyWire, _ours, _theirs
+from muster.bridges.ros2.messages import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
+from muster.bridges.ros2.rclpy_wire import RclpyWire, _class_of
 from muster.bridges.ros2.wire import open_wire
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
@@ -47,7 +48,14 @@ def plan(**routes):
 
 @pytest.mark.parametrize("name", sorted(MESSAGES))
 def test_messages_of_rclpy_are_ours(graph, name):
-    assert _ours(MESSAGES[name], _theirs(MESSAGES[name]())) == MESSAGES[name]()
+    assert from_foreign(MESSAGES[name], to_foreign(MESSAGES[name](), _class_of)) == MESSAGES[name]()
+
+
+def test_messages_in_messages_are_ours(graph):
+    path = Path(poses=(PoseStamped(), PoseStamped(pose=Pose(Point(1.0, 2.0, 3.0)))))
+    theirs = to_foreign(path, _class_of)
+    assert [type(pose) for pose in theirs.poses] == [_class_of(PoseStamped)] * 2
+    assert from_foreign(Path, theirs) == path
 
 
 def test_by_itself_it_is_rclpy_where_that_is_and_in_the_domain_asked_for(graph):
@@ -118,12 +126,36 @@ def test_stop_cancels_and_waits_for_it(graph):
     fleet.close()
 
 
+def test_who_does_not_say_that_it_stays_is_named(graph, caplog):
+    fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0), script=["hang"], brakes=10**9)
+    fleet = navigated(mission("r_0"))
+    fleet.ports["r_0"].send([Waypoint((9.0, 0.0, 0.0))])
+    fleet.stop()
+    said = "robot r_0 was told to stay, and does not say within 2 s that it does"
+    assert [record.getMessage() for record in caplog.records] == [said]
+
+
+def test_a_goal_that_cannot_be_cancelled_is_said_and_the_next_is_cancelled(graph):
+    fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0), script=["deaf"])
+    other = fake_rclpy.Nav2(graph, "r_1", (0.0, 3.0), script=["hang"])
+    fleet = navigated(mission("r_0", "r_1"))
+    for port in fleet.ports.values():
+        port.send([Waypoint((9.0, 0.0, 0.0))])
+    fleet.advance(fleet.time_s + 0.1)
+    said = "^robot r_0 was not told to stay: a goal cannot be cancelled: ROS 2: no client$"
+    with pytest.raises(NetworkError, match=said):
+        fleet.stop()
+    assert other.ended == [5]
+
+
 @pytest.mark.parametrize(
     ("script", "said"),
     [
         (["abort"], "navigate_to_pose: aborted (no way)"),
         (["reject"], "navigate_to_pose: rejected"),
         (["go", "abort", "abort"], "navigate_to_pose: aborted (no way)"),
+        (["lose"], "navigate_to_pose: aborted (no answer to the goal)"),
+        (["break"], "navigate_to_pose: aborted (no result)"),
     ],
 )
 def test_what_nav2_gives_up_twice_is_refused(graph, script, said):
@@ -227,6 +259,19 @@ def test_one_that_says_what_is_wrong_does_not_join(graph, caplog):
     assert set(fleet.ports) == {"r_0"}
 
 
+def test_in_a_namespace_it_is_found_and_named_there(graph, caplog):
+    fake_rclpy.Nav2(graph, "team/r_0", (0.0, 0.0))
+    fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire(), namespace="/team/")
+    until(fleet, lambda: not fleet.unheard())
+    fake_rclpy.Nav2(graph, "team/r_7", (4.0, 5.0))
+    words = RclpyWire().writer("/team/r_7/muster", String)
+    end = fleet.time_s + 10
+    while not caplog.records and fleet.time_s < end:
+        words.write(String("[]"))
+        fleet.advance(fleet.time_s + 0.05)
+    assert caplog.records[0].getMessage().startswith("r_7 does not join: /team/r_7/muster: ")
+
+
 def test_known_only_nobody_joins(graph):
     fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire(), joins=False)
     fake_rclpy.Nav2(graph, "r_7", (4.0, 5.0))
@@ -244,3 +289,25 @@ def test_what_is_missing_is_one_line(graph, monkeypatch):
     assert "\n" not in str(caught.value)
     with pytest.raises(ParameterError, match="domain: '233'; expected a number from 0 to 232"):
         RclpyWire(233)
+
+
+def test_a_node_that_cannot_be_leaves_nothing_open(graph, monkeypatch):
+    def fails(*_, **__):
+        raise RuntimeError("no middleware")
+
+    monkeypatch.setattr(fake_rclpy.MODULES["rclpy.node"], "Node", fails)
+    with pytest.raises(NetworkError, match="ROS 2 domain 3: no middleware; see RMW_IMPLEMENTATION"):
+        RclpyWire(3)
+    assert [context.up for context in graph.contexts] == [False]
+
+
+def test_what_cannot_be_published_is_one_line(graph):
+    wire = RclpyWire(3)
+    writer = wire.writer("/r_0/goal_pose", PoseStamped)
+
+    def fails(_):
+        raise RuntimeError("context\nis shut down")
+
+    writer._publisher.publish = fails
+    with pytest.raises(NetworkError, match=r"^/r_0/goal_pose: ROS 2: context is shut down$"):
+        writer.write(PoseStamped())

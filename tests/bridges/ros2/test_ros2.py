@@ -62,6 +62,17 @@ def test_robots_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(s
     assert record.stat().st_size > 0
 
 
+def test_a_mission_is_carried_out_in_a_namespace(simulated, start, tmp_path):
+    (tmp_path / "m.yaml").write_text(
+        "schema: muster/1\nrobots: [{id: r_0, position: [0, 0], speed_mps: 3}]\ntasks: [{id: t_1, position: [1, 0]}]\n"
+    )
+    simulated("r_0", 0, 0, "--namespace", "team")
+    carried = start("-m", "muster.cli", "ros2", tmp_path / "m.yaml", *QUICK, "--namespace", "team")
+    out, err = carried.communicate(timeout=40)
+    assert carried.returncode == 0, err
+    assert json.loads(out)["tasks_done"] == ["t_1"]
+
+
 def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
     simulated("r_0", 0, 0)
     simulated("r_1", 0, 3)

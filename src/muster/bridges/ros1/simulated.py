@@ -18,36 +18,31 @@ from muster.bridges.ros1.messages import fill_pose, matrix_of, place_and_heading
 from muster.bridges.ros1.node import become_node, time_of_ros
 from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
 from muster.bridges.simulated_body import Body
-from muster.mission.errors import MusterError
-from muster.mission.model import Robot
+from muster.bridges.simulated_robot import Wanted, robot_options, run, wanted
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
-from muster.motion.kinematics.registry import KINEMATICS
 
 _TICK_S = 0.005
 """Real time between two looks at the clock."""
 
 
 class SimulatedRobot:
-    """One robot in the world of ROS; this process is a node by then.
+    """One robot in the world of ROS; this process is a node by then."""
 
-    Parameters
-    ----------
-    robot
-        who it is, where it starts, and its limits.
-    rate_hz
-        of its steps and its poses.
-    """
-
-    def __init__(self, robot: Robot, rate_hz: float) -> None:
-        self.robot, self._rate_hz, self._body = robot, rate_hz, Body(robot, rate_hz)
+    def __init__(self, it: Wanted) -> None:
+        topics = it.topics(it.robot.id)
+        self._frame, self._rate_hz, self._body = (
+            f"{topics.strip('/')}/base_link",
+            it.rate_hz,
+            Body(it.robot, it.rate_hz),
+        )
         self._now = time_of_ros()
         self._lock = threading.Lock()
-        self._poses = rospy.Publisher(f"/{robot.id}/odom", Odometry, queue_size=1)
+        self._poses = rospy.Publisher(f"{topics}/odom", Odometry, queue_size=1)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._heard = [
-            rospy.Subscriber(f"/{robot.id}/cmd_vel", Twist, self._take_velocity, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber(f"/{robot.id}/WP", PoseStamped, self._take_goal, queue_size=1),
+            rospy.Subscriber(f"{topics}/cmd_vel", Twist, self._take_velocity, queue_size=1, tcp_nodelay=True),
+            rospy.Subscriber(f"{topics}/WP", PoseStamped, self._take_goal, queue_size=1),
         ]
 
     def run(self) -> None:
@@ -67,7 +62,7 @@ class SimulatedRobot:
         place, heading = self._body.pose
         message = Odometry()
         message.header.frame_id, message.header.stamp = "map", rospy.Time.now()
-        message.child_frame_id = f"{self.robot.id}/base_link"
+        message.child_frame_id = self._frame
         fill_pose(message.pose.pose, place, heading)
         twist = message.twist.twist
         twist.linear.x, twist.linear.y, twist.linear.z = map(float, enu_to_flu(rates[:3], heading))
@@ -87,56 +82,20 @@ class SimulatedRobot:
 
 
 @click.command()
-@click.argument("robot")
 @click.option("--master", metavar="URI", help="The ROS master.  [default: ROS_MASTER_URI]")
-@click.option("--at", type=float, nargs=2, default=(0.0, 0.0), metavar="X Y", help="Where it starts, in metres.")
-@click.option("--height", type=float, default=0.0, metavar="Z", help="How high.")
-@click.option("--heading", type=float, default=0.0, metavar="DEG", help="From east, anticlockwise.")
-@click.option("--kind", type=click.Choice(["ground", "air"]), default="ground", show_default=True)
-@click.option("--kinematics", type=click.Choice(list(KINEMATICS)), default="differential-drive", show_default=True)
-@click.option("--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True, help="m/s.")
-@click.option("--yaw-rate", type=click.FloatRange(min=0, min_open=True), default=1.5, show_default=True, help="rad/s.")
-@click.option("--radius", type=click.FloatRange(min=0), default=0.2, show_default=True, help="Metres.")
-@click.option("--type", "row", metavar="TYPE", help="Its row of a mission's suitability table.")
-@click.option("--rate", type=click.FloatRange(1, 200), default=20.0, show_default=True, help="Poses a second.")
-def command(
-    robot: str,
-    master: str | None,
-    at: tuple[float, float],
-    height: float,
-    heading: float,
-    kind: str,
-    kinematics: str,
-    speed: float,
-    yaw_rate: float,
-    radius: float,
-    row: str | None,
-    rate: float,
-) -> None:
+@robot_options
+def command(master: str | None, **asked: Any) -> None:
     """Let a simulated ROBOT take part on ROS 1, until Ctrl-C."""
-    said = {
-        "kind": kind,
-        "kinematics": kinematics,
-        "speed_mps": speed,
-        "yaw_rate_radps": yaw_rate,
-        "radius_m": radius,
-        **({} if row is None else {"type": row}),
-    }
-    it = Robot(id=robot, position=(*at, height), heading_deg=heading, **said)  # type: ignore[arg-type]
-    become_node(f"muster_simulated_{robot}", master)
-    rospy.set_param(f"/{robot}/muster", said)
-    SimulatedRobot(it, rate).run()
+    it = wanted(**asked)
+    topics = it.topics(it.robot.id)
+    become_node(f"muster_simulated{topics.replace('/', '_')}", master)
+    rospy.set_param(f"{topics}/muster", it.says)
+    SimulatedRobot(it).run()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the node; an expected failure is a line and exit code 2."""
-    try:
-        command.main(args=arguments, prog_name="python -m muster.bridges.ros1.simulated", standalone_mode=True)
-    except MusterError as error:
-        click.echo(str(error), err=True)
-        raise SystemExit(2) from None
-    except KeyboardInterrupt:
-        raise SystemExit(130) from None
+    run(command, "muster.bridges.ros1.simulated", arguments)
 
 
 if __name__ == "__main__":

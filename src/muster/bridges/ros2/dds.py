@@ -14,8 +14,8 @@ import types
 from collections.abc import Iterable
 from typing import Any, Generic, TypeVar
 
-from muster.bridges.ros2.description import ROS2, Field, Message, fields_of
-from muster.bridges.ros2.wire import KEPT, Navigator, domain_or_own
+from muster.bridges.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
+from muster.bridges.ros2.wire import KEPT, Navigator, domain_or_own, line_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 
 M = TypeVar("M", bound=Message)
@@ -40,7 +40,7 @@ class Participant:
         try:
             self._participant: Any = self._dds.participant(number)
         except self._dds.error as error:
-            raise NetworkError(f"DDS domain {number}: {error}; see CYCLONEDDS_URI") from None
+            raise NetworkError(f"DDS domain {number}: {line_of(error)}; see CYCLONEDDS_URI") from None
         self._publications = self._dds.publications(self._participant)
         self._published: dict[Any, tuple[str, str]] = {}  # by the writers' keys
 
@@ -83,11 +83,14 @@ class DdsWriter(Generic[M]):
     """See `wire.Writer`."""
 
     def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
-        self._kind = _idl(message)
-        self._writer = dds.writer(participant, _dds_topic(topic), self._kind)
+        self._topic, self._error = topic, dds.error
+        self._writer = dds.writer(participant, _dds_topic(topic), _idl(message))
 
     def write(self, message: M) -> None:
-        self._writer.write(_sample(message))
+        try:
+            self._writer.write(to_foreign(message, _idl))
+        except self._error as error:
+            raise NetworkError(f"{self._topic}: DDS: {line_of(error)}") from None
 
     @property
     def listeners(self) -> int:
@@ -104,7 +107,7 @@ class DdsReader(Generic[M]):
     def take(self) -> list[M]:
         samples = self._reader.take(KEPT)
         kind = _idl(self._message)
-        return [_message(self._message, sample) for sample in samples if isinstance(sample, kind)]
+        return [from_foreign(self._message, sample) for sample in samples if isinstance(sample, kind)]
 
 
 class _Dds:
@@ -177,26 +180,3 @@ def _idl_field(field: Field) -> Any:
     if not field.is_list:
         return one
     return idl.array[one, field.length] if field.length else idl.sequence[one]
-
-
-def _sample(message: Message) -> Any:
-    values = {field.name: _value(field, getattr(message, field.name)) for field in fields_of(type(message), ROS2)}
-    return _idl(type(message))(**values)
-
-
-def _value(field: Field, value: Any) -> Any:
-    if isinstance(field.kind, str):
-        return list(value) if field.is_list else value
-    return [_sample(item) for item in value] if field.is_list else _sample(value)
-
-
-def _message(message: type[M], sample: Any) -> M:
-    values: dict[str, Any] = {}
-    for field in fields_of(message, ROS2):
-        value, kind = getattr(sample, field.name), field.kind
-        if isinstance(kind, str):
-            listed = bytes if kind == "uint8" else tuple
-            values[field.name] = listed(value) if field.is_list else value
-        else:
-            values[field.name] = tuple(_message(kind, one) for one in value) if field.is_list else _message(kind, value)
-    return message(**values)

@@ -8,9 +8,9 @@ by which ROS 1 knows it (wiki.ros.org, "ROS/Technical Overview", 4).
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
 
 ROS1, ROS2 = 1, 2
 
@@ -48,6 +48,9 @@ class Message:
     """The word that ROS 1 has for it, where it is no message there."""
 
 
+M = TypeVar("M", bound=Message)
+
+
 @dataclass(frozen=True)
 class Field:
     """A field: a primitive's word or a message, one of it (`length` None), that many, or any number (0)."""
@@ -70,6 +73,37 @@ def fields_of(message: type[Message], ros: int) -> tuple[Field, ...]:
 
 _READ: dict[tuple[type[Message], int], tuple[Field, ...]] = {}
 """Fields that were read before: reading annotations is slow, and they do not change."""
+
+
+def to_foreign(message: Message, kind_of: Callable[[type[Message]], Any]) -> Any:
+    """A message of ROS 2 as one of another library.
+
+    Parameters
+    ----------
+    kind_of
+        the library's class for a message; it takes all fields by their names, and arrays as lists.
+    """
+
+    def value(field: Field, own: Any) -> Any:
+        if isinstance(field.kind, str):
+            return list(own) if field.is_list else own
+        return [to_foreign(item, kind_of) for item in own] if field.is_list else to_foreign(own, kind_of)
+
+    kind = type(message)
+    return kind_of(kind)(**{field.name: value(field, getattr(message, field.name)) for field in fields_of(kind, ROS2)})
+
+
+def from_foreign(kind: type[M], foreign: Any) -> M:
+    """A message of ROS 2 by one of another library, whose fields have the same names."""
+
+    def value(field: Field, theirs: Any) -> Any:
+        if not field.is_list:
+            return theirs if isinstance(field.kind, str) else from_foreign(field.kind, theirs)
+        if isinstance(field.kind, str):
+            return bytes(theirs) if field.kind == "uint8" else tuple(theirs)
+        return tuple(from_foreign(field.kind, one) for one in theirs)
+
+    return kind(**{field.name: value(field, getattr(foreign, field.name)) for field in fields_of(kind, ROS2)})
 
 
 def _fields(message: type[Message], ros: int) -> Iterator[Field]:

@@ -7,9 +7,12 @@ thread that calls `advance`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Literal
 
+from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Newcomers
 from muster.bridges.ros2.messages import PoseStamped
@@ -17,6 +20,7 @@ from muster.bridges.ros2.names import ros_names
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.bridges.ros2.wire import Wire, open_wire
 from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 
 Give = Literal["goals", "nav2"]
@@ -24,6 +28,7 @@ _POLL_S = 0.02
 _LAST_WORDS_S = 0.2
 """That what was said last takes to arrive."""
 _STOPS_WITHIN_S = 2.0
+_log = logging.getLogger(__name__)
 
 
 class Ros2Fleet:
@@ -63,7 +68,8 @@ class Ros2Fleet:
     ) -> None:
         self._clock: Clock = clock or SystemClock()
         self._begin = self._clock.now()
-        self._namespace, self._give, self._arrival = namespace.strip("/"), give, arrival or Arrival()
+        self._namespace, self._topics = namespace, topics_in(namespace)
+        self._give, self._arrival = give, arrival or Arrival()
         self._flat = mission.dimensions == 2
         self._wire = open_wire() if wire is None else wire
         self._ports: dict[str, Ros2Port] = {}
@@ -90,7 +96,7 @@ class Ros2Fleet:
         """See `Fleet`: returns before, where a way point is passed or a robot joins."""
         while True:
             self._wire.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
-            passed = [port.hear(self.time_s) for port in self._ports.values()]
+            passed = [port.hear() for port in self._ports.values()]
             events = self._joined()
             if events or any(passed) or self.time_s >= until_s:
                 return events
@@ -101,13 +107,40 @@ class Ros2Fleet:
         return {name: port.missing for name, port in self._ports.items() if port.missing}
 
     def stop(self) -> None:
-        """See `Fleet`: goals become where robots are, or are cancelled."""
-        for port in self._ports.values():
-            port.cancel()
-        until = self.time_s + _STOPS_WITHIN_S
-        self._hear_for(_LAST_WORDS_S)
-        while self.time_s < until and not all(port.goals.at_rest for port in self._ports.values()):
-            self._hear_for(_POLL_S)
+        """See `Fleet`: goals become where robots are, or are cancelled. One that fails does not keep it from others.
+
+        Raises
+        ------
+        NetworkError
+            if a robot could not be told; all others were.
+        """
+        failed: dict[str, Exception] = {}
+        _try(failed, "", partial(self._wire.wait, 0.0))
+        for name, port in self._ports.items():
+            _try(failed, name, port.cancel)
+        until, wait_s = self.time_s + _STOPS_WITHIN_S, _LAST_WORDS_S
+        while True:
+            _try(failed, "", partial(self._wire.wait, wait_s))
+            for name, port in self._ports.items():
+                _try(failed, name, port.hear)
+            if self.time_s >= until or all(port.at_rest for port in self._ports.values()):
+                break
+            wait_s = _POLL_S
+        self._say_who_was_not_told(failed)
+
+    def _say_who_was_not_told(self, failed: Mapping[str, Exception]) -> None:
+        lines = [f"ROS 2: {failed['']}"] if "" in failed else []
+        for name, port in self._ports.items():
+            if port.is_to_stay and name in failed:
+                lines.append(f"robot {name} was not told to stay: {failed[name]}")
+            elif port.is_to_stay:
+                _log.warning("robot %s was not heard, and not told to stay: it may go on to its last goal", name)
+            elif not port.at_rest:
+                _log.warning(
+                    "robot %s was told to stay, and does not say within %g s that it does", name, _STOPS_WITHIN_S
+                )
+        if lines:
+            raise NetworkError("; ".join(lines)) from next(iter(failed.values()))
 
     def close(self) -> None:
         """See `Fleet`."""
@@ -116,7 +149,7 @@ class Ros2Fleet:
     def _hear_for(self, seconds: float) -> None:
         self._wire.wait(seconds)
         for port in self._ports.values():
-            port.hear(self.time_s)
+            port.hear()
 
     def _joined(self) -> list[Event]:
         found = [] if self._newcomers is None else self._newcomers.look(self.time_s)
@@ -125,8 +158,10 @@ class Ros2Fleet:
         return [Event(at_s=self.time_s, robot_joins=port.body) for port in found]
 
     def _reached(self, robot: Robot, name: str) -> Ros2Port:
-        topics = "/".join(["", *filter(None, [self._namespace]), name])
-        return Ros2Port(robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat)
+        topics = self._topics(name)
+        return Ros2Port(
+            robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat, clock=lambda: self.time_s
+        )
 
     def _goals(self, topics: str) -> Goals:
         if self._give == "nav2":
@@ -138,3 +173,11 @@ class Ros2Fleet:
             return self._reached(robot, robot.id)
 
         return Newcomers(self._wire, self._namespace, names.values(), reach, flat=self._flat)
+
+
+def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:
+    """Act, and go on where that fails, whatever the reason: others are still to be told."""
+    try:
+        act()
+    except Exception as error:
+        failed[whose] = error

@@ -38,8 +38,8 @@ class Goals(Protocol):
         """Let it go there, in place of where it goes now."""
         ...
 
-    def withdraw(self, here: PoseStamped | None) -> None:
-        """Let it stay where it is."""
+    def withdraw(self, here: PoseStamped | None) -> bool:
+        """Let it stay where it is, None where that is not known; returns whether it was told."""
         ...
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
@@ -71,11 +71,12 @@ class PoseGoals:
         self._goal = goal
         self._writer.write(goal)
 
-    def withdraw(self, here: PoseStamped | None) -> None:
+    def withdraw(self, here: PoseStamped | None) -> bool:
         """Its goal becomes where it is. One whose pose is not known keeps the goal that it has."""
         self._goal = None
         if here is not None:
             self._writer.write(here)
+        return here is not None
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
         """Who begins to listen late is told, too."""
@@ -118,10 +119,11 @@ class Nav2Goals:
         self._wanted, self._tries = goal, 0
         self._send()
 
-    def withdraw(self, here: PoseStamped | None) -> None:
+    def withdraw(self, here: PoseStamped | None) -> bool:
         """It brakes by itself where its goal is cancelled."""
-        self._cancel()
         self._wanted = None
+        self._cancel()
+        return True
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
         outcome, ended = self._outcome(now), None
@@ -136,8 +138,8 @@ class Nav2Goals:
 
     def _cancel(self) -> None:
         if self._navigation is not None and not self._cancelled:
-            self._cancelled = True
             self._navigation.cancel()
+            self._cancelled = True
 
     def _send(self) -> None:
         if self._wanted is not None and self._navigation is None and self._navigator.ready:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from muster.bridges.described import robot_as_said
-from muster.bridges.discovery import robots_in
+from muster.bridges.discovery import robots_in, topics_in
 from muster.bridges.ros2.messages import String
 from muster.bridges.ros2.port import Ros2Port
 from muster.bridges.ros2.wire import Reader, Wire
@@ -50,7 +50,7 @@ class Newcomers:
     def __init__(
         self, wire: Wire, namespace: str, known: Iterable[str], reach: Callable[[Robot], Ros2Port], *, flat: bool
     ) -> None:
-        self._wire, self._namespace, self._reach = wire, namespace, reach
+        self._wire, self._namespace, self._topics, self._reach = wire, namespace, topics_in(namespace), reach
         self._nowhere = (0.0, 0.0) if flat else (0.0, 0.0, 0.0)
         self._known = set(known)
         self._strangers: dict[str, _Stranger] = {}
@@ -67,8 +67,12 @@ class Newcomers:
     def _find(self, name: str, now: float) -> None:
         if name not in self._known:
             self._known.add(name)
-            words = self._wire.reader("/".join(["", *filter(None, [self._namespace]), name, "muster"]), String)
+            words = self._wire.reader(self._words_of(name), String)
             self._strangers[name] = _Stranger(words, now + _SAYS_WITHIN_S)
+
+    def _words_of(self, name: str) -> str:
+        """The topic on which it says what it can do."""
+        return f"{self._topics(name)}/muster"
 
     def _met(self, name: str, now: float) -> Ros2Port | None:
         stranger = self._strangers[name]
@@ -77,13 +81,13 @@ class Newcomers:
             if not said and now < stranger.until_s:
                 return None
             try:
-                robot = robot_as_said(_as_data(said), Robot(id=name, position=self._nowhere), f"/{name}/muster")
+                robot = robot_as_said(_as_data(said), Robot(id=name, position=self._nowhere), self._words_of(name))
             except MissionError as error:
                 _log.warning("%s does not join: %s", name, error)
                 del self._strangers[name]
                 return None
             stranger.port = self._reach(robot)
-        stranger.port.hear(now)
+        stranger.port.hear()
         there = stranger.port.telemetry()
         if there is None:
             return None

@@ -2,22 +2,24 @@
 
 | topic | type | |
 |---|---|---|
-| `<robot>/pose` | PoseStamped, frame `map` | where it is |
-| `<robot>/odom` | Odometry | how fast it is; where it is, if it has no `pose`, its frame taken as `map` |
+| `<robot>/pose` | PoseStamped, frame `map` | where it is; its navigation's feedback says so too |
+| `<robot>/odom` | Odometry | where it went from there, once poses have stopped; without any, where it is |
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from muster.bridges.follower import Follower
+from muster.bridges.heard import goal_heading, require_finite, velocity_by
 from muster.bridges.ros2.goals import Goals
 from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
+from muster.bridges.ros2.reckoning import Reckoning
 from muster.bridges.ros2.wire import Wire
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
@@ -25,8 +27,8 @@ from muster.motion.frames import angles, flu_to_enu, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 
 MAP_FRAME = "map"
-_AT_ONCE_S = 0.01
-"""Poses that come closer to each other say nothing of the velocity."""
+_FRESH_S = 0.5
+"""Who said for longer not where it is, is elsewhere by now: that place is none to stay at."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,18 +61,31 @@ class Ros2Port:
         how it is told where to go.
     flat
         whether the mission is in the plane: heights are then the robot's own affair.
+    clock
+        seconds of the mission's.
     """
 
-    def __init__(self, robot: Robot, wire: Wire, topics: str, goals: Goals, arrival: Arrival, *, flat: bool) -> None:
-        self.body, self.topics, self.goals, self._flat = robot, topics, goals, flat
+    def __init__(
+        self,
+        robot: Robot,
+        wire: Wire,
+        topics: str,
+        goals: Goals,
+        arrival: Arrival,
+        *,
+        flat: bool,
+        clock: Callable[[], float],
+    ) -> None:
+        self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
         near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
         self._follower = Follower(**near, flat=flat or robot.kind == "ground")
         self._poses = wire.reader(f"{topics}/pose", PoseStamped)
         self._odometry = wire.reader(f"{topics}/odom", Odometry)
         self._said: Telemetry | None = None
-        self._has_pose = False
+        self._reckoning = Reckoning()
         self._height = 0.0
         self._refused = ""
+        self.is_to_stay = False  # and was not told yet
 
     @property
     def robot(self) -> str:
@@ -83,6 +98,11 @@ class Ros2Port:
             return f"nothing on {self.topics}/pose or {self.topics}/odom"
         return "" if self.goals.ready else f"no server of {self.topics}/navigate_to_pose"
 
+    @property
+    def at_rest(self) -> bool:
+        """Whether it was told all, and nothing is under way, as far as that is said."""
+        return self.goals.at_rest and not self.is_to_stay
+
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`.
 
@@ -91,15 +111,14 @@ class Ros2Port:
         ParameterError
             if a number of a way point is not finite.
         """
-        for point in waypoints:
-            if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
-                raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
+        require_finite(self.robot, waypoints)
         order = self._follower.take(waypoints)
-        self._refused = ""
+        self._refused, self.is_to_stay = "", not waypoints
         if waypoints:
             self._speak()
         else:
-            self.goals.withdraw(None if self._said is None else self._stamped(self._said.position, self._said.heading))
+            self._take_in(self._clock())
+            self._let_stay()
         return order
 
     def cancel(self) -> int:
@@ -110,45 +129,63 @@ class Ros2Port:
         """See `RobotPort`."""
         return self._said
 
-    def hear(self, now: float) -> bool:
+    def hear(self) -> bool:
         """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
+        now = self._clock()
         under_way = self._follower.aim is not None and not self._follower.stays
         ended = self.goals.hear(now, under_way=under_way)
         if ended is not None and under_way:
             self._refused = ended.reason
             if not ended.reason:
                 self._follower.arrive(now)
+        heard = self._take_in(now)
+        passed = self._follower.wait(now) or heard
+        if self._said is not None and (passed or ended is not None):
+            order, count = self._follower.order, self._follower.passed
+            self._said = replace(self._said, order=order, passed=count, refused=self._refused)
+        if passed:
+            self._speak()
+        if self.is_to_stay:
+            self._let_stay()
+        return passed
+
+    def _let_stay(self) -> None:
+        """Where it is; one that is not heard keeps its goal until it is."""
+        said = self._said
+        lost = said is None or self._clock() - said.time_s > _FRESH_S
+        here = None if said is None or lost else self._stamped(said.position, said.heading)
+        self.is_to_stay = not self.goals.withdraw(here)
+
+    def _take_in(self, now: float) -> bool:
+        """Where it has said that it is; returns whether it has passed a way point with that."""
         passed = [self._take_odometry(odometry, now) for odometry in self._odometry.take()]
         passed += [self._take_pose(pose, now) for pose in (*self._poses.take(), *self.goals.poses())]
-        if any(passed):
-            self._speak()
         return any(passed)
 
     def _take_pose(self, pose: PoseStamped, now: float) -> bool:
-        """Who is localised does not go by odometry any more."""
-        if pose.header.frame_id.lstrip("/") != MAP_FRAME:
+        found = _place_and_heading(pose.pose)
+        if found is None or pose.header.frame_id.lstrip("/") != MAP_FRAME:
             return False
-        self._has_pose = True
-        return self._is_at(pose.pose, now, None)
+        self._reckoning.tie(now, *found)
+        return self._is_at(*found, now, None)
 
     def _take_odometry(self, odometry: Odometry, now: float) -> bool:
-        if self._has_pose:
+        """Who is localised does not go by odometry, as long as that lasts."""
+        found = _place_and_heading(odometry.pose.pose)
+        there = None if found is None else self._reckoning.reckon(now, *found)
+        if there is None:
             return False
         linear = odometry.twist.twist.linear
-        yaw = yaw_of(odometry.pose.pose.orientation)
-        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], yaw).tolist()
-        return self._is_at(odometry.pose.pose, now, (x, y, z))
+        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], there[1]).tolist()
+        return self._is_at(*there, now, (x, y, z))
 
-    def _is_at(self, pose: Pose, now: float, velocity: Place | None) -> bool:
+    def _is_at(self, place: Place, heading: float, now: float, velocity: Place | None) -> bool:
         """It is there; returns whether it has passed a way point with that."""
-        at, follower = pose.position, self._follower
-        heading = yaw_of(pose.orientation)
-        if not all(map(math.isfinite, (at.x, at.y, at.z, heading))):
-            return False
-        place = (at.x, at.y, 0.0 if self._flat else at.z)
-        self._height = at.z
+        follower = self._follower
+        self._height = place[2]
+        place = (*place[:2], 0.0) if self._flat else place
         passed = follower.hear(now, place, heading)
-        speed = _velocity(self._said, place, now) if velocity is None else velocity
+        speed = velocity_by(self._said, place, now) if velocity is None else velocity
         counted = follower.odometry_m, follower.order, follower.passed
         self._said = Telemetry(now, place, heading, speed, *counted, refused=self._refused)
         return passed
@@ -158,11 +195,7 @@ class Ros2Port:
         aim = self._follower.aim
         if aim is None:
             return
-        heading = aim.heading
-        if heading is None:
-            here = aim.position if self._said is None else self._said.position
-            heading = math.atan2(aim.position[1] - here[1], aim.position[0] - here[0])
-        self.goals.give(self._stamped(aim.position, heading))
+        self.goals.give(self._stamped(aim.position, goal_heading(aim, self._said)))
 
     def _stamped(self, place: Place, heading: float) -> PoseStamped:
         x, y, z = map(float, place)
@@ -171,15 +204,10 @@ class Ros2Port:
         return PoseStamped(header, Pose(Point(x, y, self._height if self._flat else z), turn))
 
 
-def _velocity(before: Telemetry | None, place: Place, now: float) -> Place:
-    """By the pose before; that of before, where both came at once."""
-    if before is None:
-        return (0.0, 0.0, 0.0)
-    seconds = now - before.time_s
-    if seconds < _AT_ONCE_S:
-        return before.velocity
-    x, y, z = ((new - old) / seconds for new, old in zip(place, before.position, strict=True))
-    return (x, y, z)
+def _place_and_heading(pose: Pose) -> tuple[Place, float] | None:
+    """Metres and radians; None where they are no numbers."""
+    place, heading = (pose.position.x, pose.position.y, pose.position.z), yaw_of(pose.orientation)
+    return (place, heading) if all(map(math.isfinite, (*place, heading))) else None
 
 
 def yaw_of(turn: Quaternion) -> float:

@@ -9,12 +9,13 @@ from __future__ import annotations
 import importlib
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, Generic, TypeVar
 
-from muster.bridges.ros2.description import ROS2, Field, Message, fields_of
+from muster.bridges.ros2.description import Message, from_foreign, to_foreign
 from muster.bridges.ros2.messages import PoseStamped
-from muster.bridges.ros2.wire import KEPT, Navigation, Outcome, domain_or_own
+from muster.bridges.ros2.wire import KEPT, Navigation, Outcome, domain_or_own, line_of
 from muster.mission.errors import MissingExtraError, NetworkError
 
 M = TypeVar("M", bound=Message)
@@ -44,8 +45,10 @@ class RclpyWire:
         try:
             self._context.init(args=[], domain_id=number)
             self._node = node.Node("muster", context=self._context, start_parameter_services=False)
-        except RuntimeError as error:
-            raise NetworkError(f"ROS 2 domain {number}: {error}; see RMW_IMPLEMENTATION") from None
+        except RuntimeError as error:  # of which rclpy's RCLError is one
+            if self._context.ok():
+                self._context.try_shutdown()
+            raise NetworkError(f"ROS 2 domain {number}: {line_of(error)}; see RMW_IMPLEMENTATION") from None
         self._executor = executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._reliable = qos.QoSProfile(depth=KEPT, reliability=qos.ReliabilityPolicy.RELIABLE)
@@ -53,7 +56,7 @@ class RclpyWire:
 
     def writer(self, topic: str, message: type[M]) -> RclpyWriter[M]:
         """See `Wire`."""
-        return RclpyWriter(self._node.create_publisher(_class_of(message), topic, self._reliable))
+        return RclpyWriter(topic, self._node.create_publisher(_class_of(message), topic, self._reliable))
 
     def reader(self, topic: str, message: type[M]) -> RclpyReader[M]:
         """See `Wire`."""
@@ -89,11 +92,14 @@ class RclpyWire:
 class RclpyWriter(Generic[M]):
     """See `wire.Writer`."""
 
-    def __init__(self, publisher: Any) -> None:
-        self._publisher = publisher
+    def __init__(self, topic: str, publisher: Any) -> None:
+        self._topic, self._publisher = topic, publisher
 
     def write(self, message: M) -> None:
-        self._publisher.publish(_theirs(message))
+        try:
+            self._publisher.publish(to_foreign(message, _class_of))
+        except RuntimeError as error:
+            raise NetworkError(f"{self._topic}: ROS 2: {line_of(error)}") from None
 
     @property
     def listeners(self) -> int:
@@ -109,7 +115,7 @@ class RclpyReader(Generic[M]):
 
     def hear(self, theirs: Any) -> None:
         """Keep a message of rclpy."""
-        self._heard.append(_ours(self._message, theirs))
+        self._heard.append(from_foreign(self._message, theirs))
 
     def take(self) -> list[M]:
         heard = list(self._heard)
@@ -130,7 +136,7 @@ class RclpyNavigator:
     def go(self, goal: PoseStamped) -> Navigation:
         """Ask Nav2 to go there, by the behaviour tree that it has by default."""
         theirs = self._kind.Goal()
-        theirs.pose = _theirs(goal)
+        theirs.pose = to_foreign(goal, _class_of)
         return _Navigation(self._client, theirs)
 
 
@@ -142,7 +148,8 @@ class _Navigation:
         self._poses: list[PoseStamped] = []
         self._handle: Any = None
         self._cancelled = False
-        client.send_goal_async(goal, feedback_callback=self._hear).add_done_callback(self._begin)
+        with self._failing():
+            client.send_goal_async(goal, feedback_callback=self._hear).add_done_callback(self._begin)
 
     def take(self) -> list[PoseStamped]:
         poses, self._poses = self._poses, []
@@ -151,27 +158,43 @@ class _Navigation:
     def cancel(self) -> None:
         self._cancelled = True
         if self._handle is not None and self.outcome is None:
-            self._handle.cancel_goal_async()
+            self._ask_to_cancel()
 
     def _hear(self, message: Any) -> None:
-        self._poses.append(_ours(PoseStamped, message.feedback.current_pose))
+        self._poses.append(from_foreign(PoseStamped, message.feedback.current_pose))
+
+    def _ask_to_cancel(self) -> None:
+        try:
+            self._handle.cancel_goal_async()
+        except RuntimeError as error:
+            raise NetworkError(f"a goal cannot be cancelled: ROS 2: {line_of(error)}") from None
 
     def _begin(self, future: Any) -> None:
-        handle = future.result()
-        if not handle.accepted:
-            self.outcome = Outcome("rejected")
-            return
-        self._handle = handle
-        handle.get_result_async().add_done_callback(self._end)
-        if self._cancelled:  # before it was known by which name
-            handle.cancel_goal_async()
+        with self._failing():
+            handle = future.result()
+            if not handle.accepted:
+                self.outcome = Outcome("rejected")
+                return
+            self._handle = handle
+            handle.get_result_async().add_done_callback(self._end)
+        if self._cancelled and self._handle is not None:  # before it was known by which name
+            self._ask_to_cancel()
 
     def _end(self, future: Any) -> None:
         """Nav2 says why by a number since ROS 2 Iron, in words since Kilted."""
-        answer = future.result()
-        code, words = getattr(answer.result, "error_code", 0), getattr(answer.result, "error_msg", "")
-        status: Any = _STATUS.get(answer.status, "aborted")
-        self.outcome = Outcome(status, words or (f"error {code}" if code else ""))
+        with self._failing():
+            answer = future.result()
+            code, words = getattr(answer.result, "error_code", 0), getattr(answer.result, "error_msg", "")
+            status: Any = _STATUS.get(answer.status, "aborted")
+            self.outcome = Outcome(status, words or (f"error {code}" if code else ""))
+
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        """What fails in rclpy, or on the way to the server, ends the goal and nothing else."""
+        try:
+            yield
+        except Exception as error:
+            self.outcome = Outcome("aborted", line_of(error))
 
 
 def _module(name: str, how: str = _HOW) -> Any:
@@ -184,26 +207,3 @@ def _module(name: str, how: str = _HOW) -> Any:
 def _class_of(message: type[Message]) -> Any:
     package, _, name = message.NAME.partition("/")
     return getattr(_module(f"{package}.msg", f"install {package}"), name)
-
-
-def _theirs(message: Message) -> Any:
-    values = {field.name: _value(field, getattr(message, field.name)) for field in fields_of(type(message), ROS2)}
-    return _class_of(type(message))(**values)
-
-
-def _value(field: Field, value: Any) -> Any:
-    if isinstance(field.kind, str):
-        return list(value) if field.is_list else value
-    return [_theirs(item) for item in value] if field.is_list else _theirs(value)
-
-
-def _ours(message: type[M], theirs: Any) -> M:
-    values: dict[str, Any] = {}
-    for field in fields_of(message, ROS2):
-        value, kind = getattr(theirs, field.name), field.kind
-        if isinstance(kind, str):
-            listed = bytes if kind == "uint8" else tuple
-            values[field.name] = listed(value) if field.is_list else value
-        else:
-            values[field.name] = tuple(_ours(kind, one) for one in value) if field.is_list else _ours(kind, value)
-    return message(**values)

@@ -24,7 +24,15 @@ _LAST_DOMAIN = 232  # beyond it there are no ports
 class Writer(Protocol[Sent]):
     """Publishes messages of a type on a topic, reliably."""
 
-    def write(self, message: Sent) -> None: ...
+    def write(self, message: Sent) -> None:
+        """Say it.
+
+        Raises
+        ------
+        NetworkError
+            if it cannot be sent.
+        """
+        ...
 
     @property
     def listeners(self) -> int:
@@ -61,7 +69,13 @@ class Navigation(Protocol):
         ...
 
     def cancel(self) -> None:
-        """Ask the robot to give the goal up; that it did so `outcome` says."""
+        """Ask the robot to give the goal up; that it did so `outcome` says.
+
+        Raises
+        ------
+        NetworkError
+            if it cannot be asked.
+        """
         ...
 
 
@@ -73,7 +87,9 @@ class Navigator(Protocol):
         """Whether somebody serves it."""
         ...
 
-    def go(self, goal: PoseStamped) -> Navigation: ...
+    def go(self, goal: PoseStamped) -> Navigation:
+        """Let the robot go there; where that cannot even be asked, it is aborted."""
+        ...
 
 
 class Wire(Protocol):
@@ -149,3 +165,8 @@ def domain_or_own(domain: int | None) -> int:
         name = "ROS_DOMAIN_ID" if domain is None else "domain"
         raise ParameterError(f"{name}: {text!r}; expected a number from 0 to {_LAST_DOMAIN}")
     return int(text)
+
+
+def line_of(error: Exception) -> str:
+    """What an error of DDS or rclpy says, in a line."""
+    return " ".join(str(error).split()) or type(error).__name__
