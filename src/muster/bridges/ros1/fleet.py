@@ -13,8 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from muster.bridges.discovery import NAME, robots_in
 from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
@@ -23,12 +21,13 @@ from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
-from muster.bridges.steering import STILL, Driven, Steering
+from muster.bridges.steering import STILL, Steering
 from muster.mission.errors import MissionError, NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import Place
-from muster.motion.world import World
+from muster.motion.roads import Roads
+from muster.motion.world import World, body_of
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
@@ -90,7 +89,7 @@ class Ros1Fleet:
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
-        self._room = MakingRoom(arrival_m=arrival_m, may_stand=_free_places(mission))
+        self._room = MakingRoom(arrival_m=arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
@@ -278,14 +277,9 @@ class Ros1Fleet:
                 self.report(Event(at_s=self.time_s, robot_joins=port.body))
 
 
-def _free_places(mission: Mission) -> Callable[[Driven, Place], bool]:
-    """Whether a robot may stand at a place of the mission's map."""
+def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
+    """Whether the mission's map lets a robot go straight from a place to another."""
     if mission.map is None:
-        return lambda _, __: True
-    world = World.of(mission)
-
-    def free(driven: Driven, place: Place) -> bool:
-        robot, point = driven.robot, np.array([place[: mission.dimensions]])
-        return bool(world.clearance(point, robot.kind, robot.radius_m)[0] > robot.radius_m)
-
-    return free
+        return lambda *_: True
+    roads, d = Roads(World.of(mission)), mission.dimensions
+    return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])

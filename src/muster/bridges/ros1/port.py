@@ -29,7 +29,7 @@ _AGAIN_S = 1.0
 
 
 class Ros1Port:
-    """One robot: a `RobotPort`.
+    """One robot: a `RobotPort`. Before it was sent anywhere it is told nothing: somebody else may drive it.
 
     Parameters
     ----------
@@ -69,7 +69,8 @@ class Ros1Port:
         self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
         self._last_word: Telemetry | None = None
         self._height = 0.0
-        self._heard_s, self._stood_s, self._given_s = -math.inf, clock.unpaused_s, -math.inf
+        self._heard_s, self._stood_s, self._given_s = -math.inf, -math.inf, -math.inf
+        self._commanded = False  # whether it was ever sent anywhere
         self._given: tuple[int, int] | None = None
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
         self._localised = False
@@ -97,10 +98,11 @@ class Ros1Port:
             if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
                 raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
         with self._lock:
-            self._stood_s = self._clock.unpaused_s
+            self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
+            self._commanded = self._commanded or bool(waypoints)
             if not waypoints:
-                self._stand_still()
+                self.stand()
         return order
 
     def cancel(self) -> int:
@@ -131,9 +133,9 @@ class Ros1Port:
             if now - self._stood_s <= _TOLD_STILL_S:
                 self._velocities.publish(twist_of(velocity))
         elif driven.aim is None:
-            if self._follower.aim is not None and self._given is not None:  # paused, or not heard
-                self._stand_still()
-        elif self._given != (self._follower.order, self._follower.passed) or now - self._given_s > _AGAIN_S:
+            if self._given is not None and (self._follower.aim is not None or self._given == self._next):
+                self._stand_still()  # paused, or not heard; or it has made room, and is back
+        elif self._given != self._next or now - self._given_s > _AGAIN_S:
             self._give(driven.aim, driven, now)
 
     def frames(self) -> list[Any]:
@@ -148,10 +150,11 @@ class Ros1Port:
         return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim), aim.heading or 0.0)]
 
     def stand(self) -> None:
-        """Stand where it is, at once."""
+        """Stand where it is, at once, if it was ever sent anywhere."""
         with self._lock:
-            self._stood_s = self._clock.unpaused_s
-            self._stand_still()
+            if self._commanded:
+                self._stood_s = self._clock.unpaused_s
+                self._stand_still()
 
     def close(self) -> None:
         """Hear and say no more."""
@@ -159,12 +162,17 @@ class Ros1Port:
             link.unregister()
 
     def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
-        if self._given is None or self._given != (self._follower.order, self._follower.passed):
+        if self._given != self._next:
             east, north = aim.position[0] - driven.position[0], aim.position[1] - driven.position[1]
             self._facing = math.atan2(north, east) if math.hypot(east, north) > 0 else driven.heading
         heading = self._facing if aim.heading is None else aim.heading
         self._goals.publish(pose_stamped(self._frame.name, self._goal(aim), heading))
-        self._given, self._given_s = (self._follower.order, self._follower.passed), now
+        self._given, self._given_s = self._next, now
+
+    @property
+    def _next(self) -> tuple[int, int]:
+        """The way point that is next, by its order and its number there."""
+        return self._follower.order, self._follower.passed
 
     def _stand_still(self) -> None:
         """A zero velocity, or where it is as its goal."""
