@@ -23,7 +23,7 @@ _AHEAD_M = 3.0
 """So far ahead of one that is held up, those are asked who stand there."""
 _DIRECTIONS, _RINGS = 24, 8
 _STRAYS_M = 0.5
-"""Beside its way, besides its body's breadth, from which a robot was moved by somebody else; it may go around others."""
+"""Farther beside its way, and its body's breadth, a robot was moved by somebody else; nearer it goes around others."""
 
 
 @dataclass(frozen=True)

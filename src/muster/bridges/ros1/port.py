@@ -13,8 +13,9 @@ from typing import Any, Literal
 from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.map_frame import OWN, MapFrame
-from muster.bridges.ros1.messages import matrix_of, place_and_heading, pose_stamped, tf_of, twist_of
-from muster.bridges.ros1.ros import Odometry, PoseStamped, Twist, rospy
+from muster.bridges.ros1.messages import place_and_heading, pose_stamped, tf_of, twist_of
+from muster.bridges.ros1.pose_listener import PoseListener
+from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, Driven, Velocity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
@@ -73,14 +74,9 @@ class Ros1Port:
         self._commanded = False  # whether it was ever sent anywhere
         self._given: tuple[int, int] | None = None
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
-        self._localised = False
-        self.untied = ""  # a frame in which it gives poses that nothing ties to the map
         self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
         self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
-        self._heard = [
-            rospy.Subscriber(f"{topics}/odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber(f"{topics}/pose", PoseStamped, self._hear_pose, queue_size=1, tcp_nodelay=True),
-        ]
+        self._listener = PoseListener(topics, frame, self._hear)
 
     @property
     def robot(self) -> str:
@@ -108,6 +104,11 @@ class Ros1Port:
     def cancel(self) -> int:
         """See `RobotPort`."""
         return self.send(())
+
+    @property
+    def untied(self) -> str:
+        """A frame in which it gives poses that nothing ties to the map."""
+        return self._listener.untied
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
@@ -158,7 +159,8 @@ class Ros1Port:
 
     def close(self) -> None:
         """Hear and say no more."""
-        for link in (*self._heard, self._goals, self._velocities):
+        self._listener.close()
+        for link in (self._goals, self._velocities):
             link.unregister()
 
     def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
@@ -188,26 +190,8 @@ class Ros1Port:
         x, y, z = aim.position
         return (x, y, self._height if self._flat else z)
 
-    def _hear_odometry(self, message: Any) -> None:
-        if self._localised:
-            return
-        twist = message.twist.twist
-        self._hear(message, message.pose.pose, (twist.linear.x, twist.linear.y, twist.linear.z))
-
-    def _hear_pose(self, message: Any) -> None:
-        """Who is localised does not go by odometry any more."""
-        self._localised = self._hear(message, message.pose, None) or self._localised
-
-    def _hear(self, message: Any, pose: Any, ahead: Place | None) -> bool:
-        """A pose, and the body's velocity if that is known; by way of the pose before, if not. Whether it counts."""
-        found = matrix_of(pose)
-        if found is None:
-            rospy.logwarn_throttle(10.0, f"{self.robot}: a pose that is none; expected finite numbers")
-            return False
-        matrix = self._frame.to_map(message.header.frame_id, found)
-        self.untied = message.header.frame_id if matrix is None else ""
-        if matrix is None:
-            return False
+    def _hear(self, message: Any, matrix: Floats, ahead: Place | None) -> None:
+        """A pose, and the body's velocity if that is known; by way of the pose before, if not."""
         place, heading = place_and_heading(matrix)
         with self._lock:
             self._height = place[2]
@@ -223,7 +207,6 @@ class Ros1Port:
             self._on_pass()
         if self._on_pose is not None:
             self._on_pose(self.robot, message)
-        return True
 
     def _gone(self, place: Place, heard_s: float) -> Place:
         took = heard_s - self._heard_s
