@@ -1,14 +1,18 @@
 """The fleet's parts where ROS fails, or says one thing and another: without a master, by stand-ins for rospy."""
 
 import math
+import threading
 import time
+from dataclasses import replace
 from io import BytesIO
 from types import SimpleNamespace
 
 import pytest
 
+from muster.bridges.steering import STILL
 from muster.mission.errors import NetworkError
 from muster.mission.model import Map, Mission, Robot, Zone
+from muster.motion.port import Waypoint
 
 TEAM = tuple(Robot(id=f"r_{k}", position=(float(k), 0.0)) for k in range(3))
 
@@ -124,37 +128,43 @@ def test_a_robot_that_the_network_hid_is_met_later(rospy_there, monkeypatch):
 
 
 @pytest.fixture
-def watched(rospy_there, monkeypatch):
-    """What the system monitor knows of a robot, and what says so: (topic, x, frame) as if it came on the wire."""
-    from muster.bridges.ros1 import pose_listener, system_monitor
+def hear(rospy_there, monkeypatch):
+    """By topics, what says a pose there, (x, frame), as if it came on the wire."""
+    from muster.bridges.ros1 import pose_listener
     from muster.bridges.ros1.ros import Odometry, PoseStamped
 
-    hear = {}
+    said = {}
 
     def subscriber(topic, _, callback, callback_args, **__):
-        hear[topic] = lambda data: callback(data, callback_args)
+        def say(x, name="map"):
+            message = Odometry() if callback_args == "odom" else PoseStamped()
+            pose = message.pose.pose if callback_args == "odom" else message.pose
+            message.header.frame_id, pose.position.x, pose.orientation.w = name, x, 1.0
+            buffer = BytesIO()
+            message.serialize(buffer)
+            header = {"type": message._type}
+            callback(SimpleNamespace(_connection_header=header, _buff=buffer.getvalue()), callback_args)
+
+        said[topic] = say
 
     monkeypatch.setattr(pose_listener.rospy, "Subscriber", subscriber)
     monkeypatch.setattr(pose_listener.rospy, "logwarn_throttle", lambda *_: None)  # a node's clock throttles it
-    frame = SimpleNamespace(to_map=lambda name, matrix: None if name == "lost" else matrix)
+    return said
+
+
+FRAME = SimpleNamespace(name="map", to_map=lambda name, matrix: None if name == "lost" else matrix)
+
+
+def test_who_is_localised_goes_by_odometry_until_such_a_pose_counts(hear, monkeypatch):
+    from muster.bridges.ros1 import system_monitor
+
     monkeypatch.setattr(system_monitor, "_READ_S", 0.0)
-    robot = system_monitor.WatchedRobot("/r_0", frame)
+    robot = system_monitor.WatchedRobot("/r_0", FRAME)
 
     def say(topic, x, name="map"):
-        message = Odometry() if topic == "odom" else PoseStamped()
-        pose = message.pose.pose if topic == "odom" else message.pose
-        message.header.frame_id, pose.position.x, pose.orientation.w = name, x, 1.0
-        buffer = BytesIO()
-        message.serialize(buffer)
-        header = {"type": message._type}
-        hear[f"/r_0/{topic}"](SimpleNamespace(_connection_header=header, _buff=buffer.getvalue()))
-        return None if robot.place is None else robot.place[0]
+        hear[f"/r_0/{topic}"](x, name)
+        return robot.place[0]
 
-    return robot, say
-
-
-def test_who_is_localised_goes_by_odometry_until_such_a_pose_counts(watched):
-    robot, say = watched
     assert say("odom", 1.0) == 1.0
     assert say("pose", 7.0, "lost") == 1.0
     assert say("odom", 2.0) == 2.0  # the monitor and the fleet alike: nothing ties that pose to the map
@@ -164,6 +174,56 @@ def test_who_is_localised_goes_by_odometry_until_such_a_pose_counts(watched):
     assert say("odom", 4.0) == 8.0
     assert say("pose", 9.0) == 9.0
     assert robot.odometer.metres == pytest.approx(8.0)
+
+
+@pytest.fixture
+def port_of(hear, monkeypatch):
+    """A port by its drive, and what it says: places of goals, or velocities."""
+    from muster.bridges.ros1 import port
+    from muster.bridges.ros1.clock import MissionClock
+
+    def of(drive):
+        told = []
+        publisher = SimpleNamespace(publish=told.append)
+        monkeypatch.setattr(port.rospy, "Publisher", lambda *_, **__: publisher)
+        monkeypatch.setattr(port, "pose_stamped", lambda _, place, __: place[:2])
+        monkeypatch.setattr(port, "twist_of", lambda velocity: velocity)
+        own = {"frame": FRAME, "flat": True, "arrival_m": 0.1, "lock": threading.RLock(), "on_pass": lambda: None}
+        return port.Ros1Port(TEAM[0], "/r_0", drive=drive, clock=MissionClock(), **own), told
+
+    return of
+
+
+@pytest.mark.parametrize("drive", ["cmd_vel", "goals"])
+def test_who_was_never_sent_anywhere_is_not_even_told_to_stand(port_of, hear, drive):
+    port, told = port_of(drive)
+    hear["/r_0/odom"](0.0)
+    port.stand()
+    port.cancel()
+    port.speak(port.driven(within_s=9, paused=False), STILL)
+    assert told == []
+    port.send([Waypoint((1.0, 0.0, 0.0))])
+    port.stand()
+    assert told == [STILL if drive == "cmd_vel" else (0.0, 0.0)]
+
+
+def test_who_has_made_room_by_goals_stands_where_that_ends(port_of, hear):
+    port, told = port_of("goals")
+
+    def speak(**aim):
+        del told[:]
+        port.speak(replace(port.driven(within_s=9, paused=False), **aim), STILL)
+        return list(told)
+
+    hear["/r_0/odom"](0.0)
+    port.send([Waypoint((1.0, 0.0, 0.0))])
+    assert speak() == [(1.0, 0.0)]
+    hear["/r_0/odom"](1.0)
+    assert speak() == []  # there
+    assert speak(aim=Waypoint((1.0, 2.0, 0.0))) == [(1.0, 2.0)]
+    hear["/r_0/odom"](5.0)  # pushed: it makes room no more
+    assert speak() == [(5.0, 0.0)]
+    assert speak() == []
 
 
 def test_who_makes_room_does_not_go_through_walls(rospy_there):

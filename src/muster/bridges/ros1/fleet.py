@@ -281,4 +281,8 @@ def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
     if mission.map is None:
         return lambda *_: True
     roads, d = Roads(World.of(mission)), mission.dimensions
+    for robot in mission.robots:
+        roads.clear(
+            body_of(robot), [robot.position]
+        )  # looks at the map for this body now, not while robots are steered
     return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])
