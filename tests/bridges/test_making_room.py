@@ -75,14 +75,68 @@ def test_who_blocks_a_way_steps_aside_when_the_other_is_held_up():
     assert abs(aside[1]) >= 2 * RADIUS + 0.1 - 1e-9 or aside[0] > 3.0
 
 
-def test_it_steps_neither_into_walls_nor_onto_others():
-    right = room(may_stand=lambda driven, place: place[0] > 0.5)
-    assert aim_of(right.arranged(0.0, [waiting("a", (0, 0)), going("b", (5, 0), (0, 0))]), "a")[0] > 0.5
-    nowhere = room(may_stand=lambda driven, place: False)
-    assert aim_of(nowhere.arranged(0.0, [waiting("a", (0, 0)), going("b", (5, 0), (0, 0))]), "a") is None
+COMES = going("b", (5, 0), (0.2, 0))
+LEAVES = going("b", (3, 0), (5, 0))
+
+
+def test_it_steps_onto_nobody():
     crowd = [waiting("a", (0, 0)), waiting("c", (0.8, 0)), going("b", (5, 0), (0, 0))]
     arranged = room().arranged(0.0, crowd)
     assert math.dist(aim_of(arranged, "a"), (0.8, 0)) >= 2 * RADIUS + 0.1
+
+
+def test_it_goes_only_where_it_may_go_straight_both_there_and_back():
+    asked = []
+
+    def to_the_east(who, here, there):
+        asked.append((who.id, here[:2], there[:2]))
+        return max(here[0], there[0]) > 0.5
+
+    aside = aim_of(room(may_go=to_the_east).arranged(0.0, [waiting("a", (0, 0)), COMES]), "a")
+    assert aside[0] > 0.5
+    assert asked[-2:] == [("a", (0, 0), aside), ("a", aside, (0, 0))]
+    nowhere = room(may_go=lambda *_: False)
+    assert aim_of(nowhere.arranged(0.0, [waiting("a", (0, 0)), COMES]), "a") is None
+
+
+def test_it_does_not_come_back_where_others_have_led_it_behind_a_wall():
+    walls = []
+    it = room(may_go=lambda *_: not walls)
+    aside = aim_of(it.arranged(0.0, [waiting("a", (0, 0)), COMES]), "a")
+    walls.append("between it and its post")
+    assert aim_of(it.arranged(9.0, [waiting("a", aside), LEAVES]), "a") is None
+    walls.clear()  # where it stands is its place now
+    assert aim_of(it.arranged(10.0, [waiting("a", aside), LEAVES]), "a") is None
+
+
+def test_who_was_moved_by_somebody_else_is_not_brought_back():
+    it = room()
+    for k in range(50):
+        assert aim_of(it.arranged(0.05 * k, [waiting("a", (0.1 * k, 0)), going("b", (0, 9), (9, 9))]), "a") is None
+
+
+@pytest.mark.parametrize("when", ["on its way aside", "standing aside", "on its way back", "back"])
+def test_who_is_pushed_while_it_makes_room_is_not_brought_back(when):
+    it = room()
+    aside = aim_of(it.arranged(0.0, [waiting("a", (0, 0)), COMES]), "a")
+    if when != "on its way aside":
+        it.arranged(1.0, [waiting("a", aside), COMES])
+    if when in ("on its way back", "back"):
+        assert aim_of(it.arranged(2.0, [waiting("a", aside), LEAVES]), "a") == (0, 0)
+    if when == "back":
+        assert aim_of(it.arranged(3.0, [waiting("a", (0, 0)), LEAVES]), "a") is None
+    far = (-0.3, 0.0) if when == "back" else (-0.6, -1.6)
+    for k in range(3):
+        assert aim_of(it.arranged(4.0 + k, [waiting("a", far), LEAVES]), "a") is None
+
+
+def test_who_makes_room_again_and_again_comes_back_to_where_it_began():
+    it, place = room(), (0.0, 0.0)
+    for k in range(5):
+        aside = aim_of(it.arranged(10.0 * k, [waiting("a", place), COMES]), "a")
+        assert aim_of(it.arranged(10.0 * k + 5, [waiting("a", aside), LEAVES]), "a") == (0, 0)
+        place = (0.09, 0.0)  # as near as counts as there
+        assert aim_of(it.arranged(10.0 * k + 8, [waiting("a", place), LEAVES]), "a") is None
 
 
 def test_one_works_where_another_waits_and_nobody_touches():

@@ -42,8 +42,8 @@ class Follower:
 
     @property
     def waits(self) -> bool:
-        """Whether it has passed all, or never had any; who was told to stay where it is does that."""
-        return self.aim is None and (self.order == 0 or self.passed > 0)
+        """Whether it has passed all that it was sent to; not one that was sent nowhere, or told to stay where it is."""
+        return self.aim is None and self.passed > 0
 
     @property
     def stays(self) -> bool:

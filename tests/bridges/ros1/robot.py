@@ -1,7 +1,8 @@
 """A robot that knows nothing of Muster: NAME X Y; does as cmd_vel says.
 
 `pose`: it says PoseStamped instead of Odometry. `frame=NAME`: its poses are in that frame, whose origin is at (10, -5)
-of the map, turned by a right angle. `tied`: it tells tf so. `namespace=NAME`: in which its own is.
+of the map, turned by a right angle. `tied`: it tells tf so. `namespace=NAME`: in which its own is. `by_hand=SPEED`: a
+person drives it ahead, m/s, until it is told a velocity.
 """
 
 import math
@@ -20,6 +21,7 @@ given = dict(word.partition("=")[::2] for word in words)
 frame, own = given.get("frame", "map"), "/".join(["", *filter(None, [given.get("namespace")]), name])
 x, y, z, heading = float(x), float(y), 0.0, 0.0
 told = [Twist()]
+told[0].linear.x = float(given.get("by_hand", 0))
 rospy.init_node(name)
 rospy.Subscriber(f"{own}/cmd_vel", Twist, lambda twist: told.append(twist))
 poses = rospy.Publisher(

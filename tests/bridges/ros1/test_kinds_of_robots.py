@@ -120,3 +120,28 @@ def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
     text, wrong = sorted(line for line in told.splitlines() if "does not join" in line)
     assert "text does not join: /text/muster" in text
     assert "wrong does not join: /wrong/muster: speed_mps: -1.0; expected" in wrong
+
+
+@pytest.mark.parametrize("drive", ["cmd_vel", "goals"])
+def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path, drive):
+    """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain."""
+    (tmp_path / "m.yaml").write_text(ONE.replace("robots: [", "robots: [{id: r_1, position: [5, 5]}, "), "utf-8")
+    moved = ("joy", "r_0")
+    for k, name in enumerate(moved):
+        own_ros.start(own_ros.file("robot.py"), name, 0, k, "by_hand=1.0")
+    listener = own_ros.listener(
+        *(f"/{name}/cmd_vel=geometry_msgs/Twist" for name in moved),
+        *(f"/{name}/WP=geometry_msgs/PoseStamped" for name in moved),
+        *(f"/{name}/odom=nav_msgs/Odometry" for name in moved),
+        "/tf=tf2_msgs/TFMessage",
+    )
+    carried = own_ros.muster("m.yaml", "--wait", "4", "--drive", drive)
+    out, err = carried.communicate(timeout=30)
+    assert (carried.returncode, out) == (2, "")
+    assert err.startswith("robot r_1: nothing on /r_1/odom or /r_1/pose within 4 s")
+    heard = listener.heard()
+    met = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}
+    assert {"muster/joy", "muster/r_0"} <= met
+    for name in moved:
+        assert max(x for x, _, _ in places(heard, f"/{name}/odom")) > 2
+    assert [topic for topic, _ in heard if topic.endswith(("cmd_vel", "WP"))] == []

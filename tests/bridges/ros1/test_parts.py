@@ -50,6 +50,18 @@ def test_it_is_there_where_one_says_so_who_knows_better():
     assert not it.hear(9.0, (0, 0, 0), 0.0)
 
 
+def test_only_who_has_passed_a_way_point_that_it_was_sent_to_waits():
+    it = follower()
+    it.hear(0.0, (0, 0, 0), 0.0)
+    assert not it.waits  # nobody has sent it
+    it.take([Waypoint((1, 0, 0))])
+    assert not it.waits
+    it.hear(1.0, (1, 0, 0), 0.0)
+    assert it.waits
+    it.take([])
+    assert not it.waits  # told to stay
+
+
 def test_trembling_is_no_travel_and_creeping_is():
     it = follower()
     for k in range(1000):

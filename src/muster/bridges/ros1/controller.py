@@ -163,8 +163,10 @@ class Controller:
         with self._lock:
             if self._state != "carrying-out" or self._fleet is None:
                 raise MusterError(f"{self._what}; expected one that is carried out")
-            self._fleet.pause()
-            self._become("paused")
+            try:
+                self._fleet.pause()
+            finally:  # all that could be told stand, whatever the answer says of the others
+                self._become("paused")
             return f"mission {self._name} is paused; the robots were told to stand"
 
     def _cancel(self) -> str:

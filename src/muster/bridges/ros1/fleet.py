@@ -10,25 +10,24 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from contextlib import suppress
 from typing import Any
 
-import numpy as np
-
-from muster.bridges.discovery import NAME, robots_in
+from muster.bridges.discovery import NAME, topics_in
 from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
-from muster.bridges.ros1.described import described
+from muster.bridges.ros1.joining import Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
-from muster.bridges.steering import STILL, Driven, Steering
-from muster.mission.errors import MissionError, NetworkError, ParameterError
+from muster.bridges.steering import STILL, Steering
+from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import Place
-from muster.motion.world import World
+from muster.motion.roads import Roads
+from muster.motion.world import World, body_of
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
@@ -86,23 +85,23 @@ class Ros1Fleet:
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
-        self._namespace = namespace.strip("/")
+        self.topics = topics_in(namespace)
+        """The namespace of a robot's topics, such as `/r_0`."""
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
-        self._room = MakingRoom(arrival_m=arrival_m, may_stand=_free_places(mission))
+        self._room = MakingRoom(arrival_m=arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
         self._closed = threading.Event()
         self._failure: Exception | None = None  # of the thread that steers
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        self._known: set[str] = set()
         self._ports: dict[str, Ros1Port] = {}
-        self._strangers: dict[str, Ros1Port] = {}  # discovered, and not yet heard
         self._events: list[Event] = []
         for robot in mission.robots:
             self._ports[robot.id] = self._reached(robot)
+        self._newcomers = Newcomers(namespace, self._ports, self._reached, flat=self._flat)
         tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
         self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
         for thread in self._threads:
@@ -125,6 +124,8 @@ class Ros1Fleet:
         ------
         NetworkError
             if ROS has shut this node down.
+        Exception
+            whatever ended the thread that steers.
         """
         real_until = time.monotonic() + until_s - self.time_s
         while self.time_s < until_s and time.monotonic() < real_until and not self._news.wait(_TICK_S):
@@ -132,8 +133,7 @@ class Ros1Fleet:
         self._news.clear()
         if rospy.is_shutdown():
             raise NetworkError(SHUT_DOWN)
-        if self._failure is not None:
-            raise self._failure
+        self._require_steered()
         with self._lock:
             events, self._events = self._events, []
         return events
@@ -148,8 +148,7 @@ class Ros1Fleet:
         """Robots stand, and the mission's clock too, until `resume`."""
         with self._lock:
             self.clock.pause()
-            for port in self._ports.values():
-                port.stand()
+            self._tell_all(Ros1Port.stand)
 
     def resume(self) -> None:
         """Robots go on."""
@@ -157,7 +156,14 @@ class Ros1Fleet:
             self.clock.resume()
 
     def unheard(self) -> dict[str, str]:
-        """Robots of the mission that have not said where they are, and why that may be."""
+        """Robots of the mission that have not said where they are, and why that may be.
+
+        Raises
+        ------
+        Exception
+            whatever ended the thread that steers.
+        """
+        self._require_steered()
         if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
         return {
@@ -169,10 +175,15 @@ class Ros1Fleet:
         }
 
     def stop(self) -> None:
-        """See `Fleet`. A node that ROS has shut down cannot tell anybody: robots stand by their own drivers then."""
+        """See `Fleet`. A node that ROS has shut down cannot tell anybody: robots stand by their own drivers then.
+
+        Raises
+        ------
+        NetworkError
+            if robots could not be told, with their names; all others were.
+        """
         if not rospy.is_shutdown():
-            for port in self._all().values():
-                port.cancel()
+            self._tell_all(Ros1Port.cancel)
 
     def fall_silent(self) -> None:
         """Say no more, without a word to the ROS master. What was said last has time to arrive."""
@@ -184,19 +195,15 @@ class Ros1Fleet:
     def close(self) -> None:
         """See `Fleet`."""
         self.fall_silent()
-        for port in [*self._all().values(), *self._strangers.values()]:
+        for port in self._all().values():
             port.close()
+        self._newcomers.close()
         self._frame.close()
         self._tf.unregister()
-
-    def topics(self, robot: str) -> str:
-        """The namespace of a robot's topics, such as `/r_0`."""
-        return "/".join(["", *filter(None, [self._namespace]), robot])
 
     def _reached(self, robot: Robot) -> Ros1Port:
         if not NAME.fullmatch(robot.id):
             raise ParameterError(f"robot {shown(robot.id)}; expected a name for ROS: a letter, then letters, digits, _")
-        self._known.add(robot.id)
         return Ros1Port(
             robot,
             self.topics(robot.id),
@@ -215,8 +222,24 @@ class Ros1Fleet:
         with self._lock:
             return dict(self._ports)
 
+    def _tell_all(self, tell: Callable[[Ros1Port], object]) -> None:
+        """Tell every robot, whatever becomes of the others."""
+        deaf: dict[str, Exception] = {}
+        for name, port in self._all().items():
+            try:
+                tell(port)
+            except Exception as error:  # rospy raises whatever the network does
+                deaf[name] = error
+        if deaf:
+            why = ", ".join(f"{name} ({error})" for name, error in deaf.items())
+            raise NetworkError(f"not told to stand: {why}; expected the network to reach all robots")
+
+    def _require_steered(self) -> None:
+        if self._failure is not None:
+            raise self._failure
+
     def _steer_on(self) -> None:
-        """Tell robots their velocities at each interval; whatever goes wrong `advance` raises."""
+        """Tell robots their velocities at each interval; whatever goes wrong, they stand, and `advance` raises it."""
         due_s, turn = self.clock.unpaused_s, 0
         try:
             while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):
@@ -233,6 +256,8 @@ class Ros1Fleet:
             if not (self._closed.is_set() or rospy.is_shutdown()):
                 self._failure = error
                 self._news.set()
+                with suppress(NetworkError):  # who could be told stands
+                    self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
         drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
@@ -243,49 +268,21 @@ class Ros1Fleet:
             self._ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
 
     def _look_on(self) -> None:
-        """Look for robots that nobody knows, again and again; robots go on where the master does not answer."""
+        """Look for robots that nobody knows, again and again; those who have said where they are join."""
         while not self._closed.wait(_LOOK_S):
-            try:
-                topics = rospy.get_published_topics()
-            except Exception as error:  # rospy raises whatever the network does; who watches the master tells of it
-                rospy.logdebug(f"the ROS master does not answer: {error}")
-                continue
-            for name in robots_in(topics, self._namespace):
-                if name not in self._known and not self._closed.is_set():
-                    self._meet(name)
-            self._welcome()
-
-    def _meet(self, name: str) -> None:
-        """Listen to a robot that was discovered; where it is, it says next."""
-        nowhere = (0.0, 0.0) if self._flat else (0.0, 0.0, 0.0)
-        try:
-            port = self._reached(described(self.topics(name), Robot(id=name, position=nowhere)))
-        except MissionError as error:
-            self._known.add(name)
-            rospy.logwarn(f"{name} does not join: {error}")
-            return
-        self._strangers[name] = port
-
-    def _welcome(self) -> None:
-        """Those who have said where they are join."""
-        for name, port in list(self._strangers.items()):
-            said = port.telemetry()
-            if said is not None:
-                port.body = replace(port.body, position=said.position[: 2 if self._flat else 3])
+            for port in self._newcomers.look():
                 with self._lock:
-                    self._ports[name] = port
-                del self._strangers[name]
+                    self._ports[port.robot] = port
                 self.report(Event(at_s=self.time_s, robot_joins=port.body))
 
 
-def _free_places(mission: Mission) -> Callable[[Driven, Place], bool]:
-    """Whether a robot may stand at a place of the mission's map."""
+def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
+    """Whether the mission's map lets a robot go straight from a place to another."""
     if mission.map is None:
-        return lambda _, __: True
-    world = World.of(mission)
-
-    def free(driven: Driven, place: Place) -> bool:
-        robot, point = driven.robot, np.array([place[: mission.dimensions]])
-        return bool(world.clearance(point, robot.kind, robot.radius_m)[0] > robot.radius_m)
-
-    return free
+        return lambda *_: True
+    roads, d = Roads(World.of(mission)), mission.dimensions
+    for robot in mission.robots:
+        roads.clear(
+            body_of(robot), [robot.position]
+        )  # looks at the map for this body now, not while robots are steered
+    return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])

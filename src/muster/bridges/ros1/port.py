@@ -13,8 +13,9 @@ from typing import Any, Literal
 from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.map_frame import OWN, MapFrame
-from muster.bridges.ros1.messages import matrix_of, place_and_heading, pose_stamped, tf_of, twist_of
-from muster.bridges.ros1.ros import Odometry, PoseStamped, Twist, rospy
+from muster.bridges.ros1.messages import place_and_heading, pose_stamped, tf_of, twist_of
+from muster.bridges.ros1.pose_listener import PoseListener
+from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, Driven, Velocity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
@@ -29,7 +30,7 @@ _AGAIN_S = 1.0
 
 
 class Ros1Port:
-    """One robot: a `RobotPort`.
+    """One robot: a `RobotPort`. Before it was sent anywhere it is told nothing: somebody else may drive it.
 
     Parameters
     ----------
@@ -69,17 +70,13 @@ class Ros1Port:
         self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
         self._last_word: Telemetry | None = None
         self._height = 0.0
-        self._heard_s, self._stood_s, self._given_s = -math.inf, clock.unpaused_s, -math.inf
+        self._heard_s, self._stood_s, self._given_s = -math.inf, -math.inf, -math.inf
+        self._commanded = False  # whether it was ever sent anywhere
         self._given: tuple[int, int] | None = None
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
-        self._localised = False
-        self.untied = ""  # a frame in which it gives poses that nothing ties to the map
         self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
         self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
-        self._heard = [
-            rospy.Subscriber(f"{topics}/odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber(f"{topics}/pose", PoseStamped, self._hear_pose, queue_size=1, tcp_nodelay=True),
-        ]
+        self._listener = PoseListener(topics, frame, self._hear)
 
     @property
     def robot(self) -> str:
@@ -97,15 +94,21 @@ class Ros1Port:
             if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
                 raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
         with self._lock:
-            self._stood_s = self._clock.unpaused_s
+            self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
+            self._commanded = self._commanded or bool(waypoints)
             if not waypoints:
-                self._stand_still()
+                self.stand()
         return order
 
     def cancel(self) -> int:
         """See `RobotPort`."""
         return self.send(())
+
+    @property
+    def untied(self) -> str:
+        """A frame in which it gives poses that nothing ties to the map."""
+        return self._listener.untied
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
@@ -131,9 +134,9 @@ class Ros1Port:
             if now - self._stood_s <= _TOLD_STILL_S:
                 self._velocities.publish(twist_of(velocity))
         elif driven.aim is None:
-            if self._follower.aim is not None and self._given is not None:  # paused, or not heard
-                self._stand_still()
-        elif self._given != (self._follower.order, self._follower.passed) or now - self._given_s > _AGAIN_S:
+            if self._given is not None and (self._follower.aim is not None or self._given == self._next):
+                self._stand_still()  # paused, or not heard; or it has made room, and is back
+        elif self._given != self._next or now - self._given_s > _AGAIN_S:
             self._give(driven.aim, driven, now)
 
     def frames(self) -> list[Any]:
@@ -148,23 +151,30 @@ class Ros1Port:
         return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim), aim.heading or 0.0)]
 
     def stand(self) -> None:
-        """Stand where it is, at once."""
+        """Stand where it is, at once, if it was ever sent anywhere."""
         with self._lock:
-            self._stood_s = self._clock.unpaused_s
-            self._stand_still()
+            if self._commanded:
+                self._stood_s = self._clock.unpaused_s
+                self._stand_still()
 
     def close(self) -> None:
         """Hear and say no more."""
-        for link in (*self._heard, self._goals, self._velocities):
+        self._listener.close()
+        for link in (self._goals, self._velocities):
             link.unregister()
 
     def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
-        if self._given is None or self._given != (self._follower.order, self._follower.passed):
+        if self._given != self._next:
             east, north = aim.position[0] - driven.position[0], aim.position[1] - driven.position[1]
             self._facing = math.atan2(north, east) if math.hypot(east, north) > 0 else driven.heading
         heading = self._facing if aim.heading is None else aim.heading
         self._goals.publish(pose_stamped(self._frame.name, self._goal(aim), heading))
-        self._given, self._given_s = (self._follower.order, self._follower.passed), now
+        self._given, self._given_s = self._next, now
+
+    @property
+    def _next(self) -> tuple[int, int]:
+        """The way point that is next, by its order and its number there."""
+        return self._follower.order, self._follower.passed
 
     def _stand_still(self) -> None:
         """A zero velocity, or where it is as its goal."""
@@ -180,26 +190,8 @@ class Ros1Port:
         x, y, z = aim.position
         return (x, y, self._height if self._flat else z)
 
-    def _hear_odometry(self, message: Any) -> None:
-        if self._localised:
-            return
-        twist = message.twist.twist
-        self._hear(message, message.pose.pose, (twist.linear.x, twist.linear.y, twist.linear.z))
-
-    def _hear_pose(self, message: Any) -> None:
-        """Who is localised does not go by odometry any more."""
-        self._localised = self._hear(message, message.pose, None) or self._localised
-
-    def _hear(self, message: Any, pose: Any, ahead: Place | None) -> bool:
-        """A pose, and the body's velocity if that is known; by way of the pose before, if not. Whether it counts."""
-        found = matrix_of(pose)
-        if found is None:
-            rospy.logwarn_throttle(10.0, f"{self.robot}: a pose that is none; expected finite numbers")
-            return False
-        matrix = self._frame.to_map(message.header.frame_id, found)
-        self.untied = message.header.frame_id if matrix is None else ""
-        if matrix is None:
-            return False
+    def _hear(self, message: Any, matrix: Floats, ahead: Place | None) -> None:
+        """A pose, and the body's velocity if that is known; by way of the pose before, if not."""
         place, heading = place_and_heading(matrix)
         with self._lock:
             self._height = place[2]
@@ -215,7 +207,6 @@ class Ros1Port:
             self._on_pass()
         if self._on_pose is not None:
             self._on_pose(self.robot, message)
-        return True
 
     def _gone(self, place: Place, heard_s: float) -> Place:
         took = heard_s - self._heard_s

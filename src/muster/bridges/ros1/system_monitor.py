@@ -13,11 +13,13 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from muster.bridges.discovery import SHARED, robots_in
+from muster.bridges.discovery import robots_in
 from muster.bridges.odometer import Odometer
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.messages import matrix_of, place_and_heading, text_of
-from muster.bridges.ros1.ros import Odometry, PoseStamped, String, rospy
+from muster.bridges.ros1.messages import place_and_heading, text_of
+from muster.bridges.ros1.pose_listener import PoseListener
+from muster.bridges.ros1.ros import String, rospy
+from muster.motion.frames import Floats
 from muster.motion.port import Place
 
 _REPORT_S = 0.5
@@ -25,7 +27,6 @@ _READ_S = 0.1
 """A pose is read no sooner after the one before: a person watches, and bytes are heard for less than poses are read."""
 _SILENT_S = 5.0
 """A robot that was not heard for longer is not available."""
-_MESSAGES = {"odom": Odometry, "pose": PoseStamped}
 
 
 class SystemMonitor:
@@ -66,12 +67,11 @@ class SystemMonitor:
     def _discover(self) -> None:
         """Where the master does not answer, those that are known are watched on."""
         try:
-            topics = rospy.get_published_topics()
-        except Exception:  # rospy raises whatever the network does; the controller says so, and ends
-            return
-        for robot in robots_in(topics, self._namespace):
-            if robot not in self._watched:
-                self._watched[robot] = WatchedRobot(self._topics(robot), self._frame)
+            for robot in robots_in(rospy.get_published_topics(), self._namespace):
+                if robot not in self._watched:
+                    self._watched[robot] = WatchedRobot(self._topics(robot), self._frame)
+        except Exception as error:  # rospy raises whatever the network does; the controller says so, and ends
+            rospy.logdebug(f"the ROS master does not answer: {error}")
 
     def _row(self, robot: str) -> dict[str, Any]:
         doing = self._doing.get(robot, {"activity": "idle"})
@@ -98,36 +98,17 @@ class WatchedRobot:
     """Where one robot is, and how far it has gone since it was discovered."""
 
     def __init__(self, topics: str, frame: MapFrame) -> None:
-        self._frame = frame
         self.odometer = Odometer(flat=False)
         self.place: Place | None = None
         self.heading: float | None = None
-        self._heard_s: float | None = None
-        self._read_s = 0.0
-        self._localised = False
-        self._subscribers = [
-            rospy.Subscriber(f"{topics}/{shared}", rospy.AnyMsg, self._hear, callback_args=shared, queue_size=1)
-            for shared in SHARED
-        ]
+        self._listener = PoseListener(topics, frame, self._hear, read_s=_READ_S)
 
     @property
     def heard_ago_s(self) -> float | None:
         """Seconds; None if it was never heard."""
-        return None if self._heard_s is None else time.monotonic() - self._heard_s
+        heard_s = self._listener.heard_s
+        return None if heard_s is None else time.monotonic() - heard_s
 
-    def _hear(self, data: Any, shared: str) -> None:
-        """Who is localised does not go by odometry any more."""
-        if data._connection_header["type"] != SHARED[shared] or (self._localised and shared == "odom"):
-            return
-        now = time.monotonic()
-        if now - self._read_s < _READ_S and self.place is not None:
-            self._heard_s = now
-            return
-        self._read_s, self._localised = now, shared == "pose"
-        message = _MESSAGES[shared]().deserialize(data._buff)
-        found = matrix_of(message.pose if shared == "pose" else message.pose.pose)
-        matrix = None if found is None else self._frame.to_map(message.header.frame_id, found)
-        if matrix is not None:
-            self._heard_s = now
-            self.place, self.heading = place_and_heading(matrix)
-            self.odometer.hear(self.place)
+    def _hear(self, _: Any, matrix: Floats, __: Place | None) -> None:
+        self.place, self.heading = place_and_heading(matrix)
+        self.odometer.hear(self.place)
