@@ -9,7 +9,7 @@ from enum import Enum
 class Reaction(Enum):
     """What Muster tells a drone that fails."""
 
-    NOTHING = "nothing"  # it cannot hear, stands on the ground, or somebody else flies it
+    NOTHING = "nothing"  # it cannot hear, lies on the ground, or somebody else flies it
     HOLD = "hold"
     RETURN = "return"
 

@@ -121,6 +121,8 @@ class MavlinkFleet:
         for session in self.sessions.values():
             session.hold(self.time_s)
         self._speak_last_words()
+        for session in self.sessions.values():
+            session.admit()
 
     def go_back(self) -> None:
         """Let every drone that flies return to where it was armed, and land there."""
