@@ -19,7 +19,7 @@ class Kind(Enum):
 
     LINK_LOST = "link lost", Reaction.NOTHING
     ITEM_REJECTED = "item rejected", Reaction.HOLD
-    ARM_REFUSED = "arm refused", Reaction.NOTHING
+    ARM_REFUSED = "arm refused", Reaction.HOLD
     COMMAND_REFUSED = "command refused", Reaction.HOLD
     NO_ANSWER = "no answer", Reaction.HOLD
     LOW_BATTERY = "low battery", Reaction.RETURN
