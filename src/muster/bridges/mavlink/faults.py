@@ -26,6 +26,7 @@ class Kind(Enum):
     FENCE_BREACHED = "fence breached", Reaction.HOLD
     OUTSIDE_FENCE = "outside the fence", Reaction.HOLD
     TAKEN_OVER = "taken over", Reaction.NOTHING
+    NOT_UNDERSTOOD = "not understood", Reaction.HOLD
     DISARMED = "disarmed in flight", Reaction.NOTHING
 
     def __init__(self, words: str, reaction: Reaction) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from muster.bridges.fleet import Failure
 from muster.bridges.mavlink.craft import Craft
-from muster.bridges.mavlink.faults import Fault
+from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.links import Link, links_of
@@ -118,22 +118,19 @@ class MavlinkFleet:
 
     def stop(self) -> None:
         """Let every drone that flies hover, and speak until they say that they do; on the ground none is left armed."""
-        for session in self.sessions.values():
-            session.hold(self.time_s)
+        self._tell_all(Session.hold)
         self._speak_last_words()
         for session in self.sessions.values():
             session.admit()
 
     def go_back(self) -> None:
         """Let every drone that flies return to where it was armed, and land there."""
-        for session in self.sessions.values():
-            session.go_back(self.time_s)
+        self._tell_all(Session.go_back)
         self._speak_last_words()
 
     def land(self) -> None:
         """Let every drone that flies land where it is."""
-        for session in self.sessions.values():
-            session.land(self.time_s)
+        self._tell_all(Session.land)
         self._speak_last_words()
 
     def close(self) -> None:
@@ -145,6 +142,19 @@ class MavlinkFleet:
         reason = f"{fault.kind.words}: {fault.detail}"
         return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=reason)
 
+    def _tell_all(self, what: Callable[[Session, float], object]) -> None:
+        for session in self.sessions.values():
+            self._do(session, what)
+
+    def _do(self, session: Session, what: Callable[..., object], *more: object) -> None:
+        """Do something with one drone, whatever it has said: an error ends its part, and not that of the others."""
+        try:
+            what(session, *more, self.time_s)
+        except ParameterError:  # none that Muster flies
+            raise
+        except Exception as error:
+            session.fail(Kind.NOT_UNDERSTOOD, f"{type(error).__name__}: {error}", self.time_s)
+
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
         while self.time_s < least or (self.time_s < most and any(session.busy for session in self.sessions.values())):
@@ -154,9 +164,9 @@ class MavlinkFleet:
         """Hear all links, let sessions think, speak, wait."""
         for link in self._links:
             for name, message in link.hear():
-                self.sessions[name].hear(message, self.time_s)
+                self._do(self.sessions[name], Session.hear, message)
         for name, session in self.sessions.items():
-            session.tick(self.time_s)
+            self._do(session, Session.tick)
             for message in session.take():
                 self._link_of[name].say(name, message)
         self._wait(_STEP_S)
