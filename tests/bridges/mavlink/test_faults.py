@@ -20,7 +20,7 @@ FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(2))
 
 @dataclass(frozen=True)
 class Case:
-    """What goes wrong, and how: by the simulated autopilot, a fence of Muster's that nothing may pass, or its own error."""
+    """What goes wrong: by the simulated autopilot, a fence of Muster's that nothing may pass, or an error."""
 
     faults: Faults = field(default_factory=Faults)
     fenced: bool = False

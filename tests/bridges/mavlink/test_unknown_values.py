@@ -4,7 +4,7 @@ import math
 
 import pytest
 from tests.bridges.mavlink.drones import Sky, mission
-from tests.bridges.mavlink.talk import HOLD, M, Talk, ack, commands, from_drone, heartbeat, mission_ack, request
+from tests.bridges.mavlink.talk import HOLD, M, Talk, ack, commands, from_drone, mission_ack, request
 
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.faults import Kind
