@@ -91,7 +91,8 @@ class Seen:
         self._has_left(message.battery_remaining)
 
     def _hear_battery_status(self, message: Message, now: float) -> None:
-        self._has_left(message.battery_remaining)
+        if message.id == 0:  # others feed cameras, or motors of their own
+            self._has_left(message.battery_remaining)
 
     def _hear_fence_status(self, message: Message, now: float) -> None:
         if message.breach_status:

@@ -269,5 +269,7 @@ class Session:
     def _say(self, message: Message) -> None:
         """The one way out."""
         harmless = message.get_type() == "HEARTBEAT" or getattr(message, "command", None) in _REQUESTS
-        assert harmless or self.craft.settings.arm, f"{message.get_type()} without leave to arm"
+        if not harmless and not self.craft.settings.arm:
+            name = f"{self.craft.robot.id}: {message.get_type()}"
+            raise ParameterError(f"{name}; expected nothing of the kind without leave to arm")
         self._outbox.append(message)
