@@ -11,7 +11,7 @@ import muster
 from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
-from muster.bridges.mavlink.simulated_drone import Faults
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Task
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"

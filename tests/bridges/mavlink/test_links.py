@@ -16,7 +16,8 @@ from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
 from muster.bridges.mavlink.endpoints import Endpoint, endpoint_of, line_to
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import NetworkError, ParameterError
 

@@ -244,7 +244,7 @@ class Session:
         craft, seen = self.craft, self.craft.seen
         if craft.follower is None or seen.place is None:
             return
-        craft.follower.look(seen.place, now)
+        craft.follower.look(seen.place, seen.heading, now)
         craft.passed = craft.follower.passed
         if now >= self._streamed_s + EVERY_S and seen.local is not None:
             self._streamed_s = now
