@@ -7,7 +7,9 @@ from muster._live import carry_out_live
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot, origin_at
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_earth import origin_at
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission, Origin, Robot, Rules, Task

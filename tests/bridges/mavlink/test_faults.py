@@ -11,7 +11,7 @@ import muster
 from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
-from muster.bridges.mavlink.simulated_drone import Faults
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Task
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
@@ -20,10 +20,11 @@ FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(2))
 
 @dataclass(frozen=True)
 class Case:
-    """What goes wrong, and how: by the simulated autopilot, or a fence of Muster's that nothing may pass."""
+    """What goes wrong: by the simulated autopilot, a fence of Muster's that nothing may pass, or an error."""
 
     faults: Faults = field(default_factory=Faults)
     fenced: bool = False
+    confusing: bool = False
     how: str = ""
     offboard: tuple[bool, ...] = (False, True)  # in which ways of flying it can happen
 
@@ -38,6 +39,7 @@ CASES = {
     Kind.FENCE_BREACHED: [Case(Faults(breach_at_s=3)), Case(Faults(breach_text_at_s=3), how="by text")],
     Kind.OUTSIDE_FENCE: [Case(fenced=True)],
     Kind.TAKEN_OVER: [Case(Faults(pilot_at_s=3))],
+    Kind.NOT_UNDERSTOOD: [Case(confusing=True)],
     Kind.DISARMED: [Case(Faults(disarm_at_s=3))],
 }
 
@@ -83,6 +85,18 @@ def state(drone, kind):
     return names.get(drone.mode, "flies on")
 
 
+def confuse(seen):
+    """From when it is in the air its attitude raises an error."""
+    take = seen.hear
+
+    def hear(message, now):
+        if seen.was_up and message.get_type() == "ATTITUDE":
+            raise KeyError(9)
+        take(message, now)
+
+    seen.hear = hear
+
+
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize(("fault", "case", "offboard"), EVERY)
 def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
@@ -91,6 +105,8 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     fleet = sky.fleet(there, offboard=offboard)
     if case.fenced:
         fleet.sessions["r_0"].fence = lambda here, waypoints: "way to (1, 2); expected none"
+    if case.confusing:
+        confuse(fleet.sessions["r_0"].craft.seen)
     report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_happening=heard.append)
     fleet.advance(fleet.time_s + 5.0)
     fleet.close()

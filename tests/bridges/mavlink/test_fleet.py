@@ -10,7 +10,7 @@ from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
-from muster.bridges.mavlink.simulated_drone import Faults
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Map, Robot, Task, Zone
 from muster.mission.plan import Plan, Route

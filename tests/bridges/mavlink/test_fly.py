@@ -13,7 +13,9 @@ import pytest
 
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.simulated import faults_of, serve
-from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot, origin_at
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_earth import origin_at
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster.mission.model import Origin

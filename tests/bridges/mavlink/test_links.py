@@ -13,9 +13,11 @@ import muster
 from muster._live import carry_out_live
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
+from muster.bridges.mavlink.dialect import Codec
 from muster.bridges.mavlink.endpoints import Endpoint, endpoint_of, line_to
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import NetworkError, ParameterError
 
@@ -120,8 +122,6 @@ def test_two_drones_that_call_one_port_are_each_answered_where_they_are():
 
 
 def messages(data):
-    from muster.bridges.mavlink.dialect import Codec
-
     return list(Codec().parse(data))
 
 
@@ -172,6 +172,31 @@ def test_a_drone_on_a_serial_line(kind):
     assert events[0].reason.startswith("link lost: no heartbeat")
     fleet.close()
     os.close(theirs)
+
+
+def test_a_serial_line_that_takes_nothing_keeps_the_newest_in_whole_packets():
+    ours, theirs = pty.openpty()
+    tty.setraw(ours)
+    tty.setraw(theirs)
+    line, codec, count = line_to(f"serial:{os.ttyname(theirs)}:115200"), Codec(), 5000
+    for k in range(count):
+        line.write(codec.pack(codec.make.mission_current_encode(k)), None)
+    assert sum(map(len, line._unsent)) <= 4096
+    os.set_blocking(ours, False)
+    data, last = b"", codec.pack(codec.make.mission_current_encode(count))
+    for _ in range(50):
+        with contextlib.suppress(BlockingIOError):
+            data += os.read(ours, 65535)
+        line.write(last, None)
+    line.close()
+    os.close(ours)
+    os.close(theirs)
+    heard = [message.seq for message in messages(data)]
+    assert sum(len(message.get_msgbuf()) for message in messages(data)) == len(data)  # nothing is cut
+    assert heard == sorted(heard)
+    assert heard[-1] == count
+    assert len(heard) < count / 2
+    assert set(range(count - 100, count)) <= set(heard)
 
 
 def test_a_serial_line_that_is_none_is_said_in_a_line():

@@ -169,6 +169,27 @@ def test_low_battery_on_the_ground_arms_nothing():
     assert talk.session.fault.kind is Kind.LOW_BATTERY
 
 
+def battery(number, percent):
+    return from_drone(M.MAVLink_battery_status_message(number, 0, 0, 0, [0] * 10, 0, 0, 0, percent))
+
+
+def test_the_first_battery_counts_alone():
+    talk = Talk()
+    talk.say(position(), battery(0, 90), battery(1, 10))
+    assert talk.session.telemetry().charge == 0.9
+    talk.flying((10.0, 0.0, 8.0))
+    talk.say(battery(0, 10))
+    talk.after(0.1)
+    assert talk.session.fault.kind is Kind.LOW_BATTERY
+
+
+def test_without_leave_what_is_not_harmless_is_refused_wherever_it_comes_from():
+    talk = Talk(arm=False)
+    with pytest.raises(ParameterError, match="r_0: MISSION_CLEAR_ALL; expected nothing of the kind without leave"):
+        talk.session._say(M.MAVLink_mission_clear_all_message(7, 1))
+    assert talk.taken() == []
+
+
 def test_without_leave_there_are_no_way_points():
     talk = Talk(arm=False)
     with pytest.raises(ParameterError, match="leave to arm"):

@@ -142,6 +142,20 @@ def test_a_fault_of_a_drone_that_stands_armed_ends_on_the_ground():
     assert commands(talk.after(0.1)) == [(HOLD, 1.0), (DISARM, 0.0)]  # and not: return
 
 
+def test_a_late_refusal_to_arm_is_a_fault_and_whom_a_second_request_arms_is_disarmed():
+    talk = Talk()
+    talk.arming((10.0, 0.0, 8.0))
+    assert commands(talk.after(1.6)) == [(DISARM, 1.0)]  # both are under way
+    talk.say(ack(DISARM, M.MAV_RESULT_DENIED))
+    assert talk.session.fault.kind is Kind.ARM_REFUSED
+    assert commands(talk.after(0.1)) == [(HOLD, 1.0), (DISARM, 0.0)]
+    talk.say(heartbeat(armed=True))
+    assert talk.session.busy
+    assert commands(talk.after(1.6)) == [(HOLD, 1.0), (DISARM, 0.0)]
+    talk.say(heartbeat(), heartbeat())
+    assert not talk.session.busy
+
+
 @pytest.mark.parametrize(("text", "breach"), [(b"Geofence breached", True), (b"Fence breach cleared", False)])
 def test_a_fence_that_is_breached_by_words(text, breach):
     talk = Talk()

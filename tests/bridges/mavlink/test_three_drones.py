@@ -10,7 +10,7 @@ from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import mavlink
-from muster.bridges.mavlink.simulated_drone import Faults
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Task
 
 HARMLESS = {"HEARTBEAT", "SET_MESSAGE_INTERVAL"}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.mission.errors import ParameterError
 
 
@@ -79,15 +79,10 @@ def autopilot_of(heartbeat: Message, who: str) -> Autopilot:
         if it is none that Muster flies, or no multicopter or helicopter; `who` is named.
     """
     if heartbeat.autopilot not in _KNOWN:
-        name = _name("MAV_AUTOPILOT", heartbeat.autopilot)
+        name = name_of("MAV_AUTOPILOT", heartbeat.autopilot)
         raise ParameterError(f"{who}: autopilot {name}; expected PX4 or ArduPilot")
     if heartbeat.type not in _COPTERS:
         raise ParameterError(
-            f"{who}: vehicle {_name('MAV_TYPE', heartbeat.type)}; expected a multicopter or helicopter"
+            f"{who}: vehicle {name_of('MAV_TYPE', heartbeat.type)}; expected a multicopter or helicopter"
         )
     return _KNOWN[heartbeat.autopilot]
-
-
-def _name(enum: str, value: int) -> str:
-    entry = mavlink.enums[enum].get(value)
-    return str(value) if entry is None else str(entry.name)

@@ -15,13 +15,19 @@ try:
 except ImportError:
     raise MissingExtraError("mavlink", "a drone that speaks MAVLink") from None
 
-__all__ = ["GROUND_STATION", "PLANNER", "Codec", "Message", "mavlink"]
+__all__ = ["GROUND_STATION", "PLANNER", "Codec", "Message", "mavlink", "name_of"]
 
 Message = Any
 """A message of pymavlink: `get_type()` is its name, its fields are attributes."""
 
 GROUND_STATION, PLANNER = 255, mavlink.MAV_COMP_ID_MISSIONPLANNER
 """The system and component that Muster is."""
+
+
+def name_of(enum: str, value: int) -> str:
+    """What a value of an enum is called; one that this dialect does not know, by its number."""
+    entry = mavlink.enums[enum].get(value)
+    return str(value) if entry is None else str(entry.name)
 
 
 class Codec:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import socket
 from collections.abc import Iterator
@@ -11,6 +12,8 @@ from typing import Any, Protocol
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 
 _BAUD = 57600
+_UNSENT_BYTES = 4096
+"""How much waits at the most for a serial line that takes nothing: what is older is of no use any more."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,7 @@ class SerialLine:
             self._port = serial.Serial(device, baud, timeout=0, write_timeout=0)
         except (OSError, ValueError) as error:
             raise NetworkError(f"serial:{device}: {error}; expected a serial device") from None
-        self._unsent = b""
+        self._unsent: list[bytes] = []  # packets; of the first a part may have left
 
     def read(self) -> Iterator[tuple[Peer, bytes]]:
         try:
@@ -96,11 +99,20 @@ class SerialLine:
             yield None, data
 
     def write(self, data: bytes, peer: Peer | None) -> None:
-        self._unsent += data
+        self._unsent.append(data)
+        while len(self._unsent) > 2 and sum(map(len, self._unsent)) > _UNSENT_BYTES:
+            del self._unsent[1]
         try:
-            self._unsent = self._unsent[self._port.write(self._unsent) :]
-        except OSError:  # the same
-            self._unsent = b""
+            while self._unsent:
+                sent = os.write(self._port.fileno(), self._unsent[0])  # `Serial.write` waits where there is no room
+                self._unsent[0] = self._unsent[0][sent:]
+                if self._unsent[0]:
+                    return
+                del self._unsent[0]
+        except BlockingIOError:
+            return
+        except OSError:  # unplugged
+            self._unsent = []
 
     def close(self) -> None:
         self._port.close()

@@ -9,7 +9,7 @@ from enum import Enum
 class Reaction(Enum):
     """What Muster tells a drone that fails."""
 
-    NOTHING = "nothing"  # it cannot hear, stands on the ground, or somebody else flies it
+    NOTHING = "nothing"  # it cannot hear, lies on the ground, or somebody else flies it
     HOLD = "hold"
     RETURN = "return"
 
@@ -19,13 +19,14 @@ class Kind(Enum):
 
     LINK_LOST = "link lost", Reaction.NOTHING
     ITEM_REJECTED = "item rejected", Reaction.HOLD
-    ARM_REFUSED = "arm refused", Reaction.NOTHING
+    ARM_REFUSED = "arm refused", Reaction.HOLD
     COMMAND_REFUSED = "command refused", Reaction.HOLD
     NO_ANSWER = "no answer", Reaction.HOLD
     LOW_BATTERY = "low battery", Reaction.RETURN
     FENCE_BREACHED = "fence breached", Reaction.HOLD
     OUTSIDE_FENCE = "outside the fence", Reaction.HOLD
     TAKEN_OVER = "taken over", Reaction.NOTHING
+    NOT_UNDERSTOOD = "not understood", Reaction.HOLD
     DISARMED = "disarmed in flight", Reaction.NOTHING
 
     def __init__(self, words: str, reaction: Reaction) -> None:

@@ -1,13 +1,18 @@
-"""Drones behind MAVLink as a fleet: a session each, and the links by which they are reached."""
+"""Drones behind MAVLink as a fleet: a session each, and the links by which they are reached.
+
+A thread hears and speaks from `connect` to `close`, because drones must hear way points, and heartbeats, while the
+executor plans: PX4 leaves its offboard mode below 2 Hz. What it shares with the executor's is behind one lock.
+"""
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
 from muster.bridges.fleet import Failure
 from muster.bridges.mavlink.craft import Craft
-from muster.bridges.mavlink.faults import Fault
+from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.links import Link, links_of
@@ -39,7 +44,8 @@ class MavlinkFleet:
     height_m
         how high above home they fly; for a mission in the plane, and for it alone.
     clock, wait
-        time, and how it is waited for, in seconds.
+        time, and how it is waited for, in seconds; by default the system's. With another clock there is no thread:
+        nothing is heard or said but in calls of the fleet.
 
     Raises
     ------
@@ -63,6 +69,9 @@ class MavlinkFleet:
         _check(mission, endpoints, self._settings, height_m)
         self._clock, self._wait = SystemClock() if clock is None else clock, wait
         self._begun_s = self._clock.now()
+        self._speaker = threading.Thread(target=self._speak_on, daemon=True) if clock is None else None
+        self._lock, self._closed = threading.RLock(), threading.Event()
+        self._failure: Exception | None = None  # of the thread that speaks
         fences = fences_of(mission)
         self.sessions: dict[str, Session] = {}
         for robot in mission.robots:
@@ -70,7 +79,9 @@ class MavlinkFleet:
             self.sessions[robot.id] = Session(craft, fences.get(robot.id, no_fence))
         self._link_of: dict[str, Link] = links_of(endpoints)
         self._links = list({id(link): link for link in self._link_of.values()}.values())
-        self._ports = {robot: Port(session, lambda: self.time_s) for robot, session in self.sessions.items()}
+        self._ports = {
+            robot: Port(session, lambda: self.time_s, self._lock) for robot, session in self.sessions.items()
+        }
         self._told: set[str] = set()
 
     @property
@@ -99,7 +110,7 @@ class MavlinkFleet:
         """
         until = self.time_s + within_s
         while self.time_s < until and not all(session.craft.located for session in self.sessions.values()):
-            self._step()
+            self._go_on()
         for name, session in self.sessions.items():
             self._require_one(name, within_s)
             if not session.craft.located:
@@ -107,34 +118,41 @@ class MavlinkFleet:
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
             self._require_near(session.craft)
+        if self._speaker is not None:
+            self._speaker.start()
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """Hear and speak; a drone that cannot go on is told once (`robot_fails`)."""
+        """Hear and speak; a drone that cannot go on is told once (`robot_fails`). Raises what has ended the thread."""
         while True:
-            self._step()
+            self._go_on()
+            if self._failure is not None:
+                raise self._failure
             events = [self._event(fault) for fault in self.faults if fault.robot not in self._told]
             if events or self.time_s >= until_s:
                 return events
 
     def stop(self) -> None:
         """Let every drone that flies hover, and speak until they say that they do; on the ground none is left armed."""
-        for session in self.sessions.values():
-            session.hold(self.time_s)
+        self._tell_all(Session.hold)
         self._speak_last_words()
+        with self._lock:
+            for session in self.sessions.values():
+                session.admit()
 
     def go_back(self) -> None:
         """Let every drone that flies return to where it was armed, and land there."""
-        for session in self.sessions.values():
-            session.go_back(self.time_s)
+        self._tell_all(Session.go_back)
         self._speak_last_words()
 
     def land(self) -> None:
         """Let every drone that flies land where it is."""
-        for session in self.sessions.values():
-            session.land(self.time_s)
+        self._tell_all(Session.land)
         self._speak_last_words()
 
     def close(self) -> None:
+        self._closed.set()
+        if self._speaker is not None and self._speaker.is_alive():
+            self._speaker.join()
         for link in self._links:
             link.close()
 
@@ -143,21 +161,50 @@ class MavlinkFleet:
         reason = f"{fault.kind.words}: {fault.detail}"
         return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=reason)
 
+    def _tell_all(self, what: Callable[[Session, float], object]) -> None:
+        with self._lock:
+            for session in self.sessions.values():
+                self._do(session, what)
+
+    def _do(self, session: Session, what: Callable[..., object], *more: object) -> None:
+        """Do something with one drone, whatever it has said: an error ends its part, and not that of the others."""
+        try:
+            what(session, *more, self.time_s)
+        except ParameterError:  # none that Muster flies
+            raise
+        except Exception as error:
+            session.fail(Kind.NOT_UNDERSTOOD, f"{type(error).__name__}: {error}", self.time_s)
+
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
         while self.time_s < least or (self.time_s < most and any(session.busy for session in self.sessions.values())):
+            self._go_on()
+
+    def _speak_on(self) -> None:
+        """The thread that speaks; whatever goes wrong `advance` raises."""
+        try:
+            while not self._closed.is_set():
+                self._step()
+                self._wait(_STEP_S)
+        except Exception as error:
+            self._failure = error
+
+    def _go_on(self) -> None:
+        """Let a step pass: the thread's, or one of our own while there is none, or none any more."""
+        if self._speaker is None or not self._speaker.is_alive():
             self._step()
+        self._wait(_STEP_S)
 
     def _step(self) -> None:
-        """Hear all links, let sessions think, speak, wait."""
-        for link in self._links:
-            for name, message in link.hear():
-                self.sessions[name].hear(message, self.time_s)
-        for name, session in self.sessions.items():
-            session.tick(self.time_s)
-            for message in session.take():
-                self._link_of[name].say(name, message)
-        self._wait(_STEP_S)
+        """Hear all links, let sessions think, speak."""
+        with self._lock:
+            for link in self._links:
+                for name, message in link.hear():
+                    self._do(self.sessions[name], Session.hear, message)
+            for name, session in self.sessions.items():
+                self._do(session, Session.tick)
+                for message in session.take():
+                    self._link_of[name].say(name, message)
 
     def _require_one(self, name: str, within_s: float) -> None:
         link = self._link_of[name]
@@ -179,23 +226,26 @@ class MavlinkFleet:
 
 
 class Port:
-    """One drone."""
+    """One drone, behind the fleet's lock."""
 
-    def __init__(self, session: Session, now: Callable[[], float]) -> None:
-        self._session, self._now = session, now
+    def __init__(self, session: Session, now: Callable[[], float], lock: threading.RLock) -> None:
+        self._session, self._now, self._lock = session, now, lock
 
     @property
     def robot(self) -> str:
         return self._session.craft.robot.id
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
-        return self._session.follow(waypoints, self._now())
+        with self._lock:
+            return self._session.follow(waypoints, self._now())
 
     def cancel(self) -> int:
-        return self._session.hold(self._now())
+        with self._lock:
+            return self._session.hold(self._now())
 
     def telemetry(self) -> Telemetry | None:
-        return self._session.telemetry()
+        with self._lock:
+            return self._session.telemetry()
 
 
 def _seen_of(mission: Mission, robot: Robot) -> Seen:

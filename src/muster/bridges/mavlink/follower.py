@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.frames import LocalFrame
-from muster.motion.frames import yaw_enu_to_ned
+from muster.motion.frames import wrapped, yaw_enu_to_ned
 from muster.motion.port import Place, Waypoint
 
 _IGNORE = mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
@@ -20,6 +20,8 @@ PLACE_AND_YAW = _IGNORE
 PLACE_ALONE = _IGNORE | mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
 """Type mask, 3576: the place alone."""
 
+_TURNED_RAD = math.radians(10.0)
+"""How near to its heading counts as turned."""
 EVERY_S = 0.2
 """Seconds from one to the next: PX4 leaves its offboard mode below 2 Hz."""
 
@@ -33,7 +35,7 @@ class Follower:
     waypoints
         in order.
     accept_m
-        how near counts as there.
+        how near counts as there; where there is a heading it must be turned too.
     """
 
     waypoints: Sequence[Waypoint]
@@ -46,15 +48,20 @@ class Follower:
         """The way point to which it goes, or at which it stays."""
         return self.waypoints[min(self.passed, len(self.waypoints) - 1)]
 
-    def look(self, place: Place, now: float) -> None:
+    def look(self, place: Place, heading: float, now: float) -> None:
         """See how far it is."""
         while self.passed < len(self.waypoints):
-            if math.dist(place, self.aim.position) > self.accept_m and self._there_s is None:
+            if self._there_s is None and not self._is_there(place, heading):
                 return
             self._there_s = now if self._there_s is None else self._there_s
             if now < self._there_s + self.aim.hold_s:
                 return
             self.passed, self._there_s = self.passed + 1, None
+
+    def _is_there(self, place: Place, heading: float) -> bool:
+        aim = self.aim
+        turned = aim.heading is None or abs(float(wrapped(aim.heading - heading))) <= _TURNED_RAD
+        return turned and math.dist(place, aim.position) <= self.accept_m
 
     def message(self, target: Message, local: LocalFrame, now: float) -> Message:
         """Where it is to be now."""

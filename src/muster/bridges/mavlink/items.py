@@ -62,6 +62,9 @@ def route_of(
 ) -> Route:
     """The items of an order.
 
+    ArduPilot holds for whole seconds, and leaves param4 of a way point unread: a CONDITION_YAW before it turns the
+    drone on its way there. After it would be too late: what follows a way point begins when that is left (AP_Mission).
+
     Parameters
     ----------
     here
@@ -82,7 +85,13 @@ def route_of(
     passed_with = {}
     for count, waypoint in enumerate(waypoints, 1):
         yaw = math.nan if waypoint.heading is None else math.degrees(float(yaw_enu_to_ned(waypoint.heading)))
+        hold_s = waypoint.hold_s
+        if autopilot.home_first:
+            if waypoint.heading is not None:
+                turn = (yaw % 360.0, 0.0, 0.0, 0.0)
+                items.append(Item(mavlink.MAV_CMD_CONDITION_YAW, turn, frame=mavlink.MAV_FRAME_MISSION))
+            hold_s, yaw = math.ceil(hold_s), math.nan
         passed_with[len(items)] = count
-        params = (waypoint.hold_s, accept_m, 0.0, yaw)
+        params = (hold_s, accept_m, 0.0, yaw)
         items.append(Item(mavlink.MAV_CMD_NAV_WAYPOINT, params, *frame.to_drone(waypoint.position)))
     return Route(tuple(items), first, passed_with)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.conversation import Ask, Script, pause
-from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.bridges.mavlink.faults import FaultError, Kind
 from muster.bridges.mavlink.items import Item, Route
 
@@ -59,7 +59,7 @@ def obeyed(
         answered = message.get_type() == "COMMAND_ACK" and message.command == number
         return message if answered and message.result not in _NO_REFUSAL else None
 
-    name = mavlink.enums["MAV_CMD"][number].name
+    name = name_of("MAV_CMD", number)
     for _ in range(_AGAIN):
         said = yield Ask([*with_it, command(target, number, *params)], answer, name)
         if said.get_type() != "COMMAND_ACK":
@@ -67,7 +67,7 @@ def obeyed(
         if said.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
             break
         yield pause(1.0)
-    raise FaultError(kind, f"{name}: {mavlink.enums['MAV_RESULT'][said.result].name}")
+    raise FaultError(kind, f"{name}: {name_of('MAV_RESULT', said.result)}")
 
 
 def mode(target: Message, autopilot: Autopilot, wanted: int, *, sightings: int = 1) -> Script:
@@ -143,7 +143,7 @@ def upload(target: Message, route: Route) -> Script:
         last_sent = last_sent or seq == count - 1
         said = yield Ask([_message(to, seq, route.items[seq])], answer, f"MISSION_ITEM_INT {seq}")
     if said.type != mavlink.MAV_MISSION_ACCEPTED:
-        raise FaultError(Kind.ITEM_REJECTED, f"item {seq}: {mavlink.enums['MAV_MISSION_RESULT'][said.type].name}")
+        raise FaultError(Kind.ITEM_REJECTED, f"item {seq}: {name_of('MAV_MISSION_RESULT', said.type)}")
 
 
 def _message(to: tuple[int, int], seq: int, item: Item) -> Message:
@@ -167,5 +167,4 @@ def climb(target: Message, above_home_m: float) -> Script:
     climbing = command(target, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, above_home_m)
     said = yield Ask([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
     if said.get_type() == "COMMAND_ACK":
-        result = mavlink.enums["MAV_RESULT"][said.result].name
-        raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {result}")
+        raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {name_of('MAV_RESULT', said.result)}")

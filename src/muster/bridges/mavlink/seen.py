@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
 from muster.motion.port import Place
@@ -75,23 +75,28 @@ class Seen:
             self.local = LocalFrame.seen(place, self._ned)
 
     def _hear_local_position_ned(self, message: Message, now: float) -> None:
-        self._ned = (message.x, message.y, message.z)
+        ned, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
+        if not all(map(math.isfinite, (*ned, *velocity))):  # it does not know where it is
+            return
+        self._ned = ned
         if self.earth is None:
             self.local = self.local or LocalFrame(self.start)
-            self._is_at(self.local.to_map(self._ned), (message.vx, message.vy, message.vz), now)
+            self._is_at(self.local.to_map(ned), velocity, now)
 
     def _hear_attitude(self, message: Message, now: float) -> None:
-        self.heading = float(yaw_enu_to_ned(message.yaw))
+        if math.isfinite(message.yaw):
+            self.heading = float(yaw_enu_to_ned(message.yaw))
 
     def _hear_sys_status(self, message: Message, now: float) -> None:
         self._has_left(message.battery_remaining)
 
     def _hear_battery_status(self, message: Message, now: float) -> None:
-        self._has_left(message.battery_remaining)
+        if message.id == 0:  # others feed cameras, or motors of their own
+            self._has_left(message.battery_remaining)
 
     def _hear_fence_status(self, message: Message, now: float) -> None:
         if message.breach_status:
-            self.breach = mavlink.enums["FENCE_BREACH"][message.breach_type].name
+            self.breach = name_of("FENCE_BREACH", message.breach_type)
 
     def _hear_statustext(self, message: Message, now: float) -> None:
         self.text = "".join(letter for letter in message.text if letter.isprintable())

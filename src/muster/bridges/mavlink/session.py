@@ -6,6 +6,7 @@ Without `settings.arm` a session says nothing but heartbeats and requests for te
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from muster.bridges.mavlink import orders, scripts
 from muster.bridges.mavlink.autopilots import autopilot_of
@@ -24,6 +25,8 @@ Fence = Callable[[Place, Sequence[Waypoint]], str]
 _TELEMETRY = (30, 32, 33, 147, 1, 42, 162)  # ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence
 _TELEMETRY_US = 100_000
 _ASK_AGAIN_S = 5.0
+_LET_GO = Kind.TAKEN_OVER, Kind.DISARMED
+"""Faults after which Muster says nothing more, whatever is heard."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
 
 
@@ -41,6 +44,7 @@ class Session:
     def __init__(self, craft: Craft, fence: Fence) -> None:
         self.craft, self.fence = craft, fence
         self.fault: Fault | None = None
+        self.adrift = False  # whether its link was lost, and it was not told to hold since
         self._order = 0
         self._outbox: list[Message] = []
         self._talk: Conversation | None = None
@@ -93,7 +97,15 @@ class Session:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
         self._take_order()
         self._end_in(lambda: self.craft.kind.hold, now)
+        if self.fault is not None and self._talk is None and self._hears(now):
+            self._try(lambda: self._call_back(now), now)
         return self._order
+
+    def admit(self) -> None:
+        """Let its fault say so if it was not told to hover: it may fly on."""
+        if self.fault is not None and self.adrift and self._is_left_to_us:
+            self.fault = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
+            self.adrift = False
 
     def go_back(self, now: float) -> None:
         """Let it return to where it was armed, and land there, as its autopilot does it."""
@@ -134,8 +146,10 @@ class Session:
     def fail(self, kind: Kind, detail: str, now: float) -> None:
         """Take no part any more, for good, and react as the kind of fault says."""
         if self.fault is not None:
+            self.adrift = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
             return
         self.fault = Fault(now, self.craft.robot.id, kind, detail)
+        self.adrift = kind is Kind.LINK_LOST
         self.craft.forget_order()
         self._talk = self.craft.mode = None
         reactions = {Reaction.HOLD: self.craft.kind.hold, Reaction.RETURN: self.craft.kind.back}
@@ -173,6 +187,21 @@ class Session:
         elif self.craft.ours:
             self._begin(orders.into(self.craft, mode), now)
 
+    @property
+    def _is_left_to_us(self) -> bool:
+        """Whether nobody flies it but Muster: no pilot, and no failsafe of its autopilot."""
+        craft = self.craft
+        return craft.ours or (craft.stands and (not craft.seen.armed or craft.seen.mode in craft.kind.own_modes))
+
+    def _hears(self, now: float) -> bool:
+        return now - self.craft.seen.heartbeat_s <= self.craft.settings.link_lost_s
+
+    def _call_back(self, now: float) -> None:
+        """Let one that has failed hold, or stand down: it may still fly what others fly now."""
+        self.adrift = False
+        if self.fault is not None and self.fault.kind not in _LET_GO and self._is_left_to_us:
+            self._end_flight(self.craft.kind.hold, now)
+
     def _begin(self, script: Script, now: float) -> None:
         self._watch.astray = 0
         self._talk = Conversation(script, self._say, now)
@@ -186,6 +215,8 @@ class Session:
             self._talk = None if self._talk.done else self._talk
         elif beats and self.fault is None:
             self._watch.look_at_heartbeat()
+        elif beats and self.adrift:
+            self._call_back(now)
         self._see_progress(message)
 
     def _see_progress(self, message: Message) -> None:
@@ -213,7 +244,7 @@ class Session:
         craft, seen = self.craft, self.craft.seen
         if craft.follower is None or seen.place is None:
             return
-        craft.follower.look(seen.place, now)
+        craft.follower.look(seen.place, seen.heading, now)
         craft.passed = craft.follower.passed
         if now >= self._streamed_s + EVERY_S and seen.local is not None:
             self._streamed_s = now
@@ -238,5 +269,7 @@ class Session:
     def _say(self, message: Message) -> None:
         """The one way out."""
         harmless = message.get_type() == "HEARTBEAT" or getattr(message, "command", None) in _REQUESTS
-        assert harmless or self.craft.settings.arm, f"{message.get_type()} without leave to arm"
+        if not harmless and not self.craft.settings.arm:
+            name = f"{self.craft.robot.id}: {message.get_type()}"
+            raise ParameterError(f"{name}; expected nothing of the kind without leave to arm")
         self._outbox.append(message)

@@ -12,7 +12,8 @@ from collections.abc import Callable
 from dataclasses import fields
 
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
-from muster.bridges.mavlink.simulated_drone import Faults, SimulatedAutopilot
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.errors import ParameterError
 from muster.mission.model import Origin
 

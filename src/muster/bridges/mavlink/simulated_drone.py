@@ -6,6 +6,7 @@ point. It is no proof that a real one behaves so: docs/mavlink.md says what was 
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -13,47 +14,12 @@ from dataclasses import dataclass, field
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4, Autopilot
 from muster.bridges.mavlink.dialect import Codec, Message, mavlink
 from muster.bridges.mavlink.flight import Flight
-from muster.bridges.mavlink.frames import DEGREES_E7, GlobalFrame
+from muster.bridges.mavlink.simulated_earth import degrees_of, ned_of
+from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Origin
-from muster.motion.frames import enu_to_ned
 from muster.motion.port import Place
 
-_GROUND_M = 0.1
 _OFFBOARD_LOST_S = 1.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Faults:
-    """What goes wrong.
-
-    Parameters
-    ----------
-    loss
-        share of packets that are lost, both ways.
-    refuse_arm, refuse_start, mute
-        whether it does not arm; does not start a mission, nor follow way points; answers nothing that it is told.
-    slow_arm_s
-        seconds from when it is told to arm until it is armed.
-    reject_item, repeat_reached
-        which item of a mission it rejects; whether it says three times that one is reached.
-    low_battery_at_s, silent_at_s, breach_at_s, breach_text_at_s, pilot_at_s, disarm_at_s
-        when, in seconds after it was armed, its battery falls to 10 %, it is heard no more, it leaves its fence (and
-        says so by FENCE_STATUS, or by STATUSTEXT alone), a pilot takes it over, its motors stop.
-    """
-
-    loss: float = 0.0
-    refuse_arm: bool = False
-    refuse_start: bool = False
-    mute: bool = False
-    slow_arm_s: float = 0.0
-    reject_item: int | None = None
-    repeat_reached: bool = False
-    low_battery_at_s: float | None = None
-    silent_at_s: float | None = None
-    breach_at_s: float | None = None
-    breach_text_at_s: float | None = None
-    pilot_at_s: float | None = None
-    disarm_at_s: float | None = None
 
 
 @dataclass
@@ -89,11 +55,10 @@ class SimulatedAutopilot:
 
     def __post_init__(self) -> None:
         self._codec, self._random = Codec(self.system, 1), random.Random(self.seed)
-        self._earth = GlobalFrame(self.origin, (0.0, 0.0, 0.0))
         self._out: list[Message] = []
         self._arriving: list[Message | None] = []  # a mission that is uploaded
-        self._aim: Place | None = None
         self._setpoint: Place | None = None
+        self._yaw: float | None = None  # that it was told, from north, clockwise; None: it looks where it flies
         self._setpoint_s = self._armed_s = self._held_s = -1e9
         self._now = self._said_s = self._telemetry_s = -1e9
         self._arms_s: float | None = None  # when it will be armed
@@ -153,8 +118,8 @@ class SimulatedAutopilot:
 
     def _say_where(self, ms: int) -> None:
         flight = self.flight
-        east, north, up = enu_to_ned(flight.place).tolist()
-        lat, lon, _ = self._earth.to_drone((east, north, up))
+        lat, lon = (round(degrees * 1e7) for degrees in degrees_of(self.origin, flight.place))
+        up = -flight.place[2]
         velocity = [round(v * 100) for v in flight.velocity]
         self._say("global_position_int", ms, lat, lon, round((50 + up) * 1000), round(up * 1000), *velocity, 65535)
         self._say("local_position_ned", ms, *flight.place, *flight.velocity)
@@ -171,7 +136,7 @@ class SimulatedAutopilot:
         elif self.mode == self.kind.guided and self._setpoint is not None:
             if self.kind.streams and self._now > self._setpoint_s + _OFFBOARD_LOST_S:
                 self.mode = self.kind.hold
-            self.flight.go(self._setpoint, by_s)
+            self.flight.go(self._setpoint, by_s, self._yaw)
         elif self.mode in (self.kind.back, self.kind.land):
             home = self.mode == self.kind.land or self.flight.go((0.0, 0.0, self.flight.place[2]), by_s)
             if home and self.flight.go((*self.flight.place[:2], 0.0), by_s):
@@ -180,25 +145,31 @@ class SimulatedAutopilot:
             self.flight.velocity = (0.0, 0.0, 0.0)
 
     def _fly_item(self, by_s: float) -> None:
-        item = self.items[self.current]
+        """ArduPilot turns as a condition before a way point says, waits for no turn, and holds for whole seconds."""
+        item, whole = self.items[self.current], self.kind.home_first
         if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
             self.flight.speed_mps = item.param2
             self._next_item()
             return
-        up = self.kind.home_first and self.current == 0
-        if up or self.flight.go(self._place_of(item), by_s):
+        if item.command == mavlink.MAV_CMD_CONDITION_YAW:
+            self._next_item()
+            self._yaw = math.radians(item.param1)
+            return
+        yaw = self._yaw if whole else None if math.isnan(item.param4) else math.radians(item.param4)
+        up = whole and self.current == 0
+        if up or (self.flight.go(self._place_of(item), by_s, yaw) and (whole or self.flight.is_turned(yaw))):
             self._held_s = self._now if self._held_s < -1e8 else self._held_s
-            if up or item.command == mavlink.MAV_CMD_NAV_TAKEOFF or self._now >= self._held_s + item.param1:
+            hold_s = int(item.param1) if whole else item.param1
+            if up or item.command == mavlink.MAV_CMD_NAV_TAKEOFF or self._now >= self._held_s + hold_s:
                 for _ in range(3 if self.faults.repeat_reached else 1):
                     self._say("mission_item_reached", self.current)
                 self._next_item()
 
     def _place_of(self, item: Message) -> Place:
-        ned = enu_to_ned(self._earth.to_map(item.x, item.y, item.z)).tolist()
-        return ned[0], ned[1], -item.z
+        return ned_of(self.origin, item.x / 1e7, item.y / 1e7, item.z)
 
     def _next_item(self) -> None:
-        self._held_s = -1e9
+        self._held_s, self._yaw = -1e9, None
         if self.current + 1 < len(self.items):
             self.current += 1
         else:
@@ -257,7 +228,7 @@ class SimulatedAutopilot:
     def _take_off(self, message: Message) -> int:
         if not self.armed or self.mode != self.kind.guided or self.faults.refuse_start:
             return int(mavlink.MAV_RESULT_DENIED)
-        self._setpoint = (*self.flight.place[:2], -message.param7)
+        self._setpoint, self._yaw = (*self.flight.place[:2], -message.param7), None
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _on_mission_count(self, message: Message) -> None:
@@ -290,10 +261,7 @@ class SimulatedAutopilot:
             self.current, self.complete, self._held_s = message.seq, False, -1e9
 
     def _on_set_position_target_local_ned(self, message: Message) -> None:
-        self._setpoint, self._setpoint_s = (message.x, message.y, message.z), self._now
-
-
-def origin_at(origin: Origin, place: Place) -> Origin:
-    """Where on Earth a place of a map is, for a drone that is switched on there."""
-    lat, lon, above = GlobalFrame(origin, (0.0, 0.0, 0.0)).to_drone(place)
-    return Origin(lat_deg=lat / DEGREES_E7, lon_deg=lon / DEGREES_E7, alt_m=origin.alt_m + above)
+        """Of its type mask bits 0 to 2 say that the place does not count, bit 10 that the yaw does not."""
+        if message.coordinate_frame == mavlink.MAV_FRAME_LOCAL_NED and not message.type_mask & 0b111:
+            self._setpoint, self._setpoint_s = (message.x, message.y, message.z), self._now
+            self._yaw = None if message.type_mask & 1 << 10 else message.yaw
