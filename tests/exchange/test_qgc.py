@@ -102,7 +102,7 @@ def test_a_heading_is_a_compass_heading(tmp_path):
     scene = bay(tmp_path)
     observed = items(files_of(*scene)["d1"])[-2]
     assert observed["params"][3] == 60  # 30 degrees from east, anticlockwise
-    *_, point, yaw, _ = items(files_of(*scene, "ardupilot")["d1"])
+    *_, yaw, point, _ = items(files_of(*scene, "ardupilot")["d1"])
     assert (point["params"][3], yaw["command"], yaw["params"][0]) == (None, 115, 60)
 
 

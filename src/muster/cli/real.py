@@ -16,6 +16,7 @@ from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.keeping import drawing_options, kept_record, record_option
 from muster.cli.live import foxglove_option, require_free_port, shown_live, tell
 from muster.cli.options import (
+    Finite,
     Verb,
     format_option,
     quiet_option,
@@ -79,11 +80,37 @@ def real_options(verb: Verb) -> Verb:
     return verb
 
 
-def namespace_of(_: click.Context, __: click.Parameter, value: str) -> str:
+def _namespace(_: click.Context, __: click.Parameter, value: str) -> str:
     """Checks a namespace of ROS: names with slashes between them."""
     if value.strip("/") and not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*", value.strip("/")):
         raise click.BadParameter(f"{value!r}; expected names such as team or lab/team: letters, digits, _")
     return value
+
+
+def ros_options(verb: Verb) -> Verb:
+    """Where robots on ROS are looked for: --namespace, --wait, --known-only."""
+    options = (
+        click.option(
+            "--namespace",
+            callback=_namespace,
+            default="",
+            metavar="NAME",
+            help="In which the robots' own are.  [default: the root]",
+        ),
+        click.option(
+            "--wait",
+            "wait_s",
+            type=Finite(0.0, 1e6),
+            default=10.0,
+            show_default=True,
+            metavar="S",
+            help="For the mission's robots.",
+        ),
+        click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join."),
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
 
 
 def require_outputs(wishes: Wishes, inputs: tuple[str | Path | None, ...]) -> None:

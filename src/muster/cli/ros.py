@@ -17,11 +17,11 @@ from muster.cli.real import (
     Wishes,
     carried_out,
     from_here,
-    namespace_of,
     read_wanted,
     real_options,
     reported,
     require_outputs,
+    ros_options,
     wait_for_robots,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
@@ -48,30 +48,14 @@ _LEFT = "the robots were told to stand"
     show_default=True,
     help="What robots take: velocities, or goals on WP.",
 )
-@click.option(
-    "--namespace",
-    callback=namespace_of,
-    default="",
-    metavar="NAME",
-    help="In which the robots' own are.  [default: the root]",
-)
 @click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
-@click.option(
-    "--wait",
-    "wait_s",
-    type=Finite(0.0, 1e6),
-    default=10.0,
-    show_default=True,
-    metavar="S",
-    help="For the mission's robots.",
-)
 @click.option(
     "--arrival", type=Finite(0.001, 100.0), default=0.1, show_default=True, metavar="M", help="From a way point."
 )
 @click.option("--rate", type=Finite(1.0, 200.0), default=20.0, show_default=True, metavar="HZ", help="Of velocities.")
-@click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
+@ros_options
 @real_options
 def command(
     mission: str | None,

@@ -14,12 +14,12 @@ from muster.cli.real import (
     Wishes,
     carried_out,
     from_here,
-    namespace_of,
     planned,
     read_wanted,
     real_options,
     reported,
     require_outputs,
+    ros_options,
     wait_for_robots,
 )
 from muster.mission.interrupts import TO_END
@@ -31,13 +31,6 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 @mission_argument
 @click.option("--domain", type=int, metavar="N", help="Of ROS 2, 0 to 232.  [default: ROS_DOMAIN_ID, or 0]")
 @click.option(
-    "--namespace",
-    callback=namespace_of,
-    default="",
-    metavar="NAME",
-    help="In which the robots' own are.  [default: the root]",
-)
-@click.option(
     "--give",
     type=click.Choice(["goals", "nav2"]),
     default="goals",
@@ -48,18 +41,9 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
     "--by", type=click.Choice(["dds", "rclpy"]), help="The wire.  [default: rclpy where it can be imported, or dds]"
 )
 @click.option(
-    "--wait",
-    "wait_s",
-    type=Finite(0.0, 1e6),
-    default=10.0,
-    show_default=True,
-    metavar="S",
-    help="For the mission's robots.",
-)
-@click.option(
     "--arrival", type=Finite(0.001, 100.0), default=0.25, show_default=True, metavar="M", help="From a way point."
 )
-@click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join.")
+@ros_options
 @real_options
 def command(
     mission: str,

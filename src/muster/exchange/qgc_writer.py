@@ -75,9 +75,9 @@ class PlanFiles:
     def _way_point(self, passage: Passage, spot: Spot, home: Spot) -> Iterator[Item]:
         yaw = None if passage.heading is None else _compass_deg(passage.heading)
         own = yaw if self.firmware == "px4" else None
-        yield _item(qgc.NAV_WAYPOINT, [round(passage.stays_s, 3), 0, 0, own], spot, _above(spot, home))
-        if yaw is not None and own is None:
+        if yaw is not None and own is None:  # what stands after a way point is done when that is left
             yield _command(qgc.CONDITION_YAW, [yaw, 0, 0, 0])
+        yield _item(qgc.NAV_WAYPOINT, [round(passage.stays_s, 3), 0, 0, own], spot, _above(spot, home))
 
     def _ending(self, itinerary: Itinerary, last: Spot, home: Spot) -> Iterator[Item]:
         robot = itinerary.robot
