@@ -9,7 +9,7 @@ assert muster.verify(mission, plan).valid
 
 from typing import TYPE_CHECKING, Any
 
-from muster._api import load, plot, simulate, solve, verify
+from muster._api import carry_out, load, plot, simulate, solve, verify
 from muster.mission.errors import (
     Finding,
     InputError,
@@ -45,6 +45,7 @@ __all__ = [
     "Rules",
     "Simulation",
     "Task",
+    "carry_out",
     "load",
     "plot",
     "read_plan",

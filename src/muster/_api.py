@@ -1,9 +1,10 @@
-"""Muster from Python: load, solve, verify, plot. Heavy parts are imported where they are used."""
+"""Muster from Python: load, solve, verify, simulate, carry out, plot. Heavy parts are imported where they are used."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from contextlib import ExitStack
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,9 +17,12 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
+    import threading
+
     from muster._negotiated.simulation import Negotiation
     from muster.allocation.stop import Progress
-    from muster.execution import Report
+    from muster.bridges.fleet import Fleet
+    from muster.execution import Happening, Recorder, Report
     from muster.report.film import Footage
     from muster.verification import Verdict
 
@@ -34,12 +38,12 @@ def load(
     salesmen: int | None = None,
     depot: str = "1",
 ) -> Mission:
-    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, or the name of a shipped mission.
+    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, QGroundControl plans, or a shipped name.
 
     Parameters
     ----------
     path_or_name
-        a file, or one of `muster missions`; a file of that name comes first.
+        a file, a folder of QGroundControl `.plan` files, or one of `muster missions`; a file of that name comes first.
     robots, suitability
         the CSV files that go with a task-list CSV.
     salesmen, depot
@@ -63,6 +67,10 @@ def load(
         from muster.mission.tsplib import read_tsplib
 
         return read_tsplib(path, salesmen or 0, depot)
+    if suffix == ".plan" or path.is_dir():
+        from muster.exchange.qgc_reader import read_plan_files
+
+        return read_plan_files(path)
     from muster.mission.yaml_reader import read_yaml
 
     return read_yaml(path)
@@ -71,7 +79,7 @@ def load(
 def _found(path_or_name: str | Path) -> Path:
     path = Path(path_or_name)
     shipped = mission_path(str(path_or_name))
-    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp")
+    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp", ".plan")
     if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
         return path
     if shipped is None:
@@ -177,6 +185,7 @@ def simulate(
     seed: int = 0,
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
+    observers: Sequence[Recorder] = (),
     **how: Any,
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
@@ -193,6 +202,8 @@ def simulate(
     film
         a file (.mp4, .gif) for a film of it, in the physics world; or a `Footage` of the mission, of which films and
         stills can be made afterwards.
+    observers
+        who else is told, such as `muster.report.live.FoxgloveServer`.
     how
         as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
 
@@ -207,26 +218,91 @@ def simulate(
     """
     _require_mission(mission)
     carry_out = _carrying_out(mission, plan)
-    with ExitStack() as stack:
-        recorders: list[Any] = []
-        if record is not None:
-            from muster.report.record import RecordWriter
-
-            recorders.append(stack.enter_context(RecordWriter(record, mission)))
-        if film is not None:
-            footage = _footage(mission, film)
-            recorders.append(footage)
-            how["on_world"] = footage.on_world
-        if recorders:
-            from muster.report.recorders import Recorders
-
-            how["recorder"] = Recorders(*recorders)
-        report = carry_out(seed=seed, **how)
+    if film is not None:
+        footage = _footage(mission, film)
+        observers = (*observers, footage)
+        how["on_world"] = footage.on_world
+    with _recorded(mission, record, observers) as recorder:
+        report = carry_out(seed=seed, recorder=recorder, **how)
     if isinstance(film, str | Path):
         from muster.report.film import write_film
 
         write_film(film, footage)
     return report
+
+
+def carry_out(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    *,
+    seed: int = 0,
+    record: str | Path | None = None,
+    observers: Sequence[Recorder] = (),
+    on_happening: Callable[[Happening], None] | None = None,
+    halt: threading.Event | None = None,
+) -> Report:
+    """Carry a plan out with real robots, in real time, to its end; what is left is planned again when robots fail.
+
+    Parameters
+    ----------
+    fleet
+        the robots, behind a bridge of `muster.bridges`; stays open.
+    seed
+        of planning anew.
+    record
+        a file (.mcap) that is to hold what happened; needs the extra `record`.
+    observers
+        who else is told, such as `muster.report.live.FoxgloveServer`.
+    on_happening
+        is told what happens, as it happens.
+    halt
+        where it is set, by another thread or by `on_happening`, robots stop where they are, and it ends.
+
+    Returns
+    -------
+    its remarks say so if a record broke off, as on a full disk: robots are not left alone for that.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+    from muster._live import carry_out_live
+
+    _require_mission(mission)
+    remarks: list[str] = []
+    with _recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
+        report = carry_out_live(
+            mission, plan, fleet, seed=seed, recorder=recorder, on_happening=on_happening, halt=halt
+        )
+    return replace(report, remarks=(*report.remarks, *remarks))
+
+
+@contextmanager
+def _recorded(
+    mission: Mission,
+    record: str | Path | None,
+    observers: Sequence[Recorder],
+    on_failure: Callable[[Exception], None] | None = None,
+) -> Iterator[Recorder | None]:
+    """Who is told of a mission while it is carried out, a file among them if one is wanted; None: nobody."""
+    recorders = list(observers)
+    if record is not None:
+        from muster.report.record import RecordWriter
+
+        recorders.append(file := RecordWriter(record, mission))
+    if not recorders:
+        yield None
+        return
+    from muster.report.recorders import Recorders
+
+    told = Recorders(*recorders, on_failure=on_failure)
+    try:
+        yield told
+    finally:
+        if record is not None:
+            told.forgiving(file.close)
 
 
 def _footage(mission: Mission, film: str | Path | Footage) -> Footage:

@@ -8,11 +8,11 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from muster._hearing import heard
 from muster._looking import Lookout, OnLook, lookout_for, with_found
-from muster.execution import Executor, Observer, Reallocation, report_of, travel_of, way_of
+from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Event, Mission
@@ -24,19 +24,11 @@ from muster.verification import verify
 if TYPE_CHECKING:
     from muster.execution.executor import Happening
     from muster.execution.report import Report
-    from muster.motion.grid import Floats
 
 OnWorld = Callable[[SimulatedWorld], None]
 WORLDS = ("kinematic", "physics")
 LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
-
-
-class Recorder(Observer, Protocol):
-    """Who keeps what happens, and where the bodies truly are; see `muster.report.record.RecordWriter`."""
-
-    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None: ...
-    def on_report(self, report: dict[str, Any]) -> None: ...
 
 
 class Simulation:

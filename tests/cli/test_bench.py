@@ -1,8 +1,12 @@
 """`muster bench`: which benches there are; what they measure is in `tests/studies`."""
 
+import json
 import re
 
+from muster.mission.errors import MissingExtraError
+from muster.studies import bench
 from muster.studies.bench import BENCHES
+from muster.studies.measurement import Measurement
 
 
 def test_the_help_names_all_benches(muster):
@@ -17,3 +21,15 @@ def test_a_bench_that_there_is_not(muster):
     assert (code, out) == (2, "")
     assert "expected greedy-small, genetic, " in err
     assert "did you mean 'greedy-small'" in err
+
+
+def test_a_bench_that_needs_what_is_not_installed_is_skipped_unless_it_was_asked_for(muster, monkeypatch):
+    def absent(runs):
+        raise MissingExtraError("ros1", "ROS 1")
+
+    one = Measurement.over_runs("there", "s", [1.0], "", "")
+    monkeypatch.setattr(bench, "BENCHES", {"gone": absent, "there": lambda runs: [one]})
+    code, out, err = muster("bench", "--format", "json", "-q")
+    assert (code, [row["name"] for row in json.loads(out)]) == (0, ["there"])
+    assert err == "skipped gone: ROS 1 needs an optional part: pip install 'muster-robotics[ros1]'\n"
+    assert muster("bench", "--only", "gone", "-q")[0] == 2

@@ -1,7 +1,9 @@
 """What the command says of itself."""
 
 import pytest
-from tests.cli.yard import VERBS, table_rows
+from tests.cli.yard import table_rows
+
+from muster.cli.main import VERBS
 
 pytestmark = pytest.mark.usefixtures("folder")
 

@@ -5,7 +5,6 @@ import sysconfig
 from pathlib import Path
 
 MUSTER = Path(sysconfig.get_path("scripts")) / "muster"
-VERBS = ("missions", "init", "check", "solve", "auction", "verify", "explain")
 
 MISSION = """\
 schema: muster/1

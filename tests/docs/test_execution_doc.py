@@ -11,6 +11,16 @@ def test_an_executor_in_a_world(capsys):
     assert "'tasks_lost': []" in capsys.readouterr().out
 
 
+def test_a_fleet_of_ones_own(capsys):
+    blocks = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)
+    names = {}
+    exec(blocks[1], names)
+    capsys.readouterr()
+    exec(blocks[2], names)
+    assert "mission_ended" in capsys.readouterr().out
+    assert set(names["report"].tasks_done) == {task.id for task in names["mission"].tasks}
+
+
 def test_a_mission_goes_on_as_far_as_it_is_let(capsys):
     example = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)[0]
     names = {}

@@ -9,8 +9,9 @@ import pytest
 TEXT = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
 
 
-def test_its_examples_run(capsys):
+def test_its_examples_run(capsys, tmp_path, monkeypatch):
     pytest.importorskip("shapely")
+    monkeypatch.chdir(tmp_path)  # where films go
     names = {}
     for example in re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL):
         exec(compile(example, "simulation.md", "exec"), names)

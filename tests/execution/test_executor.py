@@ -176,6 +176,34 @@ def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():
     assert executor.crew["r_1"].done == ["0"]
 
 
+def refusing(mission, plan, place, **options):
+    world = World(mission)
+    world.ports["r_0"].refuses = (place,)
+    return carry_out(Executor(mission, plan, world.ports, **options), world, until=1000)
+
+
+def test_a_task_to_which_a_robot_says_it_will_not_get_is_done_by_another():
+    executor = refusing(line(5, 9, robots=2), plan_of(r_0=["0", "1"], r_1=[]), (5.0, 0.0, 0.0))
+    done = {row.task: row.robot for row in report_of(executor.account, contacts=0, min_distance_m=None).tasks}
+    assert done["0"] == "r_1"
+    assert set(done) == {"0", "1"}
+    refused = [happening.data for happening in executor.happenings if happening.kind == "task_refused"]
+    assert refused == [{"task": "0", "robot": "r_0", "reason": "no way, it says"}]
+    assert not executor.crew["r_0"].out
+
+
+def test_one_that_nobody_gets_to_is_lost_with_what_the_robot_says():
+    executor = refusing(line(5, 9), plan_of(r_0=["0", "1"]), (5.0, 0.0, 0.0))
+    assert list(executor.lost()) == ["0"]
+    assert "no way, it says" in executor.lost()["0"]
+
+
+def test_a_robot_that_will_not_get_to_its_end_ends_where_it_is():
+    executor = refusing(line(5, rules=Rules(return_to_start=True)), plan_of(r_0=["0"]), (0.0, 0.0, 0.0))
+    assert executor.done
+    assert kinds(executor).count("no_way_to_end") == 1
+
+
 def test_work_that_takes_far_too_long_is_stuck_too():
     mission = line(5.0, robots=2, duration_s=3.0)
     world = World(mission)

@@ -17,6 +17,7 @@ class Point:
         self.order = self.passed = 0
         self.waypoints, self.held = [], 0.0
         self.broken = self.mute = self.slow = False
+        self.refuses = ()  # places to which it will not go
         self.now, self.last, self.sent = now, None, 0
 
     def send(self, waypoints):
@@ -33,7 +34,8 @@ class Point:
 
     def step(self, dt):
         """Go on exactly: to the next way point, hold, and on to the one after it."""
-        left = 0.0 if self.broken else dt
+        refused = self.passed < len(self.waypoints) and self.waypoints[self.passed].position in self.refuses
+        left = 0.0 if self.broken or refused else dt
         while left > 0 and self.passed < len(self.waypoints):
             goal = self.waypoints[self.passed]
             way = math.dist(self.position, goal.position)
@@ -51,7 +53,9 @@ class Point:
             self.passed, self.held = self.passed + 1, 0.0
         self.now += dt
         if not self.mute:
-            self.last = Telemetry(self.now, self.position, 0.0, (0.0, 0.0, 0.0), self.odometry, self.order, self.passed)
+            counted = self.odometry, self.order, self.passed
+            why = "no way, it says" if refused else ""
+            self.last = Telemetry(self.now, self.position, 0.0, (0.0, 0.0, 0.0), *counted, refused=why)
 
 
 class World:

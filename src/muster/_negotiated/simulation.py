@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from muster._carrying_out import OnWorld, Recorder, recorded_world
+from muster._carrying_out import OnWorld, recorded_world
 from muster._looking import OnLook, lookout_for, with_found
 from muster._negotiated.log import Log
 from muster._negotiated.robot import decide_for_itself
 from muster._negotiated.theatre import MOST_SPEED, Theatre
 from muster.allocation.problem import Problem
-from muster.execution import Happening, Report, report_of
+from muster.execution import Happening, Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event

@@ -27,7 +27,11 @@ VERBS = (
     "explain",
     "path",
     "simulate",
+    "ros",
+    "ros2",
+    "fly",
     "replay",
+    "export",
     "study",
     "bench",
 )
@@ -79,7 +83,11 @@ _SUMMARIES = {
     "explain": "Say why a task is done by this robot, not by that one, or left out.",
     "path": "Find a way over the map of a mission, from one point to another.",
     "simulate": "Carry a plan out with moving robots, and say what it took.",
+    "ros": "Carry a plan out with real robots on ROS 1.",
+    "ros2": "Carry a plan out with real robots on ROS 2.",
+    "fly": "Carry a plan out with drones, over MAVLink.",
     "replay": "Show a record of a mission that was carried out.",
+    "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
     "study": "Repeat a published experiment beside its published numbers.",
     "bench": "Measure speed on this machine, or quality against other solvers.",
 }

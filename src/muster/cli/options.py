@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from muster.mission.errors import Finding, ParameterError
+from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.hints import did_you_mean
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
 from muster.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from muster.verification import Verdict
 
 
 class Finite(click.FloatRange):
@@ -87,6 +90,26 @@ def say_of_plan(plan: Plan, file: Path, mission: Mission, *, quiet: bool, verbos
     if not quiet and plan.mission not in (None, mission.name):
         expected = f"{shown(mission.name)}; the plan may be of another mission"
         click.echo(f"warning: {Finding(str(file), None, 'mission', shown(plan.mission), expected)}", err=True)
+
+
+def require_admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
+    """What the judge says; a plan that breaks a rule is not handed on to robots.
+
+    Raises
+    ------
+    PlanError
+        if it does.
+    """
+    from muster.verification import verify
+
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        first, *others = verdict.violations
+        more = f" and {len(others)} more" if others else ""
+        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
+        expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
+        raise PlanError([Finding(str(file), None, first.kind, f"{told}{more}", expected)])
+    return verdict
 
 
 def format_option(verb: Verb) -> Verb:

@@ -1,4 +1,4 @@
-"""`muster replay`: what a record holds; as a page, as a picture."""
+"""`muster replay`: what a record holds; as a page, as a picture, for ROS, beside what others recorded."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import format_option, quiet_option
+from muster.cli.keeping import draw_record, drawing_options
+from muster.cli.options import Finite, format_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.recordings import errors_against, print_errors, require_recordings, show_recording, write_for_ros
 from muster.cli.report_tables import print_report
 from muster.cli.tables import counted, number, print_table
 
@@ -22,59 +24,56 @@ _FILE = click.Path(path_type=Path)
 
 @click.command()
 @click.argument("record", type=_FILE)
-@click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
-@click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
-@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@drawing_options
+@click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap).")
+@click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag).")
+@click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has.")
+@click.option("--topic", "topics", multiple=True, metavar="ROBOT=TOPIC", help="Of it.  [default: /ROBOT/odom, or pose]")
+@click.option("--begins", type=Finite(-1e11, 1e11), metavar="S", help="When the mission began, on the clock of ROS.")
 @format_option
 @quiet_option
 def command(
-    record: Path, html: Path | None, plot: Path | None, gantt: Path | None, form: str, quiet: bool, verbose: bool
+    record: Path,
+    html: Path | None,
+    plot: Path | None,
+    gantt: Path | None,
+    ros2: Path | None,
+    ros1: Path | None,
+    reference: Path | None,
+    topics: tuple[str, ...],
+    begins: float | None,
+    form: str,
+    quiet: bool,
+    verbose: bool,
 ) -> int:
-    """Show the RECORD of a mission that was carried out (MCAP).
+    """Show the RECORD of a mission that was carried out (MCAP), or the poses in a recording of ROS.
 
     A record that breaks off, because what wrote it was killed, is shown up to there. With -v all events are listed.
     """
     from muster.report.record import read_record
+    from muster.report.recordings import is_recording
 
-    require_writable(None, (html, plot, gantt), (record,), ())
+    require_writable(None, (html, plot, gantt, ros2, ros1), (record, reference), ())
     require_drawable(plot, gantt)
+    require_recordings(record, html, gantt, ros2, ros1, reference, topics, begins)
+    if is_recording(record):
+        return show_recording(record, plot, form, quiet=quiet)
     recording = read_record(record)
     if not recording.complete and not quiet:
         until = f"breaks off at {recording.duration_s:.1f} s"
         click.echo(f"warning: {record}: {until}; what is whole is shown", err=True)
-    _show(recording, html, plot, gantt)
+    draw_record(recording, html, plot, gantt)
+    write_for_ros(recording, ros2, ros1, begins, quiet=quiet)
+    off = None if reference is None else errors_against(recording, reference, topics, begins, quiet=quiet)
     if form == "json":
         from muster.mission.plan import json_text
 
-        click.echo(json_text(_answer(recording)), nl=False)
+        click.echo(json_text(_answer(recording) | ({} if off is None else {"reference": off})), nl=False)
     else:
         _print(recording, all_events=verbose)
+        if off is not None:
+            print_errors(off)
     return DONE
-
-
-def show_record(file: Path, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    """Write what is wanted of a record's page, picture and time chart."""
-    from muster.report.record import read_record
-
-    if html is not None or plot is not None or gantt is not None:
-        _show(read_record(file), html, plot, gantt)
-
-
-def _show(recording: Recording, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    if html is not None:
-        from muster.report.page import write_page
-
-        write_page(html, recording)
-    if plot is not None:
-        from muster.report.files import save_figure
-        from muster.report.flown import plot_flown
-
-        save_figure(plot_flown(recording), plot)
-    if gantt is not None:
-        from muster.report.files import save_figure
-        from muster.report.flown_gantt import plot_flown_gantt
-
-        save_figure(plot_flown_gantt(recording), gantt)
 
 
 def _answer(recording: Recording) -> dict[str, Any]:

@@ -23,7 +23,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     unit = "s" if mission.rules.usage == "time" else "m"
     columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
     rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
-    print_table(columns, rows, title=f"{mission.name}: carried out", right=columns[1:])
+    print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
     if report.get("reallocations"):
         of_tasks = "; of tasks by the one in force then" if with_tasks else ""
@@ -34,22 +34,34 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     if lost:
         print_table(("task lost", "reason"), lost)
     _print_found(report, mission)
+    for remark in report.get("remarks", ()):
+        click.echo(f"{'remark':<17} {remark}")
+
+
+def _how(report: Report) -> str:
+    remarks = report.get("remarks", ())
+    return "interrupted" if any(remark.startswith("interrupted") for remark in remarks) else "carried out"
 
 
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
     done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
     known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
-    least = report.get("min_distance_m")
-    distance = "-" if least is None else f"{number(least)} m"
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
         ("tasks done", f"{done} of {known}"),
         ("objective", _objective(report.get("objective"), unit)),
         ("waiting", f"{number(report.get('waiting_s'))} s"),
-        ("least distance", f"{distance}, {counted(report.get('contacts', 0), 'contact')}"),
+        ("least distance", _nearness(report)),
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _nearness(report: Report) -> str:
+    """How near robots came to each other, where somebody measured it."""
+    least, contacts = report.get("min_distance_m"), report.get("contacts")
+    distance = "-" if least is None else f"{number(least)} m"
+    return "not measured" if contacts is None else f"{distance}, {counted(contacts, 'contact')}"
 
 
 def _print_found(report: Report, mission: Mission) -> None:
@@ -73,8 +85,6 @@ def _print_found(report: Report, mission: Mission) -> None:
     missed = [str(tag.id) for tag in mission.tags if not any(_is(row, tag) for row in found)]
     if missed:
         click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(missed)}")
-    for remark in report.get("remarks", ()):
-        click.echo(f"{'cameras':<17} {remark}")
 
 
 def _is(row: Report, tag: Tag) -> bool:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
-from contextlib import nullcontext
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +14,8 @@ from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.filming import draw_footage, footage_of, require_filmable
 from muster.cli.halting import ctrl_c_halts
+from muster.cli.keeping import drawing_options, kept_record, record_option
+from muster.cli.live import foxglove_option, shown_live, tell
 from muster.cli.options import (
     Finite,
     format_option,
@@ -26,7 +26,6 @@ from muster.cli.options import (
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
-from muster.cli.replay import show_record
 from muster.cli.report_tables import print_report
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -34,8 +33,6 @@ from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
     from muster import Negotiation
-    from muster.execution.executor import Happening
-    from muster.execution.report import Report
     from muster.report.looks import Looks
     from muster.simulation import Noise
 
@@ -64,15 +61,13 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--speed",
     type=Finite(0.001, 1e6),
     metavar="X",
-    help="X times real time, telling events.  [default: at once; with --negotiate 1, at most 10]",
+    help="X times real time, telling events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
 )
-@click.option("--record", type=_FILE, metavar="FILE", help="Write a record of it (.mcap), for `muster replay`.")
-@click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline.")
-@click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf).")
-@click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf).")
+@record_option
+@drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
 @click.option(
     "--cameras", type=_FILE, metavar="DIR", help="Write what cameras saw of each tag, largest; with --world physics."
@@ -82,6 +77,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--film-speed", type=Finite(0.01, 1e6), metavar="X", help="X times real time.  [default: a film of at most 24 s]"
 )
 @click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
+@foxglove_option
 @method_options
 @terms_options
 @require_complete_option
@@ -115,6 +111,7 @@ def command(
     method: str,
     transport: str,
     settings: tuple[str, ...],
+    foxglove: int | None,
     require_complete: bool,
     form: str,
     quiet: bool,
@@ -128,11 +125,14 @@ def command(
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
     each decides for itself what to do next. They talk in real time.
     """
+    from muster import simulate
+
     _check_together(negotiate)
     require_writable(None, (record, html, plot, gantt, film, still, found), (mission, robots, suitability), (plan,))
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise = _noise(noises)
+    speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
@@ -142,8 +142,7 @@ def command(
         planned = _plan(loaded, plan, seed, time_limit, iterations)
         if plan is not None:
             say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
-    with tempfile.TemporaryDirectory() if record is None and (html or plot or gantt) else nullcontext() as folder:
-        file = record if folder is None else Path(folder) / "record.mcap"
+    with kept_record(record, html, plot, gantt) as file:
         how: dict[str, Any] = {
             "seed": seed,
             "world": world,
@@ -154,11 +153,9 @@ def command(
             "on_look": looks,
         }
         footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
-        tell = _tell if speed is not None and not quiet else None
-        with ctrl_c_halts() as halt:
-            report = _carried_out(loaded, planned, file, on_happening=tell, halt=halt, **how)
-        if file is not None:
-            show_record(file, html, plot, gantt)
+        how["on_happening"] = tell if speed is not None and not quiet else None
+        with shown_live(loaded, foxglove, quiet=quiet) as observers, ctrl_c_halts() as halt:
+            report = simulate(loaded, planned, record=file, observers=observers, halt=halt, **how)
     if found is not None and looks is not None:
         looks.plot(loaded, found)
     if form == "json":
@@ -216,12 +213,6 @@ def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, ite
     return solve(mission, seed=seed, time_limit=None if iterations is not None else time_limit, iterations=iterations)
 
 
-def _tell(happening: Happening) -> None:
-    from muster.report.record.messages import event_line
-
-    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)
-
-
 def _noise(noises: tuple[str, ...]) -> Noise:
     from muster.simulation import Noise
 
@@ -236,12 +227,3 @@ def _noise(noises: tuple[str, ...]) -> Noise:
         except ValueError:
             raise ParameterError(f"--noise: {text}; expected a number after {kind}=") from None
     return Noise(**amounts)
-
-
-def _carried_out(mission: Mission, plan: Plan | Negotiation, file: Path | None, **how: Any) -> Report:
-    from muster import simulate
-
-    try:
-        return simulate(mission, plan, record=file, **how)
-    except OSError as error:
-        raise error if file is None else OSError(error.errno, error.strerror, str(file)) from None

@@ -3,7 +3,7 @@
 from muster.execution.executor import Executor, Happening
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision
-from muster.execution.record import Observer
+from muster.execution.record import Observer, Recorder
 from muster.execution.report import Report, report_of
 from muster.execution.rewiring import rewire
 from muster.execution.travel import travel_of, way_of
@@ -14,6 +14,7 @@ __all__ = [
     "Limits",
     "Observer",
     "Reallocation",
+    "Recorder",
     "Report",
     "Revision",
     "report_of",

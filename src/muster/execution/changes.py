@@ -56,10 +56,10 @@ class Changes:
     ports: Mapping[str, RobotPort]
     travel: Travel
 
-    def take(self, event: Event, now: float) -> Iterator[Change]:
+    def take(self, event: Event, now: float, reason: str = "") -> Iterator[Change]:
         """Let an event happen; yields what asks for a new plan.
 
-        That a robot falls silent is for the monitor to notice: nothing is done here.
+        That a robot falls silent is for the monitor to notice: nothing is done here. `reason` is why a robot fails.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class Changes:
             if the event names a robot or task that there is not, or one anew that there is, or a robot without port.
         """
         if event.robot_fails is not None:
-            yield from self.put_out(self._hand(event.robot_fails), FAILED, now)
+            yield from self.put_out(self._hand(event.robot_fails), FAILED, now, reason)
         elif event.robot_returns is not None:
             yield from self.take_back(self._hand(event.robot_returns), now)
         elif event.robot_joins is not None:

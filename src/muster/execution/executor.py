@@ -152,26 +152,26 @@ class Executor:
         times = [*(event.at_s for event in self._script[:1]), *available]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
-    def report(self, event: Event) -> None:
+    def report(self, event: Event, reason: str = "") -> None:
         """Let something happen that the mission file did not foresee; its `at_s` does not count.
 
-        A mission that was over goes on if that changes anything.
+        A mission that was over goes on if that changes anything. Why a robot fails may be said, in words.
 
         Raises
         ------
         ParameterError
             if the event does not fit (see `Changes.take`).
         """
-        changes = list(self._changes.take(event, self.now_s))
+        changes = list(self._changes.take(event, self.now_s, reason))
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
             self.tell("without_effect", plain(event))
 
-    def report_if_it_fits(self, event: Event) -> bool:
+    def report_if_it_fits(self, event: Event, reason: str = "") -> bool:
         """`report` where nobody is there to hear of an error: what does not fit is refused, and that is told."""
         try:
-            self.report(event)
+            self.report(event, reason)
         except ParameterError as error:
             self.tell("event_refused", {"reason": str(error)})
             return False
@@ -228,7 +228,7 @@ class Executor:
             self.report_if_it_fits(self._script.pop(0))
 
     def _capacity(self, hand: Hand) -> float | None:
-        return None if "capacity" in self.planned.ignored else hand.robot.work_capacity
+        return None if "capacity" in self.planned.ignored else hand.capacity
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
@@ -306,7 +306,9 @@ class Executor:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for hand in self._present for name in hand.route}
-        gone = {hand.robot.id: f"{OUT[hand.out]} at {hand.out_s:g} s" for hand in self.crew.values() if hand.out}
+        gone = {
+            hand.robot.id: f"{OUT[hand.out]} at {round(hand.out_s, 1):g} s" for hand in self.crew.values() if hand.out
+        }
         return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
 
     def tell(self, kind: str, data: Mapping[str, Any]) -> None:

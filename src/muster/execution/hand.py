@@ -98,6 +98,11 @@ class Hand:
         return self.told.passed if self.told is not None and self.told.order == self._order else 0
 
     @property
+    def refused(self) -> str:
+        """Why it will not get to the next way point of the last order; empty while it goes on."""
+        return self.told.refused if self.told is not None and self.told.order == self._order else ""
+
+    @property
     def arrived(self) -> bool:
         """Whether it has carried out the last order."""
         return self.passed >= len(self._waypoints)
@@ -160,6 +165,14 @@ class Hand:
     def used(self) -> float:
         """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
         return self.busy_s if self.in_time else self.charged + (self.told.odometry_m if self.told else 0.0)
+
+    @property
+    def capacity(self) -> float | None:
+        """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
+        most = self.robot.work_capacity
+        if most is None or self.told is None or self.told.charge is None:
+            return most
+        return min(most, self.used + self.told.charge * most)
 
     def work_left_s(self, now: float) -> float:
         """Seconds until the work under way ends, if all goes well."""

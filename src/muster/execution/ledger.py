@@ -56,7 +56,7 @@ class Ledger:
         """
         who = ", ".join(f"{robot} ({since})" for robot, since in gone.items())
         out = f"; no longer taking part: {who}" if gone else ""
-        lost = {name: f"cancelled at {at_s:g} s" for name, at_s in self.cancelled.items()}
+        lost = {name: f"cancelled at {round(at_s, 1):g} s" for name, at_s in self.cancelled.items()}
         lost |= {task.id: why(task.id) + out for task in self.open if task.id not in under_way}
         return {name: lost[name] for name in self.tasks if name in lost}
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes
 from muster.execution.dispatch import Dispatch, Tell
-from muster.execution.hand import Activity, Hand
+from muster.execution.hand import MOVING, Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
 
 
 @dataclass
 class Overseer:
-    """Notices missed telemetry, no progress, and too little capacity.
+    """Notices missed telemetry, way points refused, no progress, and too little capacity.
 
     Parameters
     ----------
@@ -50,6 +50,8 @@ class Overseer:
         for hand in self._present:
             if is_silent(hand, now, self.limits):
                 yield from self.changes.put_out(hand, SILENT, now)
+            elif hand.refused and hand.activity in MOVING:
+                yield from self._let_refuse(hand, now)
             elif is_stuck(hand, now, self.limits):
                 yield from self._free_or_put_out(hand, now)
             elif hand.activity is Activity.DRIVING and self.capacity(hand) is not None:
@@ -72,6 +74,13 @@ class Overseer:
         else:
             self.tell("robot_sent_again", {"robot": hand.robot.id, "reason": "no progress"})
             self.dispatch.again(hand, now)
+
+    def _let_refuse(self, hand: Hand, now: float) -> Iterator[Change]:
+        """A robot that will not get to where it was sent: others do the task, or it ends where it is."""
+        if hand.activity is Activity.RETURNING:
+            self.dispatch.end_here(hand, now)
+        else:
+            yield from self.dispatch.refuse(hand, hand.route[0], hand.refused, now)
 
     def _give_up_blocked(self, hand: Hand, blocking: Hand, now: float) -> Iterator[Change]:
         """No robot gets to a task at which a broken one stands, if it is as large as the one that tried."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from muster.mission.plan import Plan
+from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 
 
@@ -22,6 +23,21 @@ class Observer(Protocol):
 
     def on_plan(self, now: float, plan: Plan) -> None:
         """From now on this is the plan: of the whole mission, what is done included."""
+        ...
+
+
+class Recorder(Observer, Protocol):
+    """Who keeps all that happens, where robots are, and the report; see `muster.report.record.RecordWriter`."""
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        """Robots are there: (n, 3) metres, (n,) radians, (n, 3) m/s in the map frame, NaN of those that are not.
+
+        A row for each robot of the mission, then for each that joined.
+        """
+        ...
+
+    def on_report(self, report: dict[str, Any]) -> None:
+        """It is over."""
         ...
 
 

@@ -109,7 +109,8 @@ class Report:
     tasks_done, tasks_lost
         in order of completion; and every other task, with the reason.
     contacts, min_distance_m
-        how often two robots touched, and the least distance between their centres; None for one robot.
+        how often two robots touched, and the least distance between their centres, None for one robot; both None where
+        nobody measured it.
     waiting_s
         seconds that robots waited at tasks, in all.
     reallocations
@@ -127,7 +128,7 @@ class Report:
     mission_time_s: float
     tasks_done: tuple[str, ...]
     tasks_lost: tuple[tuple[str, str], ...]
-    contacts: int
+    contacts: int | None
     min_distance_m: float | None
     waiting_s: float
     reallocations: int
@@ -147,13 +148,13 @@ class Report:
         return asdict(self) | names | {"tasks_lost": lost, **rows}
 
 
-def report_of(account: Account, *, contacts: int, min_distance_m: float | None) -> Report:
+def report_of(account: Account, *, contacts: int | None = None, min_distance_m: float | None = None) -> Report:
     """The report of a mission, over or not.
 
     Parameters
     ----------
     contacts, min_distance_m
-        as the world has measured them: robots do not know how near they were.
+        as a world has measured them: robots do not know how near they were.
     """
     ledger = account.ledger
     done = sorted(ledger.ends_s, key=lambda task: ledger.ends_s[task])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
@@ -59,7 +60,7 @@ def _standing(hand: Hand, now: float) -> Standing:
     at_task = hand.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
     before = hand.done[-1] if hand.done and not hand.at_home else hand.robot.id
     return Standing(
-        robot=hand.robot,
+        robot=replace(hand.robot, work_capacity=hand.capacity),
         home=hand.home,
         spot=Spot(point, hand.route[0] if at_task else before, point if works else hand.refuge),
         free_s=now + hand.work_left_s(now),

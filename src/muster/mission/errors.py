@@ -108,5 +108,5 @@ class RenderingError(MusterError):
 class MissingExtraError(MusterError, ImportError):
     """An optional part of the installation is absent; the message says what to install."""
 
-    def __init__(self, extra: str, purpose: str) -> None:
-        super().__init__(f"{purpose} needs an optional part: pip install 'muster-robotics[{extra}]'")
+    def __init__(self, extra: str, purpose: str, how: str = "") -> None:
+        super().__init__(f"{purpose} needs an optional part: " + (how or f"pip install 'muster-robotics[{extra}]'"))

@@ -1,20 +1,25 @@
-"""Ctrl-C where it must not end a program at once."""
+"""Ctrl-C, and other signals to end, where they must not end a program at once."""
 
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+
+CTRL_C = (signal.SIGINT,)
+TO_END = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""What a terminal that is closed, a service manager and a container send, too."""
 
 
 @contextmanager
-def on_ctrl_c(do: Callable[[], None]) -> Iterator[None]:
+def on_ctrl_c(do: Callable[[], None], signals: Iterable[signal.Signals] = CTRL_C) -> Iterator[None]:
     """Do something at Ctrl-C, in place of KeyboardInterrupt; to be used in the main thread."""
-    before = signal.signal(signal.SIGINT, lambda signum, frame: do())
+    before = {number: signal.signal(number, lambda signum, frame: do()) for number in signals}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextmanager

@@ -68,6 +68,10 @@ class Telemetry:
         the number of the last `send` that it took, and how many of its way points it has passed, holds included.
     inertial
         of its inertial unit; None where it has none, or has not moved yet.
+    charge
+        share of its work capacity that its battery leaves, 0 to 1; None where it says nothing of it.
+    refused
+        why it will not get to the next way point of this order, as its own navigation says; empty while it goes on.
     """
 
     time_s: float
@@ -78,6 +82,8 @@ class Telemetry:
     order: int
     passed: int
     inertial: Inertial | None = None
+    charge: float | None = None
+    refused: str = ""
 
 
 class RobotPort(Protocol):

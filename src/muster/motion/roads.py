@@ -73,6 +73,10 @@ class Roads:
         finder = self._finder(body)
         return smoothed(path, finder.clear)
 
+    def clear(self, body: Body, points: Sequence[Sequence[float]]) -> bool:
+        """Whether a body can go straight from each of some points of the map frame, (k, d) metres, to the next."""
+        return self._finder(body).clear(np.array(points, dtype=np.float64))
+
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
         """With what is in the way of a body that cannot stand where it is to, or how wide one is that has no way."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):

@@ -96,8 +96,10 @@ class World:
         return {**self.__dict__, "_made": {}}
 
     @classmethod
-    def of(cls, mission: Mission) -> World:
+    def of(cls, mission: Mission, image: Grid | None = None) -> World:
         """The world of a mission with a map; files are found from the folder of the mission's file.
+
+        `image` has the cells of a map that is an image, where its file is not at hand.
 
         Raises
         ------
@@ -112,9 +114,9 @@ class World:
             raise ParameterError("mission: no map; expected a mission with a map")
         require_map_extra()
         faults: list[Fault] = []
-        image, boundary = None, None
+        boundary = None
         if mission.map.boundary is None:
-            image = read_grid(mission.map, Path(mission.source.file).parent, faults)
+            image = image or read_grid(mission.map, Path(mission.source.file).parent, faults)
         else:
             boundary = read_polygon(mission.map.boundary, ("map", "boundary"), faults)
         areas = _areas(mission.map, faults)

@@ -68,7 +68,7 @@ def _contents(stream: Any) -> tuple[str | None, Messages, bool]:
     topics: dict[int, str] = {}
     found: Messages = {}
     ended: list[bool] = []
-    for record in _whole_records(stream, ended):
+    for record in whole_records(stream, ended):
         if isinstance(record, Attachment) and record.name == MISSION_FILE:
             text = record.data.decode()
         elif isinstance(record, Channel) and record.message_encoding == "json":
@@ -82,8 +82,8 @@ def _contents(stream: Any) -> tuple[str | None, Messages, bool]:
 _READ = ("/map", "/muster/state", "/muster/event", "/muster/plan", "/muster/bid", "/muster/report")
 
 
-def _whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
-    """The records of a file, in order, as far as they are whole; `ended` gets an item if none is missing."""
+def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
+    """The records of an MCAP file, in order, as far as they are whole; `ended` gets an item if none is missing."""
     from mcap.exceptions import McapError
     from mcap.stream_reader import CRCValidationError, StreamReader
     from zstandard import ZstdError

@@ -116,7 +116,7 @@ class Flight:
 
 @dataclass
 class Log:
-    """Keeps what happens: a `Recorder` of `_carrying_out`."""
+    """Keeps what happens: an `execution.Recorder`."""
 
     mission: Mission
     times: list[float] = field(default_factory=list)

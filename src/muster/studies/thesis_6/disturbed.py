@@ -48,7 +48,7 @@ class UsageUnderNoise:
                 runs = [found[flight] for flight in _seeded(plan, name, effort)]
                 planned = runs[0].planned.total_cost
                 off = [excess(sum(flown.usages), planned) for flown in runs]
-                lost, contacts = sum(flown.lost for flown in runs), sum(flown.report.contacts for flown in runs)
+                lost, contacts = sum(flown.lost for flown in runs), sum(flown.report.contacts or 0 for flown in runs)
                 figures = planned, fmean(off), min(off), max(off)
                 rows.append((plan.with_actions, name, len(runs), *figures, lost, contacts))
         notes = (

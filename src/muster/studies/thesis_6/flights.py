@@ -9,7 +9,8 @@ from functools import lru_cache
 from typing import Any
 
 from muster._api import solve
-from muster._carrying_out import Recorder, carry_out
+from muster._carrying_out import carry_out
+from muster.execution import Recorder
 from muster.execution.record import NoObserver
 from muster.execution.report import Report
 from muster.mission.model import Mission

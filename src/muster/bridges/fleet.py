@@ -1,0 +1,57 @@
+"""What a bridge is to whoever carries a plan out: robots behind ports, and a clock that goes on by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from muster.mission.model import Event
+from muster.motion.port import RobotPort
+
+
+@dataclass(frozen=True)
+class Failure(Event):
+    """A robot says that it cannot go on (`robot_fails`), and why, in words; files have no word for that."""
+
+    reason: str = ""
+
+
+def reason_of(event: Event) -> str:
+    """Why it has happened, in words; empty where nobody says."""
+    return event.reason if isinstance(event, Failure) else ""
+
+
+class Fleet(Protocol):
+    """Robots that are reached through one bridge. Frames and units are converted in the bridge and nowhere else."""
+
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """By the robots' ids; those that are discovered later are in it as soon as they are."""
+        ...
+
+    @property
+    def time_s(self) -> float:
+        """Seconds of the mission's clock, which never goes back; telemetry is stamped by it."""
+        ...
+
+    def advance(self, until_s: float) -> Sequence[Event]:
+        """Hear and speak until a time of the mission's clock; may return before, where something was heard.
+
+        Returns
+        -------
+        what has happened that concerns the plan, as in a mission file: a robot that was discovered (`robot_joins`), one
+        that says that it cannot go on (`robot_fails`, or a `Failure`).
+        """
+        ...
+
+    def stop(self) -> None:
+        """Let every robot stay where it is, safely: hold, hover; nothing lands and nothing is disarmed.
+
+        Comes at the end of every mission, also where it was interrupted, or an error ends it.
+        """
+        ...
+
+    def close(self) -> None:
+        """Give back connections. Robots are left as they are."""
+        ...

@@ -1,0 +1,191 @@
+"""Robots that wait make room for those that come, and come back, as those of the simulated worlds do.
+
+Only one that has done what it was sent to do is moved. Where another is to go to a place so near that both bodies do
+not fit, or is held up on its way there, it steps aside to the nearest place at which it is in nobody's way. It comes
+back only from where it was sent aside: whom somebody else has moved, or drives, stays where that leads.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from muster.bridges.steering import Driven
+from muster.mission.model import Robot
+from muster.motion.port import Place, Waypoint
+
+_HELD_UP_S = 1.0
+"""A robot that is to go and hardly does for so long is held up."""
+_SLOW = 0.1
+"""Share of its speed below which a robot hardly goes."""
+_AHEAD_M = 3.0
+"""So far ahead of one that is held up, those are asked who stand there."""
+_DIRECTIONS, _RINGS = 24, 8
+_STRAYS_M = 0.5
+"""Farther beside its way, and its body's breadth, a robot was moved by somebody else; nearer it goes around others."""
+
+
+@dataclass(frozen=True)
+class _Claim:
+    """A piece of ground that a robot needs: a segment, or a place where both ends are one."""
+
+    robot: Robot
+    begin: Place
+    end: Place
+
+    def distance_m(self, place: Place) -> float:
+        return _distance_m(place, self.begin, self.end)
+
+
+@dataclass(frozen=True)
+class _Trip:
+    """What a robot that waits was sent to do here: from where, and to where."""
+
+    begin: Place
+    end: Place
+
+
+class MakingRoom:
+    """Remembers where those who wait belong, and who is held up since when.
+
+    Parameters
+    ----------
+    arrival_m
+        how near to a place a robot counts as there.
+    margin_m
+        between two bodies, at least.
+    may_go
+        whether a robot may go straight from a place to another, and stand there: no walls or forbidden zones.
+    """
+
+    def __init__(
+        self,
+        *,
+        arrival_m: float,
+        margin_m: float = 0.1,
+        may_go: Callable[[Robot, Place, Place], bool] = lambda *_: True,
+    ) -> None:
+        self._arrival_m, self._margin_m, self._may_go = arrival_m, margin_m, may_go
+        self._posts: dict[str, Place] = {}  # from where a robot was sent aside last
+        self._trips: dict[str, _Trip] = {}  # of those that are on their way aside, there, or on their way back
+        self._slow_since: dict[str, float] = {}
+
+    def arranged(self, now: float, team: Sequence[Driven]) -> list[Driven]:
+        """The team with aims for those that wait and are in the way, or are to come back.
+
+        Parameters
+        ----------
+        now
+            seconds of any clock that does not go back.
+        """
+        claims = [claim for driven in team if driven.aim is not None for claim in self._claims(now, driven)]
+        return [self._moved(driven, team, claims) if driven.waits else self._busy(driven) for driven in team]
+
+    def _busy(self, driven: Driven) -> Driven:
+        self._forget(driven)
+        return driven
+
+    def _forget(self, driven: Driven) -> None:
+        self._posts.pop(driven.robot.id, None)
+        self._trips.pop(driven.robot.id, None)
+
+    def _claims(self, now: float, driven: Driven) -> Iterator[_Claim]:
+        """Where it is to go, and if it is held up the ground before it."""
+        robot = driven.robot
+        assert driven.aim is not None
+        yield _Claim(robot, driven.aim.position, driven.aim.position)
+        if not driven.goes or math.hypot(*driven.velocity[:2]) > _SLOW * robot.speed_mps:
+            self._slow_since.pop(robot.id, None)
+        elif now - self._slow_since.setdefault(robot.id, now) >= _HELD_UP_S:
+            far = math.dist(driven.position[:2], driven.aim.position[:2])
+            share = min(1.0, _AHEAD_M / far) if far > 0 else 1.0
+            x, y = (a + share * (b - a) for a, b in zip(driven.position[:2], driven.aim.position[:2], strict=True))
+            yield _Claim(robot, driven.position, (x, y, driven.position[2]))
+
+    def _moved(self, driven: Driven, team: Sequence[Driven], claims: Sequence[_Claim]) -> Driven:
+        name = driven.robot.id
+        if self._strays(driven):
+            self._forget(driven)
+        trip, post = self._trips.get(name), self._posts.get(name, driven.position)
+        if not self._in_the_way(driven, post, claims):
+            return driven if trip is None else self._back(driven, trip, post)
+        if trip is None or self._in_the_way(driven, trip.end, claims):
+            aside = self._place_for(driven, post, team, claims)
+            if aside is None:
+                return driven
+            trip = _Trip(driven.position, aside)
+            self._posts[name], self._trips[name] = post, trip
+        arrived = self._is_at(driven, trip.end, self._arrival_m)
+        if arrived:
+            self._trips[name] = _Trip(trip.end, trip.end)
+        return replace(driven, aim=Waypoint(trip.end), arrived=arrived)
+
+    def _back(self, driven: Driven, trip: _Trip, post: Place) -> Driven:
+        """On its way back, to its post; it stays where others have led it from where there is no straight way."""
+        name = driven.robot.id
+        if self._is_at(driven, post, self._arrival_m):
+            del self._trips[name]
+            return driven
+        if trip.end != post:
+            if not self._may_go(driven.robot, driven.position, post):
+                self._forget(driven)
+                return driven
+            self._trips[name] = _Trip(driven.position, post)
+        return replace(driven, aim=Waypoint(post))
+
+    def _strays(self, driven: Driven) -> bool:
+        """Whether it is where nothing here has sent it."""
+        name = driven.robot.id
+        trip, post = self._trips.get(name), self._posts.get(name)
+        if trip is not None and trip.begin != trip.end:
+            return _distance_m(driven.position, trip.begin, trip.end) > 2 * driven.robot.radius_m + _STRAYS_M
+        stands = post if trip is None else trip.end
+        return stands is not None and not self._is_at(driven, stands, 2 * self._arrival_m)
+
+    def _is_at(self, driven: Driven, place: Place, within_m: float) -> bool:
+        return math.dist(driven.position[:2], place[:2]) <= within_m
+
+    def _in_the_way(self, driven: Driven, place: Place, claims: Sequence[_Claim]) -> bool:
+        return any(claim.distance_m(place) < self._apart_m(driven.robot, claim.robot) for claim in claims)
+
+    def _apart_m(self, one: Robot, other: Robot) -> float:
+        """What two bodies need; one without a body is in nobody's way, nor is one on the ground in that of a drone."""
+        if one.kind != other.kind or not (one.radius_m > 0 and other.radius_m > 0):
+            return 0.0
+        return one.radius_m + other.radius_m + self._margin_m
+
+    def _place_for(self, driven: Driven, post: Place, team: Sequence[Driven], claims: Sequence[_Claim]) -> Place | None:
+        """The nearest place at which it is in nobody's way, and from which it can come back; None if none is near."""
+        x, y, z = driven.position
+        step = driven.robot.radius_m + self._margin_m
+        for ring in range(1, _RINGS + 1):
+            for k in range(_DIRECTIONS):
+                angle = 2 * math.pi * k / _DIRECTIONS
+                place = (x + ring * step * math.cos(angle), y + ring * step * math.sin(angle), z)
+                if (
+                    not self._in_the_way(driven, place, claims)
+                    and self._is_free(driven, place, team)
+                    and self._may_go(driven.robot, driven.position, place)
+                    and self._may_go(driven.robot, place, post)
+                ):
+                    return place
+        return None
+
+    def _is_free(self, driven: Driven, place: Place, team: Sequence[Driven]) -> bool:
+        """Whether no other body is there, or is to come back there."""
+        others = [other for other in team if other.robot.id != driven.robot.id]
+        return all(
+            math.dist(place[:2], taken[:2]) >= self._apart_m(driven.robot, other.robot)
+            for other in others
+            for taken in (other.position, self._posts.get(other.robot.id, other.position))
+        )
+
+
+def _distance_m(place: Place, begin: Place, end: Place) -> float:
+    """In the plane, from a place to a segment."""
+    (ax, ay, _), (bx, by, _), (px, py, _) = begin, end, place
+    dx, dy = bx - ax, by - ay
+    long = dx * dx + dy * dy
+    share = 0.0 if long == 0 else min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / long))
+    return math.hypot(px - ax - share * dx, py - ay - share * dy)

@@ -1,0 +1,275 @@
+"""One drone, sans-I/O: messages in, messages out, times given. Orders in, how far it is, why it cannot go on.
+
+Without `settings.arm` a session says nothing but heartbeats and requests for telemetry: all leaves by `_say`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from muster.bridges.mavlink import orders, scripts
+from muster.bridges.mavlink.autopilots import autopilot_of
+from muster.bridges.mavlink.conversation import Conversation, Script
+from muster.bridges.mavlink.craft import Craft
+from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
+from muster.bridges.mavlink.follower import EVERY_S
+from muster.bridges.mavlink.watch import Watch
+from muster.mission.errors import ParameterError
+from muster.motion.port import Place, Telemetry, Waypoint
+
+Fence = Callable[[Place, Sequence[Waypoint]], str]
+"""Why a drone may not go from a place through way points; empty if it may."""
+
+_TELEMETRY = (30, 32, 33, 147, 1, 42, 162)  # ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence
+_TELEMETRY_US = 100_000
+_ASK_AGAIN_S = 5.0
+_LET_GO = Kind.TAKEN_OVER, Kind.DISARMED
+"""Faults after which Muster says nothing more, whatever is heard."""
+_REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
+
+
+class Session:
+    """What is said to one drone and heard from it.
+
+    Parameters
+    ----------
+    craft
+        who it is, and what is known of it.
+    fence
+        says where it may go.
+    """
+
+    def __init__(self, craft: Craft, fence: Fence) -> None:
+        self.craft, self.fence = craft, fence
+        self.fault: Fault | None = None
+        self.adrift = False  # whether its link was lost, and it was not told to hold since
+        self._order = 0
+        self._outbox: list[Message] = []
+        self._talk: Conversation | None = None
+        self._watch = Watch(craft)
+        self._said_s = self._asked_s = self._streamed_s = float("-inf")
+
+    @property
+    def busy(self) -> bool:
+        """Whether something that it was told is not answered yet."""
+        return self._talk is not None
+
+    def take(self) -> list[Message]:
+        """What is to be sent, which it forgets."""
+        taken, self._outbox = self._outbox, []
+        return taken
+
+    def telemetry(self) -> Telemetry | None:
+        """As a port has it; None before it has said where it is."""
+        craft, seen = self.craft, self.craft.seen
+        if seen.place is None:
+            return None
+        place = seen.place if craft.height_m is None else (*seen.place[:2], 0.0)
+        return Telemetry(
+            seen.place_s,
+            place,
+            seen.heading,
+            seen.velocity,
+            seen.odometry_m,
+            self._order,
+            craft.passed,
+            charge=seen.battery,
+        )
+
+    def follow(self, waypoints: Sequence[Waypoint], now: float) -> int:
+        """Let it pass way points in place of those that it still has.
+
+        Raises
+        ------
+        ParameterError
+            if it may not arm.
+        """
+        if not self.craft.settings.arm:
+            raise ParameterError(f"{self.craft.robot.id}: way points; expected none without leave to arm")
+        self._take_order()
+        if self.fault is None:
+            self._try(lambda: self._set_out(self.craft.flown(waypoints), now), now)
+        return self._order
+
+    def hold(self, now: float) -> int:
+        """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
+        self._take_order()
+        self._end_in(lambda: self.craft.kind.hold, now)
+        if self.fault is not None and self._talk is None and self._hears(now):
+            self._try(lambda: self._call_back(now), now)
+        return self._order
+
+    def admit(self) -> None:
+        """Let its fault say so if it was not told to hover: it may fly on."""
+        if self.fault is not None and self.adrift and self._is_left_to_us:
+            self.fault = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
+            self.adrift = False
+
+    def go_back(self, now: float) -> None:
+        """Let it return to where it was armed, and land there, as its autopilot does it."""
+        self._end_in(lambda: self.craft.kind.back, now)
+
+    def land(self, now: float) -> None:
+        """Let it land where it is."""
+        self._end_in(lambda: self.craft.kind.land, now)
+
+    def hear(self, message: Message, now: float) -> None:
+        """Take in one message.
+
+        Raises
+        ------
+        ParameterError
+            at the first heartbeat, if Muster cannot fly such a drone.
+        """
+        if message.get_type() == "HEARTBEAT" and self.craft.autopilot is None:
+            self.craft.autopilot = autopilot_of(message, self.craft.robot.id)
+        if self.craft.autopilot is None:
+            return
+        self.craft.seen.hear(message, now)
+        self._try(lambda: self._answer(message, now), now)
+
+    def tick(self, now: float) -> None:
+        """Say what is due, and notice what did not come."""
+        if now >= self._said_s + 1.0:
+            self._said_s = now
+            kind = mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID
+            self._say(mavlink.MAVLink_heartbeat_message(*kind, 0, 0, mavlink.MAV_STATE_ACTIVE, 3))
+        if self.craft.autopilot is None:
+            return
+        silent = now - max(self.craft.seen.place_s, self._asked_s) >= _ASK_AGAIN_S
+        if silent or self._asked_s < 0:
+            self._ask_for_telemetry(now)
+        self._try(lambda: self._go_on(now), now)
+
+    def fail(self, kind: Kind, detail: str, now: float) -> None:
+        """Take no part any more, for good, and react as the kind of fault says."""
+        if self.fault is not None:
+            self.adrift = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
+            return
+        self.fault = Fault(now, self.craft.robot.id, kind, detail)
+        self.adrift = kind is Kind.LINK_LOST
+        self.craft.forget_order()
+        self._talk = self.craft.mode = None
+        reactions = {Reaction.HOLD: self.craft.kind.hold, Reaction.RETURN: self.craft.kind.back}
+        if kind.reaction in reactions:
+            self._end_flight(reactions[kind.reaction], now)
+
+    def _take_order(self) -> None:
+        self._order += 1
+        self.craft.forget_order()
+
+    def _set_out(self, waypoints: Sequence[Waypoint], now: float) -> None:
+        here = self.craft.seen.place
+        if here is None or not self.craft.located:
+            raise FaultError(Kind.NO_ANSWER, "it has not said where it is")
+        self._watch.require_nobody_flies_it()
+        refusal = self.fence(here, waypoints)
+        if refusal:
+            raise FaultError(Kind.OUTSIDE_FENCE, refusal)
+        if not waypoints:
+            return
+        self._watch.require_charge()
+        way = orders.guided if self.craft.settings.offboard else orders.mission
+        self._begin(way(self.craft, waypoints), now)
+
+    def _end_in(self, mode: Callable[[], int], now: float) -> None:
+        """As `_end_flight`, if it was heard and has not failed."""
+        if self.craft.autopilot is not None and self.fault is None:
+            self._talk = None
+            self._try(lambda: self._end_flight(mode(), now), now)
+
+    def _end_flight(self, mode: int, now: float) -> None:
+        """Into a mode if it flies under Muster; on the ground it stands down instead."""
+        if self.craft.stands:
+            self._begin(orders.stand_down(self.craft), now)
+        elif self.craft.ours:
+            self._begin(orders.into(self.craft, mode), now)
+
+    @property
+    def _is_left_to_us(self) -> bool:
+        """Whether nobody flies it but Muster: no pilot, and no failsafe of its autopilot."""
+        craft = self.craft
+        return craft.ours or (craft.stands and (not craft.seen.armed or craft.seen.mode in craft.kind.own_modes))
+
+    def _hears(self, now: float) -> bool:
+        return now - self.craft.seen.heartbeat_s <= self.craft.settings.link_lost_s
+
+    def _call_back(self, now: float) -> None:
+        """Let one that has failed hold, or stand down: it may still fly what others fly now."""
+        self.adrift = False
+        if self.fault is not None and self.fault.kind not in _LET_GO and self._is_left_to_us:
+            self._end_flight(self.craft.kind.hold, now)
+
+    def _begin(self, script: Script, now: float) -> None:
+        self._watch.astray = 0
+        self._talk = Conversation(script, self._say, now)
+
+    def _answer(self, message: Message, now: float) -> None:
+        beats = message.get_type() == "HEARTBEAT" and self.craft.asked_to_arm
+        if self._talk is not None:
+            if beats:
+                self._watch.look_meanwhile()
+            self._talk.hear(message, now)
+            self._talk = None if self._talk.done else self._talk
+        elif beats and self.fault is None:
+            self._watch.look_at_heartbeat()
+        elif beats and self.adrift:
+            self._call_back(now)
+        self._see_progress(message)
+
+    def _see_progress(self, message: Message) -> None:
+        """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
+        craft = self.craft
+        if craft.route is None:
+            return
+        if message.get_type() == "MISSION_ITEM_REACHED":
+            craft.passed = max(craft.passed, craft.route.passed(message.seq))
+        elif message.get_type() == "MISSION_CURRENT":
+            over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
+            craft.passed = max(craft.passed, craft.route.passed(len(craft.route.items) if over else message.seq - 1))
+
+    def _go_on(self, now: float) -> None:
+        if self._talk is not None:
+            self._talk.tick(now)
+            if self._talk.done:
+                self._talk = None
+        if self.fault is None:
+            self._watch.look_at_clock(now)
+            self._lead(now)
+
+    def _lead(self, now: float) -> None:
+        """Say where it is to be, if it is led by way points that are said one by one."""
+        craft, seen = self.craft, self.craft.seen
+        if craft.follower is None or seen.place is None:
+            return
+        craft.follower.look(seen.place, seen.heading, now)
+        craft.passed = craft.follower.passed
+        if now >= self._streamed_s + EVERY_S and seen.local is not None:
+            self._streamed_s = now
+            self._say(craft.follower.message(craft.target, seen.local, now))
+
+    def _try(self, what: Callable[[], None], now: float) -> None:
+        """Do something that a fault may end; a second fault, of the reaction to the first, ends that alone."""
+        try:
+            what()
+        except FaultError as error:
+            text = self.craft.seen.text
+            said = f" ({text})" if error.kind is Kind.ARM_REFUSED and text else ""
+            self._talk = None
+            self.fail(error.kind, error.detail + said, now)
+
+    def _ask_for_telemetry(self, now: float) -> None:
+        self._asked_s = now
+        for number in _TELEMETRY:
+            rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
+            self._say(scripts.command(self.craft.target, *rate))
+
+    def _say(self, message: Message) -> None:
+        """The one way out."""
+        harmless = message.get_type() == "HEARTBEAT" or getattr(message, "command", None) in _REQUESTS
+        if not harmless and not self.craft.settings.arm:
+            name = f"{self.craft.robot.id}: {message.get_type()}"
+            raise ParameterError(f"{name}; expected nothing of the kind without leave to arm")
+        self._outbox.append(message)

@@ -1,0 +1,79 @@
+"""The mission's clock: seconds since the beginning, but for pauses, in which it stands still."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+
+class Forward:
+    """A clock that may stand still or jump back, such as a simulator's, as one that never goes back.
+
+    Parameters
+    ----------
+    read
+        its seconds; 0 until it has begun.
+    """
+
+    def __init__(self, read: Callable[[], float]) -> None:
+        self._read = read
+        self._lock = threading.Lock()
+        self._last = 0.0
+        self._gone_s = 0.0
+
+    @property
+    def has_begun(self) -> bool:
+        return self._read() > 0
+
+    def __call__(self) -> float:
+        """Seconds that have gone by since it was heard first; a jump back takes none of them."""
+        with self._lock:
+            said = self._read()
+            if self._last > 0:
+                self._gone_s += max(0.0, said - self._last)
+            self._last = said
+            return self._gone_s
+
+
+class MissionClock:
+    """Goes on by itself, and never back.
+
+    Parameters
+    ----------
+    now
+        seconds of any clock that never goes back.
+    """
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._lock = threading.Lock()
+        self._began = now()
+        self._stopped: float | None = None
+
+    @property
+    def time_s(self) -> float:
+        with self._lock:
+            return (self._now() if self._stopped is None else self._stopped) - self._began
+
+    @property
+    def unpaused_s(self) -> float:
+        """Seconds that go on in pauses too, for who watches robots then."""
+        return self._now()
+
+    @property
+    def paused(self) -> bool:
+        return self._stopped is not None
+
+    def pause(self) -> None:
+        """Stand still from now on."""
+        with self._lock:
+            if self._stopped is None:
+                self._stopped = self._now()
+
+    def resume(self) -> None:
+        """Go on as if no time had gone by."""
+        with self._lock:
+            if self._stopped is not None:
+                self._began += self._now() - self._stopped
+                self._stopped = None

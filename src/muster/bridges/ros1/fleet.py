@@ -1,0 +1,288 @@
+"""Robots on ROS 1 as a fleet: those of a mission, and those that are discovered while it goes on.
+
+Three kinds of threads: ROS' own hear poses, one steers the robots, which goes on while planning takes its time, and one
+looks for robots. What they share is behind one lock; to the executor's thread `advance` tells what has happened. Time
+is ROS' own: that of /clock where `/use_sim_time` is set, and then robots are steered at the simulator's pace.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+from muster.bridges.discovery import NAME, topics_in
+from muster.bridges.making_room import MakingRoom
+from muster.bridges.ros1.clock import Forward, MissionClock
+from muster.bridges.ros1.joining import Newcomers
+from muster.bridges.ros1.map_frame import MapFrame
+from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
+from muster.bridges.ros1.port import Drive, Ros1Port
+from muster.bridges.ros1.ros import TFMessage, rospy
+from muster.bridges.steering import STILL, Steering
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.kinds import shown
+from muster.mission.model import Event, Mission, Robot
+from muster.motion.port import Place
+from muster.motion.roads import Roads
+from muster.motion.world import World, body_of
+
+_LOOK_S = 0.5
+_HEARD_S = 0.5
+"""A robot that was not heard for longer is told to stand."""
+_TICK_S = 0.01
+"""Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
+
+
+class Ros1Fleet:
+    """A `Fleet` over the topics of robots; this process is a node by then (`become_node`).
+
+    Parameters
+    ----------
+    mission
+        its robots are looked for by their ids: robot `r_0` at `/r_0/odom`, or `/r_0/pose`.
+    drive
+        `cmd_vel`: by velocities; `goals`: robots that find their way themselves are told where to.
+    namespace
+        in which the robots' own are; "" for the root.
+    frame
+        of the mission, in tf's words.
+    arrival_m
+        from a way point, where a robot counts as there.
+    rate_hz
+        how often velocities are told.
+    joins
+        whether robots that the mission does not name may join.
+    clock
+        the mission's; by default by ROS' time.
+    on_pose
+        is told each message that gave a pose, and whose, when telemetry has it; from ROS' own threads.
+
+    Raises
+    ------
+    ParameterError
+        if a robot's id is no name for ROS, or a number is out of range.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        *,
+        drive: Drive = "cmd_vel",
+        namespace: str = "",
+        frame: str = "map",
+        arrival_m: float = 0.1,
+        rate_hz: float = 20.0,
+        joins: bool = True,
+        clock: MissionClock | None = None,
+        on_pose: Callable[[str, Any], None] | None = None,
+    ) -> None:
+        for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
+            if not number > 0:
+                raise ParameterError(f"{name}: {number}; expected a number above 0")
+        self._now = time_of_ros()
+        self.clock = clock or MissionClock(self._now)
+        self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
+        self.topics = topics_in(namespace)
+        """The namespace of a robot's topics, such as `/r_0`."""
+        self._flat = mission.dimensions == 2
+        self._frame = MapFrame(frame)
+        self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._room = MakingRoom(arrival_m=arrival_m, may_go=_free_ways(mission))
+        self._on_pose = on_pose
+        self._lock = threading.RLock()
+        self._news = threading.Event()
+        self._closed = threading.Event()
+        self._failure: Exception | None = None  # of the thread that steers
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._ports: dict[str, Ros1Port] = {}
+        self._events: list[Event] = []
+        for robot in mission.robots:
+            self._ports[robot.id] = self._reached(robot)
+        self._newcomers = Newcomers(namespace, self._ports, self._reached, flat=self._flat)
+        tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
+        self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
+        for thread in self._threads:
+            thread.start()
+
+    @property
+    def ports(self) -> Mapping[str, Ros1Port]:
+        """See `Fleet`."""
+        return self._ports
+
+    @property
+    def time_s(self) -> float:
+        """See `Fleet`. It stands still while the fleet pauses."""
+        return self.clock.time_s
+
+    def advance(self, until_s: float) -> Sequence[Event]:
+        """See `Fleet`.
+
+        Raises
+        ------
+        NetworkError
+            if ROS has shut this node down.
+        Exception
+            whatever ended the thread that steers.
+        """
+        real_until = time.monotonic() + until_s - self.time_s
+        while self.time_s < until_s and time.monotonic() < real_until and not self._news.wait(_TICK_S):
+            pass
+        self._news.clear()
+        if rospy.is_shutdown():
+            raise NetworkError(SHUT_DOWN)
+        self._require_steered()
+        with self._lock:
+            events, self._events = self._events, []
+        return events
+
+    def report(self, event: Event) -> None:
+        """Let `advance` tell of an event that somebody else knows of."""
+        with self._lock:
+            self._events.append(event)
+        self._news.set()
+
+    def pause(self) -> None:
+        """Robots stand, and the mission's clock too, until `resume`."""
+        with self._lock:
+            self.clock.pause()
+            self._tell_all(Ros1Port.stand)
+
+    def resume(self) -> None:
+        """Robots go on."""
+        with self._lock:
+            self.clock.resume()
+
+    def unheard(self) -> dict[str, str]:
+        """Robots of the mission that have not said where they are, and why that may be.
+
+        Raises
+        ------
+        Exception
+            whatever ended the thread that steers.
+        """
+        self._require_steered()
+        if isinstance(self._now, Forward) and not self._now.has_begun:
+            return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
+        return {
+            name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
+            if port.untied
+            else f"nothing on {self.topics(name)}/odom or {self.topics(name)}/pose"
+            for name, port in self._all().items()
+            if port.telemetry() is None
+        }
+
+    def stop(self) -> None:
+        """See `Fleet`. A node that ROS has shut down cannot tell anybody: robots stand by their own drivers then.
+
+        Raises
+        ------
+        NetworkError
+            if robots could not be told, with their names; all others were.
+        """
+        if not rospy.is_shutdown():
+            self._tell_all(Ros1Port.cancel)
+
+    def fall_silent(self) -> None:
+        """Say no more, without a word to the ROS master. What was said last has time to arrive."""
+        self._closed.wait(0.2)
+        self._closed.set()
+        for thread in self._threads:
+            thread.join(timeout=2.0)
+
+    def close(self) -> None:
+        """See `Fleet`."""
+        self.fall_silent()
+        for port in self._all().values():
+            port.close()
+        self._newcomers.close()
+        self._frame.close()
+        self._tf.unregister()
+
+    def _reached(self, robot: Robot) -> Ros1Port:
+        if not NAME.fullmatch(robot.id):
+            raise ParameterError(f"robot {shown(robot.id)}; expected a name for ROS: a letter, then letters, digits, _")
+        return Ros1Port(
+            robot,
+            self.topics(robot.id),
+            drive=self._drive,
+            frame=self._frame,
+            flat=self._flat,
+            arrival_m=self._arrival_m,
+            lock=self._lock,
+            clock=self.clock,
+            on_pass=self._news.set,
+            on_pose=self._on_pose,
+        )
+
+    def _all(self) -> dict[str, Ros1Port]:
+        """The ports as they are now; robots may join meanwhile."""
+        with self._lock:
+            return dict(self._ports)
+
+    def _tell_all(self, tell: Callable[[Ros1Port], object]) -> None:
+        """Tell every robot, whatever becomes of the others."""
+        deaf: dict[str, Exception] = {}
+        for name, port in self._all().items():
+            try:
+                tell(port)
+            except Exception as error:  # rospy raises whatever the network does
+                deaf[name] = error
+        if deaf:
+            why = ", ".join(f"{name} ({error})" for name, error in deaf.items())
+            raise NetworkError(f"not told to stand: {why}; expected the network to reach all robots")
+
+    def _require_steered(self) -> None:
+        if self._failure is not None:
+            raise self._failure
+
+    def _steer_on(self) -> None:
+        """Tell robots their velocities at each interval; whatever goes wrong, they stand, and `advance` raises it."""
+        due_s, turn = self.clock.unpaused_s, 0
+        try:
+            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):
+                now = self.clock.unpaused_s
+                if now < due_s or rospy.is_shutdown():
+                    continue
+                due_s, turn = max(due_s + self._interval_s, now), turn + 1
+                with self._lock:
+                    self._steer()
+                    frames = [frame for port in self._ports.values() for frame in port.frames()] if turn % 2 else []
+                if frames:
+                    self._tf.publish(TFMessage(frames))
+        except Exception as error:
+            if not (self._closed.is_set() or rospy.is_shutdown()):
+                self._failure = error
+                self._news.set()
+                with suppress(NetworkError):  # who could be told stands
+                    self._tell_all(Ros1Port.stand)
+
+    def _steer(self) -> None:
+        drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
+        present = [driven for driven in drivens if driven is not None]
+        team = self._room.arranged(self.clock.unpaused_s, present)
+        told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
+        for driven in team:
+            self._ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
+
+    def _look_on(self) -> None:
+        """Look for robots that nobody knows, again and again; those who have said where they are join."""
+        while not self._closed.wait(_LOOK_S):
+            for port in self._newcomers.look():
+                with self._lock:
+                    self._ports[port.robot] = port
+                self.report(Event(at_s=self.time_s, robot_joins=port.body))
+
+
+def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
+    """Whether the mission's map lets a robot go straight from a place to another."""
+    if mission.map is None:
+        return lambda *_: True
+    roads, d = Roads(World.of(mission)), mission.dimensions
+    for robot in mission.robots:
+        roads.clear(
+            body_of(robot), [robot.position]
+        )  # looks at the map for this body now, not while robots are steered
+    return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])

@@ -1,0 +1,1 @@
+"""ROS 2: its standard messages, without ROS and by DDS."""

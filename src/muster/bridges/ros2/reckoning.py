@@ -1,0 +1,43 @@
+"""Where a robot is on the map by its odometry: each pose ties that to the map anew, as localisation does (REP-105)."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from muster.motion.frames import wrapped
+from muster.motion.port import Place
+
+POSES_LAST_S = 1.0
+"""Who gave a pose on the map so short a time ago does not go by odometry."""
+
+
+class Reckoning:
+    """Ties the frame of a robot's odometry to the map; until a pose came they are taken for one. Metres, radians."""
+
+    def __init__(self) -> None:
+        self._turn, self._shift, self._lift = 1 + 0j, 0j, 0.0  # map = turn * odometry + shift, in the complex plane
+        self._pose: tuple[Place, float] | None = None
+        self._odometry: tuple[Place, float] | None = None
+        self._posed_s = -math.inf
+
+    def tie(self, now: float, place: Place, heading: float) -> None:
+        """It is there on the map now, where its odometry is what it last said."""
+        self._posed_s, self._pose = now, (place, heading)
+        if self._odometry is not None:
+            self._tie(*self._pose, *self._odometry)
+
+    def reckon(self, now: float, place: Place, heading: float) -> tuple[Place, float] | None:
+        """Place and heading on the map by those of the odometry; None while there are poses."""
+        if self._odometry is None and self._pose is not None:
+            self._tie(*self._pose, place, heading)
+        self._odometry = place, heading
+        if now - self._posed_s < POSES_LAST_S:
+            return None
+        there = self._turn * complex(*place[:2]) + self._shift
+        return (there.real, there.imag, place[2] + self._lift), float(wrapped(heading + cmath.phase(self._turn)))
+
+    def _tie(self, place: Place, heading: float, odometry: Place, headed: float) -> None:
+        self._turn = cmath.rect(1.0, heading - headed)
+        self._shift = complex(*place[:2]) - self._turn * complex(*odometry[:2])
+        self._lift = place[2] - odometry[2]

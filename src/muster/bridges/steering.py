@@ -1,0 +1,153 @@
+"""Steers robots to their way points by velocities, around each other: the thesis' RVO_planner and velocity_publisher.
+
+TCF thesis, Table 5.2. Here ORCA chooses the velocity (`motion/avoidance/orca.py`), and the robot's kinematics turn it
+into what it can do within its limits. Robots on the ground give way to each other in the plane; those in the air too,
+in space where the mission is in space; nobody to those of the other kind.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from muster.mission.model import Robot
+from muster.motion.avoidance import Agents, Orca
+from muster.motion.avoidance.orca import Parameters
+from muster.motion.frames import enu_to_flu
+from muster.motion.grid import Floats
+from muster.motion.kinematics.kinematics import approach
+from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.motion.port import Place, Waypoint
+
+_TO_THE_RIGHT = math.radians(1.0)
+"""By which everybody aims aside: two that meet head on then pass each other on one side."""
+SETTLES_S = 0.4
+"""How fast robots come to their way points at the end: several times the delay from a pose to what is done about it."""
+_STANDS = 1e9
+"""Priority of who stands: the others go around."""
+
+Velocity = tuple[float, float, float, float]
+"""Ahead, left, up in m/s, and yaw rate in rad/s: of a body."""
+STILL: Velocity = (0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A robot, where it is, and where it is to go.
+
+    Parameters
+    ----------
+    position, heading, velocity
+        map frame: metres, radians, m/s.
+    aim
+        None: it stands.
+    arrived
+        whether it is at the aim: then it turns to its heading.
+    waits
+        whether it has done what it was told, and may be moved aside.
+    """
+
+    robot: Robot
+    position: Place
+    heading: float
+    velocity: Place
+    aim: Waypoint | None
+    arrived: bool
+    waits: bool = False
+
+    @property
+    def goes(self) -> bool:
+        return self.aim is not None and not self.arrived
+
+
+class Steering:
+    """Remembers what robots were told last, which limits what they can be told next.
+
+    Parameters
+    ----------
+    interval_s
+        between two calls.
+    space
+        whether those that fly have heights.
+    margin_m
+        by which robots are taken for larger.
+    """
+
+    def __init__(self, *, interval_s: float, space: bool, margin_m: float = 0.05) -> None:
+        self._interval_s = interval_s
+        self._space = space
+        self._margin_m = margin_m
+        self._orca = Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0))
+        self._before: dict[str, Floats] = {}
+
+    def velocities(self, team: Sequence[Driven]) -> dict[str, Velocity]:
+        """What each robot is to do in the next interval, by its id."""
+        told: dict[str, Velocity] = {}
+        for kind in ("ground", "air"):
+            crowd = [driven for driven in team if driven.robot.kind == kind]
+            if crowd:
+                chosen = self._chosen(crowd, 3 if kind == "air" and self._space else 2)
+                told |= {one.robot.id: self._told(one, velocity) for one, velocity in zip(crowd, chosen, strict=True)}
+        return told
+
+    def forget(self, robot: str) -> None:
+        """It stands: it begins from rest."""
+        self._before.pop(robot, None)
+
+    def _chosen(self, crowd: Sequence[Driven], size: int) -> Floats:
+        """Velocities (n, 3) on which nobody meets anybody.
+
+        ORCA starts from what robots would do, not from what they do (van den Berg et al. 2011, section 5.2): the latter
+        lags behind, and where a robot alone must give way it would forbid it to brake beside one that is far away.
+        """
+        preferred = np.array([self._preferred(driven, size) for driven in crowd])
+        agents = Agents(
+            positions=np.array([driven.position[:size] for driven in crowd]),
+            velocities=np.where(
+                [[driven.goes] for driven in crowd], preferred, np.array([driven.velocity[:size] for driven in crowd])
+            ),
+            preferred=preferred,
+            radii=np.array([self._radius(driven.robot) for driven in crowd]),
+            max_speeds=np.array([driven.robot.speed_mps for driven in crowd]),
+            priorities=np.array([driven.robot.avoidance_priority if driven.goes else _STANDS for driven in crowd]),
+        )
+        chosen = np.zeros((len(crowd), 3))
+        chosen[:, :size] = self._orca.velocities(agents, dt=self._interval_s)
+        chosen[[not driven.goes for driven in crowd]] = 0.0
+        return chosen
+
+    def _radius(self, robot: Robot) -> float:
+        return robot.radius_m + self._margin_m if robot.radius_m > 0 else 0.0
+
+    def _preferred(self, driven: Driven, size: int) -> Floats:
+        """Straight to the aim, so slow that it can stop there."""
+        if driven.aim is None or driven.arrived:
+            return np.zeros(size)
+        limits = limits_of(driven.robot)
+        offset = np.subtract(driven.aim.position[:size], driven.position[:size])
+        far = float(np.linalg.norm(offset))
+        if far == 0:
+            return np.zeros(size)
+        brakes = math.sqrt(2 * limits.acceleration_mps2 * far)
+        wanted = approach(offset[None], min(limits.speed_mps, brakes), SETTLES_S)[0]
+        c, s = math.cos(_TO_THE_RIGHT), math.sin(_TO_THE_RIGHT)
+        wanted[:2] = (c * wanted[0] + s * wanted[1], c * wanted[1] - s * wanted[0])
+        return np.asarray(wanted)
+
+    def _told(self, driven: Driven, velocity: Floats) -> Velocity:
+        if driven.aim is None:
+            self.forget(driven.robot.id)
+            return STILL
+        kinematics, limits = kinematics_named(driven.robot.kinematics), limits_of(driven.robot)
+        states = np.array([[*driven.position, driven.heading]])
+        heading = None if driven.aim.heading is None else np.array([driven.aim.heading])
+        wanted = kinematics.inputs(states, velocity[None], heading, limits)
+        before = self._before.get(driven.robot.id, np.zeros_like(wanted))
+        inputs = kinematics.limited(wanted, limits, before, self._interval_s)
+        self._before[driven.robot.id] = inputs
+        rates = kinematics.velocities(states, inputs)[0]
+        ahead, left, up = map(float, enu_to_flu(rates[:3], driven.heading))
+        return ahead, left, up, float(rates[3])

@@ -1,0 +1,149 @@
+"""`muster fly`: a plan carried out by drones over MAVLink; without --arm it only shows what would be sent."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.halting import ctrl_c_halts
+from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.real import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
+from muster.mission.errors import ParameterError
+from muster.mission.interrupts import TO_END
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, json_text
+
+if TYPE_CHECKING:
+    from muster.bridges.mavlink import MavlinkFleet
+
+_AT_END = ("hold", "return", "land")
+
+
+@click.command()
+@mission_argument
+@click.option(
+    "--endpoint",
+    "endpoints",
+    multiple=True,
+    required=True,
+    metavar="ROBOT=ENDPOINT",
+    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it.",
+)
+@click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
+@click.option("--offboard", is_flag=True, help="Say way points one by one instead of uploading missions.")
+@click.option("--height", type=Finite(0.5, 500), metavar="M", help="Of flight above home, for a mission in the plane.")
+@click.option("--low-battery", type=Finite(1, 99), default=25, show_default=True, metavar="%", help="Return below it.")
+@click.option("--wait", type=Finite(0.1, 600), default=10, show_default=True, metavar="S", help="For drones to answer.")
+@click.option("--at-end", type=click.Choice(_AT_END), default="hold", show_default=True, help="When all is done.")
+@real_options
+def command(
+    mission: str,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    endpoints: tuple[str, ...],
+    arm: bool,
+    offboard: bool,
+    height: float | None,
+    low_battery: float,
+    wait: float,
+    at_end: str,
+    **asked: Any,
+) -> int:
+    """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
+
+    Without --arm nothing flies: the drones are listened to, and it is shown what they would be told. Ctrl-C
+    lets them hover. Read docs/mavlink.md before the first flight.
+    """
+    from muster.bridges.mavlink import MavlinkFleet
+    from muster.bridges.mavlink.settings import Settings
+
+    wishes = Wishes(**asked)
+    require_outputs(wishes, (mission, robots, suitability))
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    given = read_wanted(wishes, loaded)
+    settings = Settings(arm=arm, offboard=offboard, low_battery=low_battery / 100)
+    fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
+    try:
+        plan = given or planned(wishes, loaded)
+        if not wishes.quiet:
+            _warn(loaded, plan, height)
+        fleet.connect(wait)
+        if not arm:
+            _show(loaded, plan, fleet, wishes.form)
+            return DONE
+        return _fly(loaded, plan, fleet, at_end, wishes)
+    finally:
+        fleet.close()
+
+
+def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
+    named: dict[str, str] = {}
+    for text in endpoints:
+        robot, _, endpoint = text.partition("=")
+        if not endpoint or robot in named:
+            raise ParameterError(f"--endpoint: {text}; expected ROBOT=ENDPOINT, once for each robot")
+        named[robot] = endpoint
+    return named
+
+
+def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
+    """Say where drones, which do not see each other, would meet."""
+    from muster import verify
+    from muster.exchange.itinerary import itineraries
+    from muster.exchange.separation import meetings
+
+    ways = itineraries(mission, verify(mission, plan))
+    for meeting in meetings([way if height is None else way.at_least(height) for way in ways]):
+        click.echo(f"warning: {meeting}", err=True)
+
+
+def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> None:
+    """What each drone would be told, in order."""
+    from muster.bridges.mavlink.dry_run import lines_of
+    from muster.cli.tables import print_table
+    from muster.execution import way_of
+
+    rows = lines_of(mission, plan, fleet, way_of(mission))
+    if form == "json":
+        click.echo(json_text({"would_send": [row.as_dict() for row in rows]}), nl=False)
+        return
+    table = [
+        (
+            row.robot,
+            row.task,
+            _degrees(row.lat_deg),
+            _degrees(row.lon_deg),
+            f"{row.above_home_m:.1f}",
+            f"{row.hold_s:g}",
+        )
+        for row in rows
+    ]
+    heads = ("robot", "task", "latitude", "longitude", "above home m", "hold s")
+    print_table(heads, table, right=heads[2:])
+    click.echo("nothing was sent but heartbeats and requests for telemetry; --arm flies it", err=True)
+
+
+def _degrees(value: float | None) -> str:
+    return "-" if value is None else f"{value:.7f}"
+
+
+def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: str, wishes: Wishes) -> int:
+    with ctrl_c_halts(TO_END) as halt:
+        report = carried_out(mission, plan, fleet, wishes, halt, at_end=lambda: _end(fleet, at_end, halt))
+    for fault in fleet.faults:
+        click.echo(str(fault), err=True)
+    return reported(mission, report, wishes, halt, "drones were told to hover")
+
+
+def _end(fleet: MavlinkFleet, at_end: str, halt: threading.Event) -> None:
+    """What drones do when all is done, other than to hover."""
+    if at_end != "hold" and not halt.is_set():
+        {"return": fleet.go_back, "land": fleet.land}[at_end]()
+        if halt.is_set():  # Ctrl-C meanwhile
+            fleet.stop()

@@ -1,0 +1,161 @@
+"""What `muster replay` does with recordings of ROS: shows their poses, writes records as such, compares with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.tables import counted, number, print_table
+from muster.mission.errors import ParameterError
+
+if TYPE_CHECKING:
+    from muster.report.record import Recording
+    from muster.report.recordings import PoseTrack
+
+
+def require_recordings(
+    record: Path,
+    html: Path | None,
+    gantt: Path | None,
+    ros2: Path | None,
+    ros1: Path | None,
+    reference: Path | None,
+    topics: tuple[str, ...],
+    begins: float | None,
+) -> None:
+    """Find out before anything is written that options do not go together.
+
+    Raises
+    ------
+    ParameterError
+        if they do not, or a file has another suffix than its format.
+    """
+    from muster.report.recordings import is_recording
+
+    if is_recording(record):
+        wishes = {"html": html, "gantt": gantt, "ros2": ros2, "ros1": ros1, "reference": reference}
+        for option, wish in wishes.items():
+            if wish is not None:
+                raise ParameterError(f"--{option}: {record} is a recording of poses; expected a record of muster")
+    for file, option, suffix in ((ros2, "--ros2", ".mcap"), (ros1, "--ros1", ".bag")):
+        if file is not None and file.suffix != suffix:
+            raise ParameterError(f"{option}: {file}; expected a file that ends in {suffix}")
+    if topics and reference is None:
+        raise ParameterError("--topic given; expected it together with --reference")
+    if begins is not None and reference is None and ros2 is None and ros1 is None:
+        raise ParameterError("--begins given; expected it together with --reference, --ros2 or --ros1")
+
+
+def show_recording(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
+    """Print and draw the tracks in a recording of others."""
+    tracks = _tracks(file, quiet=quiet)
+    if plot is not None:
+        from muster.report.files import save_figure
+        from muster.report.recordings.picture import plot_tracks
+
+        save_figure(plot_tracks(file.name, list(tracks.values())), plot)
+    rows = [_row(track) for track in tracks.values()]
+    if form == "json":
+        from muster.mission.plan import json_text
+
+        click.echo(json_text({"recording": str(file), "tracks": rows}), nl=False)
+        return DONE
+    columns = ("topic", "type", "frame", "poses", "begins [s]", "lasts [s]", "travelled [m]")
+    cells = [
+        (
+            *(row["topic"], row["type"], row["frame"], str(row["poses"])),
+            *(f"{row['begins_s']:.3f}", number(row["lasts_s"]), number(row["travelled_m"])),
+        )
+        for row in rows
+    ]
+    print_table(columns, cells, title=f"{file}: {counted(len(rows), 'track')}", right=columns[3:])
+    return DONE
+
+
+def _tracks(file: Path, *, quiet: bool) -> Mapping[str, PoseTrack]:
+    from muster.report.recordings import read_poses
+
+    recording = read_poses(file)
+    if not recording.complete and not quiet:
+        click.echo(f"warning: {file}: breaks off; what is whole counts", err=True)
+    return recording.tracks
+
+
+def _row(track: PoseTrack) -> dict[str, Any]:
+    from muster.motion.metrics import path_length, travel_time
+
+    return {
+        "topic": track.topic,
+        "type": track.kind,
+        "frame": track.frame,
+        "poses": len(track.times_s),
+        "begins_s": float(track.times_s[0]),
+        "lasts_s": travel_time(track.times_s),
+        "travelled_m": path_length(track.positions),
+    }
+
+
+def write_for_ros(
+    recording: Recording, ros2: Path | None, ros1: Path | None, begins: float | None, *, quiet: bool
+) -> None:
+    """Write a record as files of ROS, where these are wanted."""
+    from muster.report.recordings import write_ros1, write_ros2
+
+    for file, write in ((ros2, write_ros2), (ros1, write_ros1)):
+        if file is not None:
+            counts = write(file, recording, begins_s=begins or 0.0)
+            if not quiet:
+                topics, messages = counted(len(counts), "topic"), counted(sum(counts.values()), "message")
+                click.echo(f"wrote {file}: {topics}, {messages}", err=True)
+
+
+def errors_against(
+    recording: Recording, file: Path, topics: tuple[str, ...], begins: float | None, *, quiet: bool
+) -> Mapping[str, Any]:
+    """How far robots were from what a recording has: its file, its clock and a row a robot."""
+    from muster.report.recordings import Reference, deviations
+
+    reference = Reference.of(recording, _tracks(file, quiet=quiet), _topics(topics), begins)
+    rows = [
+        {
+            "robot": off.robot,
+            "topic": off.topic,
+            "samples": off.samples,
+            "error_m": off.error.total,
+            "mean_m": off.error.mean,
+            "most_m": off.error.most,
+            "risk_per_m": off.risk,
+            "travelled_m": off.travelled_m,
+            "reference_m": off.reference_m,
+        }
+        for off in deviations(recording, reference)
+    ]
+    return {"file": str(file), "begins_s": reference.begins_s, "robots": rows}
+
+
+def _topics(texts: tuple[str, ...]) -> dict[str, str]:
+    topics: dict[str, str] = {}
+    for text in texts:
+        robot, equals, topic = text.partition("=")
+        if not equals or not robot or not topic or robot in topics:
+            raise ParameterError(f"--topic: {text}; expected ROBOT=TOPIC, each robot at most once")
+        topics[robot] = topic
+    return topics
+
+
+def print_errors(off: Mapping[str, Any]) -> None:
+    columns = ("robot", "topic", "samples", "(7) [m]", "mean [m]", "most [m]", "(8) [1/m]", "way [m]")
+    rows = [
+        (
+            *(row["robot"], row["topic"], str(row["samples"])),
+            *(number(row[key]) for key in ("error_m", "mean_m", "most_m", "risk_per_m", "travelled_m")),
+            number(row["reference_m"]),
+        )
+        for row in off["robots"]
+    ]
+    title = f"{off['file']}: the mission's clock begins at {off['begins_s']:.3f} s of it"
+    print_table((*columns, "reference [m]"), rows, title=title, right=(*columns[2:], "reference [m]"))

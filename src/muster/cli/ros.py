@@ -1,0 +1,215 @@
+"""`muster ros`: the high-level controller of robots on ROS 1 (TCF thesis, section 5.2)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import click
+
+from muster.cli.exits import DONE, INTERRUPTED
+from muster.cli.halting import ctrl_c_halts
+from muster.cli.options import Finite, load_mission, optional_mission_argument
+from muster.cli.real import (
+    Wishes,
+    carried_out,
+    from_here,
+    read_wanted,
+    real_options,
+    reported,
+    require_outputs,
+    ros_options,
+    wait_for_robots,
+)
+from muster.mission.errors import MusterError, NetworkError, ParameterError
+from muster.mission.interrupts import TO_END
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from muster.bridges.ros1.children import Children
+    from muster.bridges.ros1.controller import Controller
+    from muster.bridges.ros1.fleet import Ros1Fleet
+    from muster.execution import Report
+
+_LEFT = "the robots were told to stand"
+
+
+@click.command()
+@optional_mission_argument
+@click.option("--master", metavar="URI", help="The ROS master.  [default: ROS_MASTER_URI, or localhost]")
+@click.option(
+    "--drive",
+    type=click.Choice(["cmd_vel", "goals"]),
+    default="cmd_vel",
+    show_default=True,
+    help="What robots take: velocities, or goals on WP.",
+)
+@click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
+@click.option(
+    "--arrival", type=Finite(0.001, 100.0), default=0.1, show_default=True, metavar="M", help="From a way point."
+)
+@click.option("--rate", type=Finite(1.0, 200.0), default=20.0, show_default=True, metavar="HZ", help="Of velocities.")
+@click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
+@click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
+@ros_options
+@real_options
+def command(
+    mission: str | None,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    master: str | None,
+    drive: Literal["cmd_vel", "goals"],
+    namespace: str,
+    frame: str,
+    wait_s: float,
+    arrival: float,
+    rate: float,
+    known_only: bool,
+    on_start: bool,
+    stay: bool,
+    **asked: Any,
+) -> int:
+    """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
+
+    Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION it waits for command_interface/load and start. Ctrl-C
+    stops all robots.
+    """
+    from muster.bridges.ros1.extra import require_rospy
+
+    require_rospy()
+    from muster.bridges.ros1.fleet import Ros1Fleet
+    from muster.bridges.ros1.node import become_node, leave
+
+    wishes = Wishes(**asked)
+    _require_fitting(wishes, mission, stay, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot)
+    require_outputs(wishes, (mission, robots, suitability))
+    loaded = None
+    if mission is not None:
+        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    given = None if loaded is None else read_wanted(wishes, loaded)
+
+    def fleet_of(its: Mission) -> Ros1Fleet:
+        return Ros1Fleet(
+            its,
+            drive=drive,
+            namespace=namespace,
+            frame=frame,
+            arrival_m=arrival,
+            rate_hz=rate,
+            joins=not known_only,
+        )
+
+    become_node("muster", master)
+    try:
+        own = ("--seed", str(wishes.seed), "--time-limit", str(wishes.time_limit))
+        node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
+        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, wishes), node, master, begins=not on_start)
+    finally:
+        leave()
+
+
+def _require_fitting(wishes: Wishes, mission: str | None, stay: bool, **of_mission: object) -> None:
+    """Options that say something of a mission need one, and a file holds what came of one."""
+    for name, value in (of_mission | {"plan": wishes.plan}).items():
+        if mission is None and value is not None:
+            raise ParameterError(f"--{name} given without a MISSION; expected both")
+    for name in ("record", "html", "plot", "gantt"):
+        if stay and getattr(wishes, name) is not None:
+            raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+
+
+@dataclass(frozen=True)
+class _Work:
+    """How missions are carried out, whichever they are."""
+
+    fleet_of: Callable[[Mission], Ros1Fleet]
+    plan: Plan | None
+    wait_s: float
+    stay: bool
+    wishes: Wishes
+
+
+def _with_nodes(
+    mission: Mission | None, work: _Work, node: tuple[str, ...], master: str | None, *, begins: bool
+) -> int:
+    """Carry missions out while the nodes beside this one live; returns the exit code.
+
+    Parameters
+    ----------
+    node
+        the command that runs such a node.
+    begins
+        whether the mission begins before anybody calls `start`.
+    """
+    from muster.bridges.ros1.children import Children
+    from muster.bridges.ros1.controller import Controller
+    from muster.bridges.ros1.node import master_address
+
+    controller = Controller()
+    if mission is not None:
+        controller.load(mission)
+        if begins:
+            controller.start()
+    elif not work.wishes.quiet:
+        click.echo("waits for command_interface/load and start", err=True)
+    with ctrl_c_halts(TO_END) as asked:
+        children = Children(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        with children:
+            code = _one(controller, work, children)
+            while work.stay and not controller.ending.is_set():
+                code = _one(controller, work, children)
+        if children.fault:
+            raise NetworkError(children.fault)
+        return INTERRUPTED if controller.ending.is_set() else code
+
+
+def _one(controller: Controller, work: _Work, children: Children) -> int:
+    """Wait for one mission and carry it out; returns the exit code.
+
+    Raises
+    ------
+    MusterError
+        if that cannot be done; with --stay that is told, and the next mission may be loaded.
+    """
+    mission, code, reason = controller.await_start(), DONE, ""
+    try:
+        report = None if mission is None else _through(mission, controller, work, children)
+        if mission is not None and report is not None and not children.fault:
+            code = reported(mission, report, work.wishes, controller.halt, _LEFT)
+        elif not children.fault and controller.halt.is_set():
+            click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
+            code = INTERRUPTED
+    except MusterError as error:
+        if not work.stay and not children.fault:
+            raise
+        reason = "" if children.fault else str(error)
+        click.echo(reason, err=True, nl=bool(reason))
+    controller.end("cancelled" if controller.halt.is_set() else reason)
+    return code
+
+
+def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
+    """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
+    fleet, wishes = work.fleet_of(mission), work.wishes
+    try:
+        wait_for_robots(fleet, controller.halt, work.wait_s)
+        if controller.halt.is_set():
+            return None
+        there = from_here(mission, fleet)
+        plan = work.plan or controller.plan(there, seed=wishes.seed, time_limit=wishes.time_limit)
+        if plan is None or controller.halt.is_set():
+            return None
+        controller.carry_out(fleet)
+        return carried_out(there, plan, fleet, wishes, controller.halt, [controller.board])
+    finally:
+        fleet.stop()
+        if children.fault:
+            fleet.fall_silent()  # a master that hangs is not told of the end
+        else:
+            fleet.close()

@@ -1,0 +1,94 @@
+"""`muster ros2`: a plan carried out by robots on ROS 2, by DDS alone or by rclpy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+
+from muster.cli.exits import INTERRUPTED
+from muster.cli.halting import ctrl_c_halts
+from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.real import (
+    Wishes,
+    carried_out,
+    from_here,
+    planned,
+    read_wanted,
+    real_options,
+    reported,
+    require_outputs,
+    ros_options,
+    wait_for_robots,
+)
+from muster.mission.interrupts import TO_END
+
+_NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
+
+
+@click.command()
+@mission_argument
+@click.option("--domain", type=int, metavar="N", help="Of ROS 2, 0 to 232.  [default: ROS_DOMAIN_ID, or 0]")
+@click.option(
+    "--give",
+    type=click.Choice(["goals", "nav2"]),
+    default="goals",
+    show_default=True,
+    help="How robots are told where to go: goal_pose, or Nav2's navigate_to_pose.",
+)
+@click.option(
+    "--by", type=click.Choice(["dds", "rclpy"]), help="The wire.  [default: rclpy where it can be imported, or dds]"
+)
+@click.option(
+    "--arrival", type=Finite(0.001, 100.0), default=0.25, show_default=True, metavar="M", help="From a way point."
+)
+@ros_options
+@real_options
+def command(
+    mission: str,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    domain: int | None,
+    namespace: str,
+    give: Literal["goals", "nav2"],
+    by: Literal["dds", "rclpy"] | None,
+    wait_s: float,
+    arrival: float,
+    known_only: bool,
+    **asked: Any,
+) -> int:
+    """Carry out a MISSION with robots on ROS 2, in real time; robots that it does not name may join.
+
+    Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are.
+    """
+    from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.port import Arrival
+    from muster.bridges.ros2.wire import open_wire
+
+    wishes = Wishes(**asked)
+    require_outputs(wishes, (mission, robots, suitability))
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    given = read_wanted(wishes, loaded)
+    with ctrl_c_halts(TO_END) as halt:
+        fleet = Ros2Fleet(
+            loaded,
+            wire=open_wire(by, domain),
+            give=give,
+            namespace=namespace,
+            arrival=Arrival(near_m=arrival),
+            joins=not known_only,
+        )
+        try:
+            wait_for_robots(fleet, halt, wait_s, _NEEDED[give])
+            there = from_here(loaded, fleet)
+            plan = given or planned(wishes, there)
+            if halt.is_set():
+                click.echo("interrupted; nothing was sent", err=True)
+                return INTERRUPTED
+            report = carried_out(there, plan, fleet, wishes, halt)
+        finally:
+            fleet.close()
+    return reported(there, report, wishes, halt, "the robots were told to stay where they are")

@@ -1,0 +1,146 @@
+"""Where each robot is at which time, if a plan goes as the judge's schedule says: what every format is made from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
+
+from muster.execution.doing import Way, Work, place, work_of
+from muster.execution.travel import way_of
+from muster.mission.errors import Finding, PlanError
+from muster.mission.model import Mission, Robot, Task
+from muster.motion.actions import plan as doing
+from muster.motion.port import Place
+from muster.motion.roads import Roads
+from muster.verification import RouteFigures, Verdict, Visit
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A place that a robot passes.
+
+    Parameters
+    ----------
+    place
+        metres in the map frame.
+    arrives_s, leaves_s
+        seconds of the schedule; between them it stays: it works, or waits for another robot's work.
+    task
+        what it does there; None on the way.
+    heading
+        radians from east, anticlockwise, to which it turns there; None: as it arrives.
+    """
+
+    place: Place
+    arrives_s: float
+    leaves_s: float
+    task: str | None = None
+    heading: float | None = None
+
+    @property
+    def stays_s(self) -> float:
+        return self.leaves_s - self.arrives_s
+
+
+@dataclass(frozen=True)
+class Itinerary:
+    """A robot's passages, of which the first is its start; `has_end`: the last is where its route has to end."""
+
+    robot: Robot
+    passages: tuple[Passage, ...]
+    has_end: bool
+
+    @property
+    def start(self) -> Passage:
+        return self.passages[0]
+
+    @property
+    def under_way(self) -> tuple[Passage, ...]:
+        """Those between the start and where the route has to end."""
+        return self.passages[1:-1] if self.has_end else self.passages[1:]
+
+    def at_least(self, height_m: float) -> Itinerary:
+        """With no passage under way lower than so many metres above the start."""
+        floor = self.start.place[2] + height_m
+        raised = [replace(p, place=(*p.place[:2], max(p.place[2], floor))) for p in self.under_way]
+        return replace(self, passages=(self.start, *raised, *(self.passages[-1:] if self.has_end else ())))
+
+
+def itineraries(mission: Mission, verdict: Verdict, roads: Roads | None = None) -> tuple[Itinerary, ...]:
+    """The itinerary of every robot, in mission order; a robot without tasks stays at its start.
+
+    Parameters
+    ----------
+    verdict
+        of a plan that is admissible.
+    roads
+        over the mission's map, if they are known.
+
+    Raises
+    ------
+    PlanError
+        if there is no way over the map where the plan has a leg.
+    MissionError, MissingExtraError
+        for travel over a map, as `Roads.of`.
+    """
+    way = way_of(mission, roads)
+    tasks = {task.id: task for task in mission.tasks}
+    pairs = zip(mission.robots, verdict.routes, strict=True)
+    return tuple(_itinerary(mission, robot, figures, tasks, way) for robot, figures in pairs)
+
+
+def _itinerary(mission: Mission, robot: Robot, figures: RouteFigures, tasks: dict[str, Task], way: Way) -> Itinerary:
+    passages = [Passage(place(robot.position), 0.0, figures.leaves_s)]
+    for visit in figures.visits:
+        work = work_of(tasks[visit.task], robot, doing, way)
+        if not isinstance(work, Work):
+            raise _no_way(mission, f"robot {robot.id} at task {visit.task}: {work.reason}")
+        passages += _travel(mission, robot, passages[-1], work.entry, visit.arrives_s, way)[:-1]
+        passages += _work(work, visit)
+    end = robot.place_at_end(mission.rules)
+    if end is None or figures.back_s is None:
+        return Itinerary(robot, tuple(passages), has_end=False)
+    passages += _travel(mission, robot, passages[-1], place(end), figures.back_s, way)
+    return Itinerary(robot, tuple(passages), has_end=True)
+
+
+def _travel(mission: Mission, robot: Robot, here: Passage, goal: Place, arrives_s: float, way: Way) -> list[Passage]:
+    """The passages from one place to another, the goal included, at an even speed."""
+    places = way(robot, here.place, goal)
+    if places is None:
+        raise _no_way(mission, f"robot {robot.id}: no way from {_told(here.place)} to {_told(goal)}")
+    lengths = list(accumulate(math.dist(*leg) for leg in pairwise([here.place, *places])))
+    shares = [length / lengths[-1] if lengths[-1] else 1.0 for length in lengths]
+    times = [here.leaves_s + share * (arrives_s - here.leaves_s) for share in shares[:-1]] + [arrives_s]
+    return [Passage(point, time, time) for point, time in zip(places, times, strict=True)]
+
+
+def _work(work: Work, visit: Visit) -> list[Passage]:
+    """The passages of a task, in the time that the judge gives the work; in the first the robot may have to wait."""
+    scale = (visit.ends_s - visit.starts_s) / work.lasts_s if work.lasts_s else 0.0
+    found = [
+        Passage(point, visit.starts_s + scale * arrives, visit.starts_s + scale * leaves, visit.task, heading)
+        for point, arrives, leaves, heading in _timed(work)
+    ]
+    found[0] = replace(found[0], arrives_s=visit.arrives_s)
+    found[-1] = replace(found[-1], leaves_s=visit.ends_s)
+    return found
+
+
+def _timed(work: Work) -> Iterator[tuple[Place, float, float, float | None]]:
+    """Each way point of a work with the seconds, from the entry on, at which the robot arrives and leaves."""
+    here, now = work.entry, 0.0
+    for waypoint in work.waypoints:
+        arrives = now + math.dist(here, waypoint.position) / work.speed_mps
+        here, now = waypoint.position, arrives + waypoint.hold_s
+        yield here, arrives, now, waypoint.heading
+
+
+def _no_way(mission: Mission, what: str) -> PlanError:
+    return PlanError([Finding(mission.source.file, None, "", what, "a plan whose legs can be travelled")])
+
+
+def _told(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{c:g}' for c in point)})"

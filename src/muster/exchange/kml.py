@@ -1,0 +1,71 @@
+"""A plan as KML 2.2 (OGC 07-147r2): longitude first; a folder each of areas, routes, tasks and robots.
+
+Heights are those of the mission, over the ground (`relativeToGround`): KML's own zero is the mean sea level, which a
+height above the ellipsoid does not tell. What crosses the meridian of 180 degrees is cut there. The order of elements
+is that of the schema.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from xml.etree import ElementTree as Tree
+
+from muster.exchange.antimeridian import cut_line, cut_ring
+from muster.exchange.earth import Spot
+from muster.exchange.survey import AREAS, Feature, Survey
+from muster.exchange.xml_text import add, decimal, text_of
+
+_NAMESPACE = "http://www.opengis.net/kml/2.2"
+
+
+def kml_text(survey: Survey) -> str:
+    """A KML document."""
+    root = Tree.Element("kml", {"xmlns": _NAMESPACE})
+    document = add(root, "Document")
+    add(document, "name", survey.mission)
+    groups = (("areas", survey.areas), ("routes", survey.routes), ("tasks", survey.tasks), ("robots", survey.robots))
+    for name, features in groups:
+        folder = add(document, "Folder")
+        add(folder, "name", name)
+        for feature in features:
+            _placemark(folder, feature)
+    return text_of(root)
+
+
+def _placemark(folder: Tree.Element, feature: Feature) -> None:
+    mark = add(folder, "Placemark")
+    add(mark, "name", feature.name)
+    data = add(mark, "ExtendedData")
+    for name, value in feature.properties.items():
+        if name != "name" and value is not None:
+            told = " ".join(value) if isinstance(value, list) else value
+            add(add(data, "Data", name=name), "value", told)
+    heights = (0.0,) * len(feature.spots) if feature.heights_m is None or feature.kind in AREAS else feature.heights_m
+    spots = [replace(spot, alt=height) for spot, height in zip(feature.spots, heights, strict=True)]
+    if feature.kind in AREAS:
+        rings = cut_ring(spots)
+        for ring in rings:
+            outer = add(add(_parent(mark, rings), "Polygon"), "outerBoundaryIs")
+            add(add(outer, "LinearRing"), "coordinates", _coordinates([*ring, ring[0]]))
+        return
+    lines = cut_line(spots)
+    for line in lines:
+        shape = add(_parent(mark, lines), "LineString" if feature.kind == "route" else "Point")
+        if feature.heights_m is not None:
+            add(shape, "altitudeMode", "relativeToGround")
+        elif feature.kind == "route":
+            add(shape, "tessellate", 1)
+        add(shape, "coordinates", _coordinates(line))
+
+
+def _parent(mark: Tree.Element, pieces: Sequence[Sequence[Spot]]) -> Tree.Element:
+    """What holds a shape: the mark, or where it has several one element that holds them all."""
+    if len(pieces) == 1:
+        return mark
+    found = mark.find("MultiGeometry")
+    return add(mark, "MultiGeometry") if found is None else found
+
+
+def _coordinates(spots: Sequence[Spot]) -> str:
+    return " ".join(f"{decimal(spot.lon)},{decimal(spot.lat)},{decimal(spot.alt)}" for spot in spots)

@@ -1,0 +1,34 @@
+"""The words of QGroundControl's plan files that Muster writes and reads.
+
+Source: QGroundControl developer guide, "Plan File Format"; numbers are MAVLink's MAV_CMD, MAV_FRAME, MAV_AUTOPILOT and
+MAV_TYPE.
+"""
+
+from __future__ import annotations
+
+NAV_WAYPOINT = 16
+NAV_LOITER_TIME = 19
+NAV_RETURN_TO_LAUNCH = 20
+NAV_LAND = 21
+NAV_TAKEOFF = 22
+NAV_LAST = 95
+"""Commands up to this one say where to go; those after it do something there."""
+CONDITION_YAW = 115
+DO_CHANGE_SPEED = 178
+
+FRAME_GLOBAL = 0
+FRAME_MISSION = 2
+FRAME_GLOBAL_RELATIVE_ALT = 3
+FRAME_GLOBAL_INT = 5
+FRAME_GLOBAL_RELATIVE_ALT_INT = 6
+
+QUADROTOR = 2
+GROUND_ROVER = 10
+SURFACE_BOAT = 11
+
+FIRMWARE = {"px4": 12, "ardupilot": 3}
+
+RELATIVE_TO_HOME = 1
+"""AltitudeMode, and globalPlanAltitudeMode: heights above home."""
+GROUND_SPEED = 1
+"""First parameter of DO_CHANGE_SPEED."""

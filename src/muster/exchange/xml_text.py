@@ -1,0 +1,29 @@
+"""XML as text: built by the standard library, with characters that XML 1.0 cannot hold replaced."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+from xml.etree import ElementTree as Tree
+
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What is no Char of XML 1.0, section 2.2."""
+
+
+def add(parent: Tree.Element, tag: str, text: object = None, **attributes: Any) -> Tree.Element:
+    """A new last child; `text` is what it holds."""
+    child = Tree.SubElement(parent, tag, {name: str(value) for name, value in attributes.items()})
+    if text is not None:
+        child.text = _NOT_XML.sub("\ufffd", decimal(text) if isinstance(text, float) else str(text))
+    return child
+
+
+def decimal(number: float) -> str:
+    """A number as `xsd:decimal`, which has no exponent; to nine places."""
+    return f"{number:.9f}".rstrip("0").rstrip(".")
+
+
+def text_of(root: Tree.Element) -> str:
+    """The document, indented, with its declaration."""
+    Tree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + Tree.tostring(root, encoding="unicode") + "\n"

@@ -1,0 +1,141 @@
+"""A record as messages of ROS: transforms, odometry, poses, plans, markers, events.
+
+Frames by REP-105: `map`, and `<robot>/base_link` of each robot. A twist is in the frame of the body; it turns as fast
+as its headings differ from moment to moment.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from muster.bridges.ros2.description import Message
+from muster.bridges.ros2.messages import (
+    Header,
+    MarkerArray,
+    Odometry,
+    Path,
+    Point,
+    Pose,
+    PoseStamped,
+    PoseWithCovariance,
+    Quaternion,
+    String,
+    TFMessage,
+    Time,
+    Transform,
+    TransformStamped,
+    Twist,
+    TwistWithCovariance,
+    Vector3,
+)
+from muster.bridges.ros2.names import ros_names
+from muster.motion.frames import enu_to_flu, wrapped
+from muster.report.record import Recording
+from muster.report.record import scene as scenes
+from muster.report.record.messages import MAP_FRAME, body_frame, json_bytes
+from muster.report.record.situation import Situation
+from muster.report.recordings.markers import Markers
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A message: where, when on the mission's clock, what."""
+
+    topic: str
+    time_s: float
+    message: Message
+
+
+def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[Sent]:
+    """All that a record tells, in the order of time.
+
+    Parameters
+    ----------
+    begins_s
+        what the mission's clock at 0 is on the clock of the stamps.
+
+    Raises
+    ------
+    ParameterError
+        if two robots have the same name in ROS.
+    """
+    names = ros_names(recording.tracks.robots)
+    told = [*_plans(recording, names, begins_s), *_events(recording, begins_s), *_steps(recording, names, begins_s)]
+    return sorted(told, key=attrgetter("time_s"))
+
+
+def _steps(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[Sent]:
+    tracks = recording.tracks
+    turning = _yaw_rates(tracks.times_s, tracks.headings)
+    for row, now in enumerate(tracks.times_s.tolist()):
+        stamp, transforms = Time.of(begins_s + now), []
+        header = Header(stamp=stamp, frame_id=MAP_FRAME)
+        for k, robot in enumerate(tracks.robots):
+            place, heading = tracks.positions[row, k], float(tracks.headings[row, k])
+            if not np.isfinite(place).all():
+                continue
+            name, frame = names[robot], body_frame(names[robot])
+            pose = Pose(Point(*place.tolist()), _turned(heading))
+            velocity = enu_to_flu(tracks.velocities[row, k], heading).tolist()
+            twist = Twist(Vector3(*velocity), Vector3(0.0, 0.0, float(turning[row, k])))
+            odometry = Odometry(header, frame, PoseWithCovariance(pose), TwistWithCovariance(twist))
+            yield Sent(f"/{name}/odom", now, odometry)
+            yield Sent(f"/{name}/pose", now, PoseStamped(header, pose))
+            moved = Transform(Vector3(*place.tolist()), pose.orientation)
+            transforms.append(TransformStamped(header, frame, moved))
+        yield Sent("/tf", now, TFMessage(tuple(transforms)))
+
+
+def _yaw_rates(times: Any, headings: Any) -> Any:
+    """(m, n) rad/s: how headings differ from the moment before; 0 at first."""
+    rates = np.zeros_like(headings)
+    if len(times) > 1:
+        rates[1:] = wrapped(np.diff(headings, axis=0)) / np.maximum(np.diff(times), 1e-9)[:, None]
+    return np.nan_to_num(rates)
+
+
+def _turned(heading: float) -> Quaternion:
+    return Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
+
+
+def _plans(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[Sent]:
+    """The routes of each plan: `<robot>/plan`, the way on which it goes."""
+    for version in recording.plans:
+        header = Header(stamp=Time.of(begins_s + version.time_s), frame_id=MAP_FRAME)
+        for robot, line in version.lines.items():
+            poses = tuple(PoseStamped(header, Pose(Point(*_in_space(point)))) for point in line)
+            yield Sent(f"/{names[robot]}/plan", version.time_s, Path(header, poses))
+
+
+def _in_space(point: Sequence[float]) -> Sequence[float]:
+    return (*map(float, point), 0.0)[:3]
+
+
+def _events(recording: Recording, begins_s: float) -> Iterator[Sent]:
+    """Each event as JSON, and the markers that it changes; first those of the beginning."""
+    mission, situation = recording.mission, Situation(recording.mission)
+    markers = Markers(ros_names(recording.tracks.robots))
+    tasks = [scenes.task_entity(0.0, task, situation.states[task.id]) for task in mission.tasks]
+    robots = [scenes.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
+    first = markers.of([*scenes.map_entities(mission.map), *tasks, *robots], begins_s)
+    yield Sent("/markers", 0.0, MarkerArray(first))
+    for event in recording.events:
+        text = json.dumps({"time_s": event.time_s, "kind": event.kind, "data": json.loads(json_bytes(event.data))})
+        yield Sent("/muster/event", event.time_s, String(text))
+        changed = situation.take(event.kind, event.data)
+        if changed is not None:
+            entity = _entity(situation, event.kind, changed)
+            yield Sent("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
+
+
+def _entity(situation: Situation, kind: str, name: str) -> dict[str, Any]:
+    if kind == "robot_joins":
+        return scenes.robot_entity(0.0, situation.robots[name], list(situation.robots).index(name))
+    return scenes.task_entity(0.0, situation.tasks[name], situation.states[name])

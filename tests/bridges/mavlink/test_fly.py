@@ -1,0 +1,280 @@
+"""`muster fly` against simulated autopilots that run in threads, faster than time; and its refusals, each one line."""
+
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from muster.bridges.mavlink.autopilots import PX4
+from muster.bridges.mavlink.simulated import faults_of, serve
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.bridges.mavlink.simulated_earth import origin_at
+from muster.bridges.mavlink.simulated_faults import Faults
+from muster.cli.main import run
+from muster.mission.errors import ParameterError
+from muster.mission.model import Origin
+
+ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06)
+MISSION = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+robots: [{id: r_0, position: [0, 0, 0], kind: air, speed_mps: 20}]
+tasks: [{id: near, position: [10, 0, 5]}]
+"""
+
+
+TWO = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+rules: {objective: max}
+robots:
+  - {id: r_0, position: [0, 0, 0], kind: air, speed_mps: 5}
+  - {id: r_1, position: [0, 8, 0], kind: air, speed_mps: 5}
+tasks: [{id: t_0, position: [90, 0, 10]}, {id: t_1, position: [90, 8, 10]}]
+"""
+
+
+@pytest.fixture
+def mission(tmp_path):
+    file = tmp_path / "m.yaml"
+    file.write_text(MISSION)
+    return file
+
+
+@pytest.fixture
+def port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+@pytest.fixture
+def sky(port):
+    """Lets drones fly in threads, each `speed` times as fast as time goes, and speak to the port."""
+    over, threads = threading.Event(), []
+
+    def up(faults=None, *, kind=PX4, system=1, speed=8.0, origin=ORIGIN):
+        made = SimulatedAutopilot(kind, origin, faults or Faults(), system=system)
+        how = {"until": over.is_set, "speed": speed}
+        threads.append(threading.Thread(target=serve, args=(made, ("127.0.0.1", port)), kwargs=how))
+        threads[-1].start()
+        return made
+
+    yield up
+    over.set()
+    for thread in threads:
+        thread.join()
+
+
+@pytest.fixture
+def drone(sky):
+    return sky()
+
+
+def fly(mission, port, *more):
+    return run(["fly", str(mission), "--endpoint", f"r_0=udp:127.0.0.1:{port}", "--time-limit", "0.1", *more])
+
+
+def test_without_arm_it_shows_and_sends_nothing(mission, port, drone, capsys):
+    assert fly(mission, port) == 0
+    said = capsys.readouterr()
+    assert "near" in said.out
+    assert "24.0601" in said.out  # 10 m to the east
+    assert "nothing was sent" in said.err
+    assert not drone.armed
+    assert {message.get_type() for message in drone.heard} <= {"HEARTBEAT", "COMMAND_LONG"}
+
+
+def test_with_arm_it_flies(mission, port, drone, capsys):
+    assert fly(mission, port, "--arm", "--require-complete") == 0
+    assert "mission" in capsys.readouterr().err
+    assert drone.armed
+    assert drone.flight.place == pytest.approx((0.0, 10.0, -5.0), abs=0.05)
+
+
+def until(condition, within_s=20.0):
+    """Wait for something that a drone does."""
+    end = time.monotonic() + within_s
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def flying(mission, port):
+    """`muster fly --arm` of two drones on one port, in a process of its own."""
+    mission.write_text(TWO)
+    both = [f"--endpoint=r_{k}=udp:127.0.0.1:{port}#{k + 1}" for k in range(2)]
+    command = [sys.executable, "-m", "muster.cli", "fly", str(mission), *both, "--time-limit", "0.1", "--arm"]
+    made = []
+
+    def start(*more):
+        made.append(subprocess.Popen([*command, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+        return made[-1]
+
+    yield start
+    for process in made:
+        process.kill()
+        process.communicate()
+
+
+def two(sky, faults=None, speed=3.0):
+    return [sky(faults, system=k + 1, speed=speed, origin=origin_at(ORIGIN, (0.0, 8.0 * k, 0.0))) for k in range(2)]
+
+
+@pytest.mark.parametrize("more", [(), ("--offboard",)])
+def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
+    drones = two(sky, speed=1.0 if more else 3.0)
+    process = flying(*more)
+    until(lambda: all(drone.flight.place[2] < -2.0 for drone in drones))
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    places = [drone.flight.place for drone in drones]
+    assert process.returncode == 130
+    assert re.search(r"interrupted at \d+\.\d s of the mission; drones were told to hover", err)
+    assert "Traceback" not in err
+    assert "0 of 2" in out
+    time.sleep(0.5)
+    assert [drone.flight.place for drone in drones] == places
+    assert all(drone.armed and drone.mode == PX4.hold for drone in drones)
+
+
+def test_ctrl_c_while_drones_arm_leaves_none_armed(sky, flying):
+    drones = two(sky, Faults(slow_arm_s=4.0))
+    process = flying()
+    until(lambda: all(asked_to_arm(drone) for drone in drones))
+    assert not any(drone.armed for drone in drones)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=30) == 130
+    time.sleep(1.5)  # so long arming takes
+    assert not any(drone.armed or drone.flight.flies for drone in drones)
+
+
+def asked_to_arm(drone):
+    return any(m.get_type() == "COMMAND_LONG" and m.command == 400 and m.param1 == 1 for m in list(drone.heard))
+
+
+@pytest.mark.parametrize(
+    ("end", "mode", "more"),
+    [("hold", PX4.hold, ()), ("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
+)
+def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more):
+    drone = sky(speed=1.0 if more else 8.0)
+    assert fly(mission, port, "--arm", "--quiet", "--at-end", end, *more) == 0
+    until(lambda: drone.mode == mode and (end == "hold" or not drone.armed))
+    _, east, down = drone.flight.place
+    assert east == pytest.approx(0.0 if end == "return" else 10.0, abs=1.0)
+    assert down == pytest.approx(-5.0 if end == "hold" else 0.0, abs=1.0)
+    assert drone.armed == (end == "hold")
+
+
+def test_a_height_for_a_mission_in_the_plane(mission, port, drone, capsys):
+    mission.write_text(MISSION.replace("[0, 0, 0]", "[0, 0]").replace("[10, 0, 5]", "[10, 0]"))
+    assert fly(mission, port, "--arm") == 2
+    assert capsys.readouterr().err.strip() == "no height; expected a height for a mission in the plane (--height)"
+    assert fly(mission, port, "--arm", "--height", "7") == 0
+    assert drone.flight.place == pytest.approx((0.0, 10.0, -7.0), abs=0.05)
+    mission.write_text(MISSION)
+    assert fly(mission, port, "--arm", "--height", "7") == 2
+
+
+def test_what_would_be_sent_as_json(mission, port, drone, capsys):
+    assert fly(mission, port, "--format", "json") == 0
+    (line,) = json.loads(capsys.readouterr().out)["would_send"]
+    assert (line["robot"], line["task"], line["hold_s"]) == ("r_0", "near", 0.0)
+    assert (line["lat_deg"], line["lon_deg"]) == pytest.approx((35.53, 24.0601103), abs=1e-6)
+    assert line["above_home_m"] == pytest.approx(5.0, abs=1e-3)
+
+
+def test_the_report_as_json(mission, port, drone, capsys):
+    assert fly(mission, port, "--arm", "--format", "json") == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["tasks_done"] == ["near"]
+    assert report["tasks_lost"] == []
+
+
+def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(mission, port, sky, capsys):
+    sky(Faults(refuse_arm=True))
+    assert fly(mission, port, "--arm", "--require-complete") == 3
+    said = capsys.readouterr()
+    reason = "arm refused: MAV_CMD_COMPONENT_ARM_DISARM: MAV_RESULT_DENIED (PreArm: compass not healthy)"
+    assert re.search(rf"\d s  robot fails: robot r_0, reason {re.escape(reason)}", said.err)
+    assert f"r_0: {reason}" in said.err
+    assert "near" in said.out
+
+
+def test_nobody_there(mission, port, capsys):
+    assert fly(mission, port, "--wait", "0.2") == 2
+    assert capsys.readouterr().err.strip() == "r_0: no heartbeat within 0.2 s; expected a drone at its endpoint"
+
+
+def test_no_origin(mission, port, capsys):
+    mission.write_text(MISSION.replace("origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}", ""))
+    assert fly(mission, port) == 2
+    assert "no origin_wgs84; expected one" in capsys.readouterr().err
+
+
+def test_an_endpoint_without_a_robot(mission, capsys):
+    assert run(["fly", str(mission), "--endpoint", "udp:127.0.0.1:14550"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_faults_by_name():
+    assert faults_of("refuse_arm,loss=0.5,reject_item=2") == Faults(refuse_arm=True, loss=0.5, reject_item=2)
+    for wrong in ("nonsense", "loss", "loss=x", "refuse_arm=1"):
+        with pytest.raises(ParameterError, match="--faults"):
+            faults_of(wrong)
+
+
+CROSSING = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+robots:
+  - {id: r_0, position: [0, 0, 0], kind: air, speed_mps: 5, radius_m: 0.5, skills: [a]}
+  - {id: r_1, position: [50, 50, 0], kind: air, speed_mps: 5, radius_m: 0.5, skills: [b]}
+tasks:
+  - {id: t_0, position: [50, 50, 0], requires: [a]}
+  - {id: t_1, position: [0, 0, 0], requires: [b]}
+"""
+
+
+@pytest.mark.parametrize("apart", [False, True])
+def test_drones_that_would_meet_are_told_of(tmp_path, port, capsys, apart):
+    text = CROSSING.replace("position: [50, 50, 0], kind", "position: [50, 50, 20], kind") if apart else CROSSING
+    text = text.replace("position: [0, 0, 0], requires", "position: [0, 0, 20], requires") if apart else text
+    (tmp_path / "m.yaml").write_text(text)
+    ends = [arg for k in range(2) for arg in ("--endpoint", f"r_{k}=udp:127.0.0.1:{port}#{k + 1}")]
+    assert run(["fly", str(tmp_path / "m.yaml"), *ends, "--wait", "0.1", "--time-limit", "0.1"]) == 2
+    *told, error = capsys.readouterr().err.splitlines()
+    assert "no heartbeat" in error
+    meeting = r"warning: r_0 and r_1: 0\.00 m apart at 7\.1 s of the schedule; expected at least 1\.00 m"
+    assert [bool(re.fullmatch(meeting, line)) for line in told] == ([] if apart else [True])
+
+
+ZONE = """
+schema: muster/1
+origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}
+robots: [{id: r_0, position: [0, 0, 0], kind: air, speed_mps: 20, radius_m: 0.5}]
+tasks: [{id: behind, position: [40, 0, 10]}]
+map:
+  boundary: [[-50, -50], [100, -50], [100, 50], [-50, 50]]
+  zones: [{polygon: [[15, -30], [25, -30], [25, 10], [15, 10]], forbidden_to: [air]}]
+"""
+
+
+def test_ways_around_zones_are_shown_before_anything_flies(tmp_path, sky, port, capsys):
+    (tmp_path / "m.yaml").write_text(ZONE)
+    sky()
+    how = ("--endpoint", f"r_0=udp:127.0.0.1:{port}", "--time-limit", "0.1", "--format", "json")
+    assert run(["fly", str(tmp_path / "m.yaml"), *how]) == 0
+    rows = json.loads(capsys.readouterr().out)["would_send"]
+    assert len(rows) >= 3
+    norths = [(row["lat_deg"] - 35.53) * 111_000 for row in rows]
+    assert max(norths[:-1]) > 10.4  # around the zone's corner, with room for the body
+    assert norths[-1] == pytest.approx(0, abs=0.1)

@@ -1,0 +1,66 @@
+"""In real time a thread speaks: drones hear while nobody calls the fleet, and what ends the thread is told."""
+
+import socket
+import threading
+import time
+
+import pytest
+from tests.bridges.mavlink.drones import ORIGIN, mission
+
+from muster.bridges.mavlink import MavlinkFleet
+from muster.bridges.mavlink.autopilots import PX4
+from muster.bridges.mavlink.settings import Settings
+from muster.bridges.mavlink.simulated import serve
+from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
+from muster.motion.port import Waypoint
+
+
+@pytest.fixture
+def drone():
+    return SimulatedAutopilot(PX4, ORIGIN)
+
+
+@pytest.fixture
+def fleet(drone):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    over = threading.Event()
+    flies = threading.Thread(target=serve, args=(drone, ("127.0.0.1", port)), kwargs={"until": over.is_set})
+    flies.start()
+    made = MavlinkFleet(mission(1), {"r_0": f"udp:127.0.0.1:{port}"}, Settings(arm=True, offboard=True))
+    made.connect(5.0)
+    yield made
+    made.close()
+    over.set()
+    flies.join()
+
+
+def test_planning_that_takes_its_time_ends_no_offboard_flight(fleet, drone):
+    fleet.ports["r_0"].send([Waypoint((80.0, 0.0, 10.0))])
+    until = fleet.time_s + 20.0
+    while drone.flight.place[2] > -2.0:
+        assert fleet.time_s < until
+        assert fleet.advance(fleet.time_s + 0.1) == []
+    time.sleep(2.0)  # the executor plans
+    assert drone.mode == PX4.guided
+    fleet.advance(fleet.time_s + 1.0)
+    assert fleet.faults == []
+
+
+def test_what_ends_the_thread_is_raised_and_drones_can_be_told_to_hover_all_the_same(fleet, drone):
+    fleet.ports["r_0"].send([Waypoint((80.0, 0.0, 10.0))])
+    fleet.advance(fleet.time_s + 5.0)
+    (link,) = fleet._links
+    hear, errors = link.hear, [OSError("the radio burns")]
+
+    def fail():
+        link.hear = hear
+        raise errors.pop()
+
+    link.hear = fail
+    with pytest.raises(OSError, match="the radio burns"):
+        fleet.advance(fleet.time_s + 5.0)
+    fleet.stop()
+    assert fleet.faults == []
+    assert drone.mode == PX4.hold

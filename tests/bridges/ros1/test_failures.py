@@ -1,0 +1,67 @@
+"""What becomes of robots and missions when programs around them end: the controller itself, the master, its node."""
+
+import json
+import time
+
+import pytest
+
+FAR = """
+schema: muster/1
+robots: [{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}]
+tasks: [{id: t_1, position: [6, 0]}, {id: t_2, position: [9, 0]}]
+"""
+QUICK = ("--time-limit", "0.2", "--format", "json")
+
+
+@pytest.fixture
+def far(tmp_path):
+    (tmp_path / "m.yaml").write_text(FAR, encoding="utf-8")
+    return "m.yaml"
+
+
+def until_it_drives(carried):
+    for line in carried.stderr:
+        if "sets out" in line:
+            return
+
+
+def test_simulated_robots_stand_when_their_controller_is_killed(ros, far):
+    ros.robot("r_0", 0, 0)
+    listener = ros.listener("/r_0/odom=nav_msgs/Odometry")
+    carried = ros.muster(far, *QUICK)
+    until_it_drives(carried)
+    time.sleep(0.7)
+    carried.kill()
+    time.sleep(1.5)
+    speeds = [data["twist"]["twist"]["linear"]["x"] for _, data in listener.heard()]
+    assert max(speeds) > 1
+    assert speeds[-10:] == [0.0] * 10
+
+
+def test_a_master_that_is_started_anew_does_not_stop_a_mission(own_ros, far):
+    own_ros.robot("r_0", 0, 0)
+    carried = own_ros.muster(far, *QUICK)
+    until_it_drives(carried)
+    own_ros.master.stop()
+    time.sleep(1.0)  # it is looked for meanwhile
+    own_ros.master.start()
+    out, err = carried.communicate(timeout=40)
+    assert carried.returncode == 0, err
+    assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]
+    assert "Traceback" not in err
+
+
+def test_another_controller_takes_the_first_ones_place_which_ends_with_a_line(ros, far):
+    ros.robot("r_0", 0, 0)
+    first = ros.muster(far, *QUICK, "--on-start")
+    called = ros.call("/command_interface/start")
+    until_it_drives(first)
+    second = ros.muster(far, *QUICK)
+    _, err = first.communicate(timeout=20)
+    assert first.returncode == 2
+    assert err.splitlines()[-1].startswith("node /muster: it was shut down, or another took its name; ")
+    assert "Traceback" not in err
+    called.communicate(timeout=20)
+    out, err = second.communicate(timeout=40)
+    assert second.returncode == 0, err
+    assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]

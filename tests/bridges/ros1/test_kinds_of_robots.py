@@ -1,0 +1,147 @@
+"""How robots say where they are: frames of tf, PoseStamped, in space, in a namespace; what they say of themselves."""
+
+import json
+import math
+
+import pytest
+
+from muster import load, solve
+
+ONE = """
+schema: muster/1
+robots: [{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}]
+tasks:
+  - {id: t_1, position: [2, 0]}
+  - {id: t_2, position: [2, 2]}
+"""
+IN_SPACE = """
+schema: muster/1
+robots: [{id: d_0, position: [0, 0, 1], kind: air, kinematics: quadcopter, speed_mps: 3, radius_m: 0.3}]
+tasks:
+  - {id: t_1, position: [2, 0, 3]}
+  - {id: t_2, position: [2, 2, 1.5], duration_s: 0.5}
+"""
+QUICK = ("--time-limit", "0.2", "--format", "json")
+
+
+@pytest.fixture
+def one(tmp_path):
+    (tmp_path / "m.yaml").write_text(ONE, encoding="utf-8")
+    return "m.yaml"
+
+
+def done(carried):
+    """The tasks done, in order, and what was told."""
+    out, err = carried.communicate(timeout=40)
+    assert carried.returncode == 0, err
+    return json.loads(out)["tasks_done"], err
+
+
+def places(heard, topic):
+    """Where a robot said that it was."""
+    poses = [data["pose"] for name, data in heard if name == topic]
+    points = [(pose.get("pose") or pose)["position"] for pose in poses]
+    return [(point["x"], point["y"], point["z"]) for point in points]
+
+
+def nearest(points, place):
+    return min(math.dist(point, place) for point in points)
+
+
+def test_poses_in_a_frame_count_as_tf_ties_it_to_the_map(ros, one):
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "frame=r_0/odom", "tied")
+    listener = ros.listener("/r_0/odom=nav_msgs/Odometry")
+    tasks, err = done(ros.muster(one, *QUICK))
+    assert set(tasks) == {"t_1", "t_2"}
+    assert "begins at" not in err  # it stands where the mission says
+    said = places(listener.heard(), "/r_0/odom")
+    assert nearest(said, (2 * 0 + 5, 10 - 2, 0)) < 0.15  # t_1, seen from its own frame
+    assert nearest(said, (2 + 5, 10 - 2, 0)) < 0.15
+
+
+def test_a_frame_that_nothing_ties_to_the_map_is_one_line(ros, one):
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "frame=lost")
+    carried = ros.muster(one, "--wait", "4")
+    out, err = carried.communicate(timeout=20)
+    assert (carried.returncode, out) == (2, "")
+    said = "robot r_0: its poses are in frame lost, which tf does not tie to map within 4 s; expected its pose\n"
+    assert err == said
+
+
+def test_drones_fly_to_the_heights_of_tasks(ros, tmp_path):
+    (tmp_path / "m.yaml").write_text(IN_SPACE, encoding="utf-8")
+    own = ("--kind", "air", "--kinematics", "quadcopter", "--height", 1)
+    ros.robot("d_0", 0, 0, *own)
+    listener = ros.listener("/d_0/odom=nav_msgs/Odometry")
+    assert set(done(ros.muster("m.yaml", *QUICK))[0]) == {"t_1", "t_2"}
+    said = places(listener.heard(), "/d_0/odom")
+    assert max(nearest(said, (2, 0, 3)), nearest(said, (2, 2, 1.5))) < 0.15
+
+
+def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "namespace=team", "pose")
+    ros.start(ros.file("robot.py"), "r_9", 1, 1)
+    listener = ros.listener(
+        "/team/r_0/pose=geometry_msgs/PoseStamped",
+        "/team/r_0/task_sequence=std_msgs/String",
+        "/r_9/cmd_vel=geometry_msgs/Twist",
+        "/muster/events=std_msgs/String",
+    )
+    assert set(done(ros.muster(one, *QUICK, "--namespace", "team"))[0]) == {"t_1", "t_2"}
+    heard = listener.heard()
+    said = places(heard, "/team/r_0/pose")
+    assert max(nearest(said, (2, 0, 0)), nearest(said, (2, 2, 0))) < 0.15
+    told = [json.loads(data["data"]) for topic, data in heard if topic == "/team/r_0/task_sequence"]
+    assert any(set(tasks) == {"t_1", "t_2"} for tasks in told)
+    assert not [topic for topic, _ in heard if topic == "/r_9/cmd_vel"]  # outside the namespace: it does not join
+    assert "robot_joins" not in [json.loads(data["data"])["kind"] for topic, data in heard if topic == "/muster/events"]
+
+
+def test_a_plan_is_carried_out_from_where_the_robot_stands(ros, one, tmp_path):
+    plan = solve(load(tmp_path / one)).as_dict()
+    (route,) = plan["routes"]
+    route["tasks"] = ["t_1", "t_2"]  # from where it stands the other way round would be shorter
+    (tmp_path / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
+    ros.start(ros.file("robot.py"), "r_0", 1, 3)
+    tasks, err = done(ros.muster(one, *QUICK, "--plan", "plan.json"))
+    assert tasks == ["t_1", "t_2"]
+    assert "robot r_0 begins at (1.00, 3.00), where it stands, not at (0.00, 0.00): 3.16 m away\n" in err
+
+
+def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
+    own_ros.start(own_ros.file("robot.py"), "r_0", 0, 0)
+    own_ros.set("/wrong/muster", {"speed_mps": -1.0})
+    own_ros.set("/text/muster", "fast")
+    own_ros.set("/right/muster", {"speed_mps": 2.0})
+    for k, name in enumerate(("wrong", "text", "right")):
+        own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
+    _, told = done(own_ros.muster(one, *QUICK))
+    assert [line.split()[-1] for line in told.splitlines() if "robot joins" in line] == ["right"]
+    text, wrong = sorted(line for line in told.splitlines() if "does not join" in line)
+    assert "text does not join: /text/muster" in text
+    assert "wrong does not join: /wrong/muster: speed_mps: -1.0; expected" in wrong
+
+
+@pytest.mark.parametrize("drive", ["cmd_vel", "goals"])
+def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path, drive):
+    """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain."""
+    (tmp_path / "m.yaml").write_text(ONE.replace("robots: [", "robots: [{id: r_1, position: [5, 5]}, "), "utf-8")
+    moved = ("joy", "r_0")
+    for k, name in enumerate(moved):
+        own_ros.start(own_ros.file("robot.py"), name, 0, k, "by_hand=1.0")
+    listener = own_ros.listener(
+        *(f"/{name}/cmd_vel=geometry_msgs/Twist" for name in moved),
+        *(f"/{name}/WP=geometry_msgs/PoseStamped" for name in moved),
+        *(f"/{name}/odom=nav_msgs/Odometry" for name in moved),
+        "/tf=tf2_msgs/TFMessage",
+    )
+    carried = own_ros.muster("m.yaml", "--wait", "4", "--drive", drive)
+    out, err = carried.communicate(timeout=30)
+    assert (carried.returncode, out) == (2, "")
+    assert err.startswith("robot r_1: nothing on /r_1/odom or /r_1/pose within 4 s")
+    heard = listener.heard()
+    met = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}
+    assert {"muster/joy", "muster/r_0"} <= met
+    for name in moved:
+        assert max(x for x, _, _ in places(heard, f"/{name}/odom")) > 2
+    assert [topic for topic, _ in heard if topic.endswith(("cmd_vel", "WP"))] == []

@@ -1,0 +1,237 @@
+"""The thesis' nodes beside `/muster` (TCF, Table 5.1), each a process, on a real ROS master."""
+
+import json
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+NODES = {"/muster", "/command_interface", "/system_monitor", "/mission_planner"}
+QUICK = ("--time-limit", "0.2", "--format", "json")
+ROBOT = "{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}"
+
+
+def mission(name, *tasks):
+    rows = "\n".join(f"  - {{id: {task}, position: [{x}, {y}]}}" for task, x, y in tasks)
+    return f"schema: muster/1\nname: {name}\nrobots:\n  - {ROBOT}\ntasks:\n{rows}\n"
+
+
+NEAR = mission("near", ("t_1", 1, 0), ("t_2", 2, 0))
+FAR = mission("far", ("t_1", 50, 0), ("t_2", 90, 0))
+LOAD, START, PAUSE, CANCEL = (f"/command_interface/{verb}" for verb in ("load", "start", "pause", "cancel"))
+
+
+def state_is(user, *states):
+    return user.until(lambda status: status["state"] in states, last="/muster/status")
+
+
+def gone(user):
+    """All nodes of Muster have said goodbye to the master."""
+    return not NODES & set(user.do(nodes=True))
+
+
+def family(process):
+    """Ids of a process' children."""
+    return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+def alive(pids):
+    return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
+
+
+def ctrl_c(process):
+    """As a terminal does: to all of its group."""
+    os.killpg(process.pid, signal.SIGINT)
+
+
+def test_missions_are_loaded_and_carried_out_one_after_the_other(ros):
+    carried = ros.muster(*QUICK, "--stay")
+    ros.robot("r_0", 0, 0)
+    user = ros.user()
+    user.until(NODES.issubset, nodes=True)
+    assert user.until(bool, publishers="/mission_planner/plan") == ["/mission_planner"]
+    assert user.until(bool, publishers="/system_monitor/robots") == ["/system_monitor"]
+
+    # nothing is there yet, and that is what is said
+    assert user.call(START) == (False, "no mission; expected one that was loaded and waits, or is paused")
+    assert user.call(PAUSE) == (False, "no mission; expected one that is carried out")
+    assert user.call(CANCEL) == (False, "no mission; expected one that waits or is under way")
+    succeeded, message = user.call(LOAD)
+    assert (succeeded, message.startswith("/command_interface/mission: missing; expected a mission in YAML")) == (
+        False,
+        True,
+    )
+
+    # a mission that is wrong never gets there
+    user.do(set="/command_interface/mission", to=NEAR.replace("[1, 0]", "[1, here]"))
+    assert user.call(LOAD) == (
+        False,
+        '/command_interface/mission:6: tasks[0].position[1]: "here"; expected a finite number',
+    )
+    user.do(set="/command_interface/mission", to="31T-6R5")
+    succeeded, message = user.call(LOAD)
+    assert not succeeded
+    assert "no such file or mission" in message
+
+    # one that is right is carried out when it is started
+    user.do(set="/command_interface/mission", to=NEAR)
+    assert user.call(LOAD) == (True, "mission near: 1 robots, 2 tasks; start begins it")
+    assert user.do(last="/muster/status")["state"] == "waiting"
+    assert user.call(START) == (True, "mission near begins")
+    first = json.loads(read_json(carried))
+    assert set(first["tasks_done"]) == {"t_1", "t_2"}
+    assert state_is(user, "ended")["tasks_done"] == 2
+    succeeded, message = user.call(START)
+    assert (succeeded, message.split(";")[0]) == (False, "mission near is ended")
+
+    # and so is the next, of which a file is named, until it is cancelled
+    (ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
+    user.do(set="/command_interface/mission", to="far.yaml")
+    assert user.call(LOAD)[0]
+    assert user.call(START)[0]
+    state_is(user, "carrying-out")
+    user.until(lambda row: row["position"][0] > 3 and row["activity"] == "driving", last="/r_0/status")  # driven anew
+    assert user.call(START) == (
+        False,
+        "mission far is carrying-out; expected one that was loaded and waits, or is paused",
+    )
+    assert user.call(LOAD) == (False, "mission far is carrying-out; expected none under way: cancel it first")
+    assert user.call("/mission_planner/plan")[0] is False
+    assert user.call(PAUSE) == (True, "mission far is paused; the robots were told to stand")
+    assert user.call(PAUSE)[0] is False
+    assert user.call(CANCEL) == (True, "mission far is cancelled; the robots were told to stand")
+    assert json.loads(read_json(carried))["tasks_done"] == []
+    assert state_is(user, "ended")["reason"] == "cancelled"
+
+    children = family(carried)
+    assert len(children) == 3
+    ctrl_c(carried)
+    assert carried.wait(timeout=20) == 130
+    assert gone(user)
+    assert alive(children) == []
+
+
+def read_json(process):
+    """One mapping of several lines, which `json_text` ends with a brace alone."""
+    text = ""
+    for line in process.stdout:
+        text += line
+        if line == "}\n":
+            return text
+    raise AssertionError(process.stderr.read())
+
+
+def test_without_a_mission_robots_are_watched_and_planned_for(ros):
+    carried = ros.muster(*QUICK)
+    ros.robot("r_0", 0, 0)
+    ros.robot("r_7", 4, 5, "--heading", 90)
+    user = ros.user()
+    both = {"r_0", "r_7"}
+    rows = user.until(
+        lambda rows: {row["robot"] for row in rows if row["position"]} == both, last="/system_monitor/robots"
+    )
+    row = next(row for row in rows if row["robot"] == "r_7")
+    assert row.pop("heard_ago_s") < 2
+    assert row == {
+        "robot": "r_7",
+        "available": True,
+        "activity": "idle",
+        "position": [4.0, 5.0, 0.0],
+        "heading": pytest.approx(1.5708),
+        "usage_m": 0.0,
+    }
+    assert user.do(last="/r_7/status")["position"] == [4.0, 5.0, 0.0]
+
+    assert user.call("/mission_planner/plan")[0] is False
+    user.do(set="/mission_planner/mission", to=NEAR.replace("position: [0, 0]", "position: [9, 0]"))
+    told = "mission near: 2 of 2 tasks by 1 robots, r_0 from where they stand"
+    assert user.call("/mission_planner/plan") == (True, told)
+    plan = user.do(last="/mission_planner/plan")
+    assert plan == {"mission": "near", "time_s": 0.0, "task_sequences": {"r_0": ["t_1", "t_2"]}}  # [9, 0] would turn it
+    assert user.do(last="/r_0/task_sequence") == ["t_1", "t_2"]
+    assert carried.poll() is None
+
+
+def test_a_task_is_added_and_planned_for_by_whom_robots_have(ros):
+    (ros.folder / "near.yaml").write_text(NEAR, encoding="utf-8")
+    ros.robot("r_0", 0, 0)
+    carried = ros.muster("near.yaml", *QUICK, "--on-start")
+    user = ros.user()
+    heard = ros.listener("/muster/events=std_msgs/String", "/mission_planner/plan=std_msgs/String")
+    state_is(user, "waiting")
+    for text in ('{"id": "more", "position": [3, 0]}', '{"id": "wrong", "position": "here"}'):
+        user.do(publish="/command_interface/add_task", text=text)
+    time.sleep(0.5)  # topics have no answer
+    assert user.call(START)[0]
+    out, err = carried.communicate(timeout=30)
+    assert carried.returncode == 0, err
+    assert set(json.loads(out)["tasks_done"]) == {"t_1", "t_2", "more"}
+    said = [(topic, json.loads(data["data"])) for topic, data in heard.heard()]
+    events = [data for topic, data in said if topic == "/muster/events"]
+    assert [event["reason"].split(";")[0] for event in events if event["kind"] == "event_refused"] == [
+        'add_task: position: "here"'
+    ]
+    plans = [data["task_sequences"]["r_0"] for topic, data in said if topic == "/mission_planner/plan"]
+    assert plans[0] == ["t_1", "t_2"]
+    assert plans[-1] == ["t_1", "t_2", "more"]
+
+
+def test_a_node_that_dies_ends_the_whole(ros):
+    (ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
+    ros.robot("r_0", 0, 0)
+    user = ros.user()
+    heard = ros.listener("/r_0/cmd_vel=geometry_msgs/Twist")
+    carried = ros.muster("far.yaml", *QUICK, "--quiet", "--stay")
+    state_is(user, "carrying-out")
+    time.sleep(0.5)
+    children = family(carried)
+    victim = next(pid for pid in children if "mission_planner" in Path(f"/proc/{pid}/cmdline").read_text())
+    os.kill(victim, signal.SIGKILL)
+    out, err = carried.communicate(timeout=20)
+    assert (carried.returncode, out) == (2, "")
+    assert err == "node /mission_planner: it has ended (SIGKILL); expected it to stay\n"
+    assert alive(children) == []
+    twists = [data for _, data in heard.heard()]
+    assert max(twist["linear"]["x"] for twist in twists) > 1
+    assert twists[-1]["linear"]["x"] == 0
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_master_that_goes_away_ends_the_whole(own_ros, end):
+    (own_ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
+    robot = own_ros.robot("r_0", 0, 0)
+    user = own_ros.user()
+    carried = own_ros.muster("far.yaml", *QUICK, "--quiet")
+    state_is(user, "carrying-out")
+    children = family(carried)
+    own_ros.master.send_signal(end)
+    out, err = carried.communicate(timeout=30)
+    assert (carried.returncode, out) == (2, "")
+    line = f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay"
+    assert err.splitlines()[-1] == line  # before it rospy may say a word of its own
+    assert alive(children) == []
+    assert robot.poll() is None
+
+
+def test_ctrl_c_while_planning_leaves_nobody_behind(ros):
+    tasks = [(f"t_{k}", k % 7, 3 * k % 11) for k in range(60)]
+    (ros.folder / "long.yaml").write_text(mission("long", *tasks), encoding="utf-8")
+    ros.robot("r_0", 0, 0)
+    carried = ros.muster("long.yaml", "--time-limit", "60", "--quiet")
+    user = ros.user()
+    state_is(user, "planning")
+    children = family(carried)
+    ctrl_c(carried)
+    out, err = carried.communicate(timeout=20)
+    assert (carried.returncode, out, err) == (130, "", "interrupted; the robots were told to stand\n")
+    assert alive(children) == []
+    assert gone(user)
+
+
+def test_a_plan_without_a_mission_is_one_line(ros):
+    carried = ros.muster("--plan", "p.json")
+    out, err = carried.communicate(timeout=20)
+    assert (carried.returncode, out) == (2, "")
+    assert err == "--plan given without a MISSION; expected both\n"

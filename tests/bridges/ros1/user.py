@@ -1,0 +1,60 @@
+"""A user who knows nothing of Muster, only ROS: does what lines of JSON on standard input say, and answers in JSON.
+
+{"call": SERVICE}, {"set": PARAMETER, "to": VALUE}, {"publish": TOPIC, "text": TEXT}, {"last": TOPIC} (of a latched
+std_msgs/String), {"nodes": true}, {"publishers": TOPIC}.
+"""
+
+import json
+import sys
+import time
+
+if "/usr/lib/python3/dist-packages" not in sys.path:
+    sys.path.append("/usr/lib/python3/dist-packages")
+import rosgraph
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+
+def call(name):
+    rospy.wait_for_service(name, timeout=20)
+    answer = rospy.ServiceProxy(name, Trigger)()
+    return {"success": answer.success, "message": answer.message}
+
+
+publishers = {}
+
+
+def publish(topic, text):
+    if topic not in publishers:
+        publishers[topic] = rospy.Publisher(topic, String, queue_size=10)
+    until = time.monotonic() + 20
+    while publishers[topic].get_num_connections() == 0:
+        assert time.monotonic() < until, f"nobody hears {topic}"
+        time.sleep(0.02)
+    publishers[topic].publish(String(text))
+
+
+def state():
+    """Of the master: (topic, nodes) of those who publish, who subscribe, who serve."""
+    return rosgraph.Master("/user").getSystemState()
+
+
+def do(asked):
+    if "call" in asked:
+        return call(asked["call"])
+    if "set" in asked:
+        return rospy.set_param(asked["set"], asked["to"])
+    if "publish" in asked:
+        return publish(asked["publish"], asked["text"])
+    if "last" in asked:
+        return json.loads(rospy.wait_for_message(asked["last"], String, timeout=20).data)
+    if "nodes" in asked:
+        return sorted({node for part in state() for _, nodes in part for node in nodes})
+    return dict(map(tuple, state()[0])).get(asked["publishers"], [])
+
+
+rospy.init_node("user", anonymous=True)
+for line in sys.stdin:
+    sys.stdout.write(json.dumps(do(json.loads(line))) + "\n")
+    sys.stdout.flush()

@@ -1,0 +1,189 @@
+"""The port of a robot on ROS 2, with the test's own time and wire: what it hears, and what it tells the robot."""
+
+import math
+
+import pytest
+from tests.bridges.ros2.fake_wire import Navigator, Told, Wire, moved, posed
+
+from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
+from muster.bridges.ros2.port import Arrival, Ros2Port, yaw_of
+from muster.bridges.ros2.wire import Outcome
+from muster.mission.errors import ParameterError
+from muster.mission.model import Robot
+from muster.motion.port import Waypoint
+
+
+class There:
+    """A port, and what the robot says on its topics."""
+
+    def __init__(self, goals):
+        self.wire = wire = Wire()
+        robot = Robot(id="r", position=(0.0, 0.0))
+        self.port = Ros2Port(robot, wire, "/r", goals, Arrival(), flat=True, clock=wire.now)
+        self.poses, self.odometry = wire.heard["/r/pose"], wire.heard["/r/odom"]
+
+    def hear(self, now):
+        self.wire.now_s = now
+        return self.port.hear()
+
+
+@pytest.fixture
+def navigator():
+    return Navigator()
+
+
+def test_nav2_with_odometry_only_is_heard_after_its_goal_and_holds_to_the_end(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.odometry.append(moved(0.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=8.0), Waypoint((5.0, 5.0, 0.0))])
+    feedback = navigator.given[0][1]
+    feedback.append(posed(4.9))
+    robot.hear(1.0)
+    feedback.outcome = Outcome("succeeded")
+    for now in range(2, 12):
+        robot.odometry.append(moved(4.9))
+        robot.hear(float(now))
+        assert robot.port.telemetry().time_s == now
+        assert robot.port.telemetry().passed == (now >= 9)
+    assert len(navigator.given) == 2
+
+
+def test_a_hold_ends_by_time_where_nothing_is_heard_and_times_stand_still(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.odometry.append(moved(5.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=2.0)])
+    navigator.given[0][1].outcome = Outcome("succeeded")
+    assert not robot.hear(1.0)
+    assert not robot.hear(2.9)
+    assert robot.hear(3.0)
+    said = robot.port.telemetry()
+    assert (said.time_s, said.order, said.passed) == (0.0, 1, 1)
+
+
+def test_where_poses_stop_odometry_goes_on_from_the_last(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.odometry.append(moved(10.0, 0.0, 0.0))
+    robot.poses.append(posed(1.0, 2.0, math.pi / 2))
+    robot.hear(0.0)
+    robot.odometry.append(moved(10.5, 0.0, 0.0))
+    robot.hear(0.5)
+    assert robot.port.telemetry().position == (1.0, 2.0, 0.0)  # by its pose, of half a second ago
+    robot.odometry.append(moved(12.0, 0.0, 0.0, ahead=1.0))
+    robot.hear(2.0)
+    said = robot.port.telemetry()
+    assert said.position == pytest.approx((1.0, 4.0, 0.0))
+    assert said.heading == pytest.approx(math.pi / 2)
+    assert said.velocity == pytest.approx((0.0, 1.0, 0.0))
+    robot.poses.append(posed(7.0, 7.0))
+    robot.hear(2.1)
+    assert robot.port.telemetry().position == (7.0, 7.0, 0.0)
+
+
+def test_odometry_that_begins_after_the_pose_is_tied_to_it(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.poses.append(posed(1.0, 2.0))
+    robot.hear(0.0)
+    robot.odometry.append(moved(0.0))
+    robot.hear(2.0)
+    robot.odometry.append(moved(0.5))
+    robot.hear(2.1)
+    assert robot.port.telemetry().position == pytest.approx((1.5, 2.0, 0.0))
+
+
+def test_poses_in_other_frames_and_such_as_are_none_do_not_count():
+    robot = There(PoseGoals(Told()))
+    robot.poses += [posed(9.0, frame="odom"), posed(math.nan)]
+    robot.odometry += [moved(math.inf), moved(3.0)]
+    robot.hear(0.0)
+    assert robot.port.telemetry().position == (3.0, 0.0, 0.0)
+
+
+def test_who_is_cancelled_stays_where_it_said_last_that_it_is():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.poses.append(posed(0.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.poses.append(posed(1.0))
+    robot.hear(1.0)
+    robot.poses.append(posed(1.2))  # not taken in yet
+    robot.port.cancel()
+    assert told == [(50.0, 0.0), (1.2, 0.0)]
+    assert robot.port.at_rest
+
+
+def test_who_is_silent_keeps_its_goal_until_it_is_heard():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.poses.append(posed(1.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.hear(5.0)
+    robot.port.cancel()
+    robot.hear(6.0)
+    assert told == [(50.0, 0.0)]
+    assert not robot.port.at_rest
+    robot.poses.append(posed(6.0))
+    robot.hear(7.0)
+    robot.poses.append(posed(6.1))
+    robot.hear(7.1)
+    assert told == [(50.0, 0.0), (6.0, 0.0)]
+    assert robot.port.at_rest
+
+
+def test_what_is_sent_to_a_silent_robot_holds_when_it_is_heard():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.port.cancel()
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.poses.append(posed(6.0))
+    robot.hear(7.0)
+    assert set(told) == {(50.0, 0.0)}
+
+
+def test_nav2_cancels_without_a_pose(navigator):
+    robot = There(Nav2Goals(navigator))
+    robot.port.send([Waypoint((50.0, 0.0, 0.0))])
+    robot.port.cancel()
+    robot.hear(1.0)
+    assert navigator.given[0][1].outcome == Outcome("canceled")
+    assert robot.port.at_rest
+
+
+def test_the_velocity_is_that_between_poses():
+    robot = There(PoseGoals(Told()))
+    robot.poses.append(posed(0.0))
+    robot.hear(0.0)
+    assert robot.port.telemetry().velocity == (0.0, 0.0, 0.0)
+    robot.poses.append(posed(1.0, 2.0))
+    robot.hear(2.0)
+    assert robot.port.telemetry().velocity == (0.5, 1.0, 0.0)
+    robot.poses.append(posed(1.1, 2.0))
+    robot.hear(2.001)
+    assert robot.port.telemetry().velocity == (0.5, 1.0, 0.0)  # of that which came before
+
+
+@pytest.mark.parametrize(
+    ("waypoint", "wanted"),
+    [
+        (Waypoint((0.0, 5.0, 0.0)), math.pi / 2),
+        (Waypoint((0.0, 5.0, 0.0), heading=1.0), 1.0),
+        (Waypoint((0.0, 0.0, 0.0)), -2.0),  # it is there, and stays as it stands
+    ],
+)
+def test_a_goal_has_the_heading_of_the_way_there_if_none_is_wanted(navigator, waypoint, wanted):
+    robot = There(Nav2Goals(navigator))
+    robot.poses.append(posed(0.0, 0.0, -2.0))
+    robot.hear(0.0)
+    robot.port.send([waypoint])
+    assert yaw_of(navigator.given[0][0].pose.orientation) == pytest.approx(wanted)
+
+
+def test_way_points_that_are_none_are_not_sent():
+    told = Told()
+    robot = There(PoseGoals(told))
+    with pytest.raises(ParameterError, match=r"^way point of r: .*expected finite numbers$"):
+        robot.port.send([Waypoint((math.nan, 0.0, 0.0))])
+    assert told == []
