@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from muster.bridges.ros1.messages import text_of
+from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.parcels import packed
 from muster.bridges.ros1.ros import String, rospy
 from muster.mission.model import Mission
@@ -97,4 +98,4 @@ class Board:
         """See `Recorder`: the figures are printed."""
 
     def _say(self, topic: str, data: Any) -> None:
-        self._topics[topic].publish(text_of(data))
+        publish(self._topics[topic], text_of(data))

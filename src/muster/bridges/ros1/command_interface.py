@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.parcels import Load, in_lines, mission_on, packed
 from muster.bridges.ros1.questions import COMMANDS, Asker
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
@@ -30,7 +31,7 @@ class CommandInterface:
     def __init__(self, load: Load) -> None:
         self._load = load
         self._controller = Asker(COMMANDS)
-        self._tasks = rospy.Subscriber("/command_interface/add_task", String, self._add_task, queue_size=100)
+        self._tasks = hear("/command_interface/add_task", String, self._add_task, queue_size=100)
         self._services = [
             rospy.Service(f"/command_interface/{verb}", Trigger, self._service(do))
             for verb, do in (

@@ -18,7 +18,7 @@ from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.node import SHUT_DOWN, time_of_ros
+from muster.bridges.ros1.node import SHUT_DOWN, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.steering import STILL, Steering
@@ -251,7 +251,7 @@ class Ros1Fleet:
                     self._steer()
                     frames = [frame for port in self._ports.values() for frame in port.frames()] if turn % 2 else []
                 if frames:
-                    self._tf.publish(TFMessage(frames))
+                    publish(self._tf, TFMessage(frames))
         except Exception as error:
             if not (self._closed.is_set() or rospy.is_shutdown()):
                 self._failure = error

@@ -6,6 +6,7 @@ import threading
 from typing import Any
 
 from muster.bridges.ros1.messages import matrix_of_transform
+from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.mission.errors import TransformError
 from muster.motion.frames import Floats
@@ -31,8 +32,8 @@ class MapFrame:
         self._heard_s = 0.0
         self._lock = threading.Lock()
         self._heard = [
-            rospy.Subscriber("/tf", TFMessage, self._take, callback_args=False, queue_size=100),
-            rospy.Subscriber("/tf_static", TFMessage, self._take, callback_args=True, queue_size=100),
+            hear("/tf", TFMessage, self._take, callback_args=False, queue_size=100),
+            hear("/tf_static", TFMessage, self._take, callback_args=True, queue_size=100),
         ]
 
     def to_map(self, frame: str, matrix: Floats) -> Floats | None:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from typing import Any
 
 from muster.bridges.ros1.messages import text_of
+from muster.bridges.ros1.node import hear, publish
 from muster.bridges.ros1.parcels import Load, in_lines, mission_on, unpacked
 from muster.bridges.ros1.questions import PLANNING, Answerer, Data
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
@@ -49,7 +50,7 @@ class MissionPlanner:
         self._publishers: dict[str, Any] = {}  # by full name (TCF, Figure 5.7, step 5)
         self._say("/mission_planner/plan", None)
         self._subscribers = [
-            rospy.Subscriber(topic, String, self._hear, callback_args=topic, queue_size=10)
+            hear(topic, String, self._hear, callback_args=topic, queue_size=10)
             for topic in ("/muster/mission", "/muster/status", "/system_monitor/robots", "/muster/plan")
         ]
         self._answers = Answerer(PLANNING, self._answer)
@@ -114,4 +115,4 @@ class MissionPlanner:
             if topic not in self._publishers:
                 self._publishers[topic] = rospy.Publisher(topic, String, queue_size=100, latch=True)
             if data is not None:
-                self._publishers[topic].publish(text_of(data))
+                publish(self._publishers[topic], text_of(data))

@@ -84,6 +84,28 @@ def _require_master(address: str) -> None:
         raise NetworkError(f"ROS master: {address}: it does not answer; {told}")
 
 
+def publish(publisher: Any, message: Any) -> None:
+    """Say something, if this node still is one: ROS may shut it down while a message is being made."""
+    try:
+        publisher.publish(message)
+    except rospy.ROSException:
+        if not rospy.is_shutdown():
+            raise
+
+
+def hear(topic: str, kind: Any, do: Callable[..., None], **how: Any) -> Any:
+    """Listen to a topic, until the node ends: what fails because ROS has shut it down is not told of."""
+
+    def heard(message: Any, *more: Any) -> None:
+        try:
+            do(message, *more)
+        except Exception:
+            if not rospy.is_shutdown():
+                raise
+
+    return rospy.Subscriber(topic, kind, heard, **how)
+
+
 def leave(within_s: float = 2.0) -> None:
     """Say goodbye to the ROS master; what was said last has time to arrive. A master that hangs is not waited for."""
     time.sleep(0.2)

@@ -14,6 +14,7 @@ from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.map_frame import OWN, MapFrame
 from muster.bridges.ros1.messages import place_and_heading, pose_stamped, tf_of, twist_of
+from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, Driven, Velocity
@@ -132,7 +133,7 @@ class Ros1Port:
             self._stood_s = now
         if self._drive == "cmd_vel":
             if now - self._stood_s <= _TOLD_STILL_S:
-                self._velocities.publish(twist_of(velocity))
+                publish(self._velocities, twist_of(velocity))
         elif driven.aim is None:
             if self._given is not None and (self._follower.aim is not None or self._given == self._next):
                 self._stand_still()  # paused, or not heard; or it has made room, and is back
@@ -168,7 +169,7 @@ class Ros1Port:
             east, north = aim.position[0] - driven.position[0], aim.position[1] - driven.position[1]
             self._facing = math.atan2(north, east) if math.hypot(east, north) > 0 else driven.heading
         heading = self._facing if aim.heading is None else aim.heading
-        self._goals.publish(pose_stamped(self._frame.name, self._goal(aim), heading))
+        publish(self._goals, pose_stamped(self._frame.name, self._goal(aim), heading))
         self._given, self._given_s = self._next, now
 
     @property
@@ -180,10 +181,10 @@ class Ros1Port:
         """A zero velocity, or where it is as its goal."""
         self._given = None
         if self._drive == "cmd_vel":
-            self._velocities.publish(twist_of(STILL))
+            publish(self._velocities, twist_of(STILL))
         elif self._last_word is not None:
             here = Waypoint(self._last_word.position)
-            self._goals.publish(pose_stamped(self._frame.name, self._goal(here), self._last_word.heading))
+            publish(self._goals, pose_stamped(self._frame.name, self._goal(here), self._last_word.heading))
 
     def _goal(self, aim: Waypoint) -> Place:
         """In the plane the height is the robot's own affair."""

@@ -12,6 +12,7 @@ from typing import Any
 from muster.bridges.discovery import SHARED
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.messages import matrix_of
+from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.ros import Odometry, PoseStamped, rospy
 from muster.motion.frames import Floats
 from muster.motion.port import Place
@@ -42,9 +43,7 @@ class PoseListener:
         self.heard_s: float | None = None  # real time, monotonic: when the last pose came that counts
         self.untied = ""  # a frame in which poses are given that nothing ties to the map
         self._links = [
-            rospy.Subscriber(
-                f"{topics}/{shared}", rospy.AnyMsg, self._hear, callback_args=shared, queue_size=1, tcp_nodelay=True
-            )
+            hear(f"{topics}/{shared}", rospy.AnyMsg, self._hear, callback_args=shared, queue_size=1, tcp_nodelay=True)
             for shared in SHARED
         ]
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from muster.bridges.ros1.messages import text_of
+from muster.bridges.ros1.node import hear, publish
 from muster.bridges.ros1.ros import String, rospy
 
 COMMANDS = "/muster/commands"
@@ -32,13 +33,13 @@ class Asker:
         self._heard = threading.Condition()
         self._answers: dict[str, Data] = {}
         self._question = rospy.Publisher(f"{name}/question", String, queue_size=10, latch=True)
-        self._subscriber = rospy.Subscriber(f"{name}/answer", String, self._hear, queue_size=10)
+        self._subscriber = hear(f"{name}/answer", String, self._hear, queue_size=10)
 
     def ask(self, question: Data, *, wait_s: float, halted: Callable[[], bool] = lambda: False) -> Data | None:
         """The answer; None if there was none in time, or waiting was halted."""
         with self._one_at_a_time:
             number, until = uuid.uuid4().hex, time.monotonic() + wait_s
-            self._question.publish(text_of({**question, "question": number}))
+            publish(self._question, text_of({**question, "question": number}))
             with self._heard:
                 while number not in self._answers and time.monotonic() < until and not halted():
                     self._heard.wait(_LOOK_S)
@@ -66,11 +67,11 @@ class Answerer:
         self._do = answer
         self._last = ""
         self._answer = rospy.Publisher(f"{name}/answer", String, queue_size=10, latch=True)
-        self._subscriber = rospy.Subscriber(f"{name}/question", String, self._hear, queue_size=10)
+        self._subscriber = hear(f"{name}/question", String, self._hear, queue_size=10)
 
     def _hear(self, message: Any) -> None:
         question = json.loads(message.data)
         number = question.pop("question")
         if number != self._last:
             self._last = number
-            self._answer.publish(text_of({**self._do(question), "question": number}))
+            publish(self._answer, text_of({**self._do(question), "question": number}))

@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from muster.bridges.ros1.messages import fill_pose, matrix_of, place_and_heading, tf_of, velocity_of
-from muster.bridges.ros1.node import become_node, time_of_ros
+from muster.bridges.ros1.node import become_node, hear, publish, time_of_ros
 from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
 from muster.bridges.simulated_body import Body
 from muster.bridges.simulated_robot import Wanted, robot_options, run, wanted
@@ -41,8 +41,8 @@ class SimulatedRobot:
         self._poses = rospy.Publisher(f"{topics}/odom", Odometry, queue_size=1)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._heard = [
-            rospy.Subscriber(f"{topics}/cmd_vel", Twist, self._take_velocity, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber(f"{topics}/WP", PoseStamped, self._take_goal, queue_size=1),
+            hear(f"{topics}/cmd_vel", Twist, self._take_velocity, queue_size=1, tcp_nodelay=True),
+            hear(f"{topics}/WP", PoseStamped, self._take_goal, queue_size=1),
         ]
 
     def run(self) -> None:
@@ -67,8 +67,8 @@ class SimulatedRobot:
         twist = message.twist.twist
         twist.linear.x, twist.linear.y, twist.linear.z = map(float, enu_to_flu(rates[:3], heading))
         twist.angular.z = float(rates[3])
-        self._poses.publish(message)
-        self._tf.publish(TFMessage([tf_of("map", message.child_frame_id, place, heading)]))
+        publish(self._poses, message)
+        publish(self._tf, TFMessage([tf_of("map", message.child_frame_id, place, heading)]))
 
     def _take_velocity(self, message: Any) -> None:
         with self._lock:

@@ -17,6 +17,7 @@ from muster.bridges.discovery import robots_in
 from muster.bridges.odometer import Odometer
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.messages import place_and_heading, text_of
+from muster.bridges.ros1.node import hear, publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import String, rospy
 from muster.motion.frames import Floats
@@ -48,7 +49,7 @@ class SystemMonitor:
         self._watched: dict[str, WatchedRobot] = {}
         self._doing: dict[str, dict[str, str]] = {}
         self._publishers: dict[str, Any] = {}  # by full name (TCF, Figure 5.7, step 5)
-        self._subscriber = rospy.Subscriber("/muster/robots", String, self._hear_controller, queue_size=10)
+        self._subscriber = hear("/muster/robots", String, self._hear_controller, queue_size=10)
         self._thread = threading.Thread(target=self._report_on, daemon=True)
         self._thread.start()
 
@@ -91,7 +92,7 @@ class SystemMonitor:
     def _say(self, topic: str, data: Any) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, String, queue_size=10, latch=True)
-        self._publishers[topic].publish(text_of(data))
+        publish(self._publishers[topic], text_of(data))
 
 
 class WatchedRobot:
