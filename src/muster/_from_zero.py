@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from muster.bridges.fleet import Fleet
 from muster.mission.model import Event
-from muster.motion.port import RobotPort, Telemetry, Waypoint
+from muster.motion.port import RetoldPort, RobotPort, Telemetry
 
 
 class FromZero:
@@ -38,7 +38,7 @@ class _Ports(Mapping[str, RobotPort]):
         self._fleet, self._began_s = fleet, began_s
 
     def __getitem__(self, robot: str) -> RobotPort:
-        return _Port(self._fleet.ports[robot], self._began_s)
+        return RetoldPort(self._fleet.ports[robot], self._since_it_began)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fleet.ports)
@@ -46,21 +46,5 @@ class _Ports(Mapping[str, RobotPort]):
     def __len__(self) -> int:
         return len(self._fleet.ports)
 
-
-class _Port:
-    def __init__(self, port: RobotPort, began_s: float) -> None:
-        self._port, self._began_s = port, began_s
-
-    @property
-    def robot(self) -> str:
-        return self._port.robot
-
-    def send(self, waypoints: Sequence[Waypoint]) -> int:
-        return self._port.send(waypoints)
-
-    def cancel(self) -> int:
-        return self._port.cancel()
-
-    def telemetry(self) -> Telemetry | None:
-        said = self._port.telemetry()
-        return None if said is None else replace(said, time_s=said.time_s - self._began_s)
+    def _since_it_began(self, said: Telemetry) -> Telemetry:
+        return replace(said, time_s=said.time_s - self._began_s)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -105,3 +105,33 @@ class RobotPort(Protocol):
     def telemetry(self) -> Telemetry | None:
         """What it last said; None before it has said anything. Of a silent robot the times do not go on."""
         ...
+
+
+class RetoldPort:
+    """A port whose telemetry is told in other words; orders go through as they are.
+
+    Parameters
+    ----------
+    retell
+        what becomes of each report.
+    """
+
+    def __init__(self, port: RobotPort, retell: Callable[[Telemetry], Telemetry]) -> None:
+        self._port, self._retell = port, retell
+
+    @property
+    def robot(self) -> str:
+        return self._port.robot
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`."""
+        return self._port.send(waypoints)
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self._port.cancel()
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        said = self._port.telemetry()
+        return None if said is None else self._retell(said)

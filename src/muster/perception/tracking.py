@@ -8,14 +8,13 @@ whoever carries a plan out works with the fused pose where noise is on, and need
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.motion.port import Inertial, RobotPort, Telemetry, Waypoint
+from muster.motion.port import Inertial, RetoldPort, RobotPort, Telemetry
 from muster.perception import air_fusion, ground_fusion, heading_fusion
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.kalman import Correction, Estimate
@@ -173,29 +172,12 @@ class AirTracker:
         return air_fusion.moved_as_counted(estimate, dt, said.velocity, aware, pushed)
 
 
-class FusedPort:
-    """A robot's port whose telemetry is fused by its `tracker`; orders go through as they are."""
+class FusedPort(RetoldPort):
+    """A robot's port whose telemetry is fused by its `tracker`."""
 
     def __init__(self, port: RobotPort, tracker: Tracker) -> None:
-        self._port = port
+        super().__init__(port, tracker.fused)
         self.tracker = tracker
-
-    @property
-    def robot(self) -> str:
-        return self._port.robot
-
-    def send(self, waypoints: Sequence[Waypoint]) -> int:
-        """See `RobotPort`."""
-        return self._port.send(waypoints)
-
-    def cancel(self) -> int:
-        """See `RobotPort`."""
-        return self._port.cancel()
-
-    def telemetry(self) -> Telemetry | None:
-        """See `RobotPort`."""
-        said = self._port.telemetry()
-        return None if said is None else self.tracker.fused(said)
 
 
 def _slope(said: Telemetry) -> tuple[float, float]:

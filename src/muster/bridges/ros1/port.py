@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 from muster.bridges.follower import Follower
+from muster.bridges.heard import goal_heading, require_finite
 from muster.bridges.ros1.clock import MissionClock
 from muster.bridges.ros1.map_frame import OWN, MapFrame
 from muster.bridges.ros1.messages import place_and_heading, pose_stamped, tf_of, twist_of
@@ -18,7 +19,6 @@ from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, Driven, Velocity
-from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
@@ -91,9 +91,7 @@ class Ros1Port:
         ParameterError
             if a number of a way point is not finite.
         """
-        for point in waypoints:
-            if not all(map(math.isfinite, (*point.position, point.heading or 0.0, point.hold_s))):
-                raise ParameterError(f"way point of {self.robot}: {point}; expected finite numbers")
+        require_finite(self.robot, waypoints)
         with self._lock:
             self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
@@ -138,7 +136,7 @@ class Ros1Port:
             if self._given is not None and (self._follower.aim is not None or self._given == self._next):
                 self._stand_still()  # paused, or not heard; or it has made room, and is back
         elif self._given != self._next or now - self._given_s > _AGAIN_S:
-            self._give(driven.aim, driven, now)
+            self._give(driven.aim, now)
 
     def frames(self) -> list[Any]:
         """For tf: where the robot is, and its next way point."""
@@ -164,10 +162,9 @@ class Ros1Port:
         for link in (self._goals, self._velocities):
             link.unregister()
 
-    def _give(self, aim: Waypoint, driven: Driven, now: float) -> None:
+    def _give(self, aim: Waypoint, now: float) -> None:
         if self._given != self._next:
-            east, north = aim.position[0] - driven.position[0], aim.position[1] - driven.position[1]
-            self._facing = math.atan2(north, east) if math.hypot(east, north) > 0 else driven.heading
+            self._facing = goal_heading(aim, self._last_word)
         heading = self._facing if aim.heading is None else aim.heading
         publish(self._goals, pose_stamped(self._frame.name, self._goal(aim), heading))
         self._given, self._given_s = self._next, now
