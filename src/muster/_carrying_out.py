@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from muster._hearing import heard
 from muster._looking import Lookout, OnLook, lookout_for, with_found
-from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
+from muster.execution import (
+    Executor,
+    Reallocation,
+    Recorder,
+    Status,
+    broken_off,
+    report_of,
+    status_of,
+    travel_of,
+    way_of,
+)
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Event, Mission
@@ -139,13 +149,13 @@ class Simulation:
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._look()
-            self._executor.tick(self.time_s)
-            if self.done and self._recorder is not None:
-                self._recorder.on_report(self.result().as_dict())
+            self._tick()
         return self._executor.happenings[first:]
 
     def report(self, event: Event) -> None:
         """Let something happen now that the mission file did not foresee; its `at_s` does not count.
+
+        What follows for the plan follows at once, not only when time goes on.
 
         Raises
         ------
@@ -153,17 +163,31 @@ class Simulation:
             if the event names a robot or task that there is not, or one anew that there is.
         """
         if event.robot_joins is not None:
+            self._executor.require_newcomer(event.robot_joins)
             self._befalls(event)  # the executor asks for its port
             self._executor.report(event)
         else:
             self._executor.report(event)
             self._befalls(event)
+        self._tick()
 
     def result(self) -> Report:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
         return with_found(report, self._lookout)
+
+    @property
+    def status(self) -> Status:
+        """What each robot does now, and how far each task is."""
+        return status_of(self._executor)
+
+    def break_off(self, reason: str) -> Report:
+        """End it now, before it is over; every task that is not done is lost. Nothing is to be asked of it then."""
+        report = broken_off(self.result(), self._executor.account, reason)
+        if self._recorder is not None:
+            self._recorder.on_report(report.as_dict())
+        return report
 
     @property
     def lookout(self) -> Lookout | None:
@@ -174,6 +198,11 @@ class Simulation:
         """Give back what pictures hold of the graphics library."""
         if self._lookout is not None:
             self._lookout.close()
+
+    def _tick(self) -> None:
+        self._executor.tick(self.time_s)
+        if self.done and self._recorder is not None:
+            self._recorder.on_report(self.result().as_dict())
 
     @property
     def _look_due_s(self) -> float:

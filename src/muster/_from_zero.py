@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster.bridges.fleet import Fleet
@@ -11,18 +11,35 @@ from muster.motion.port import RetoldPort, RobotPort, Telemetry
 
 
 class FromZero:
-    """A `Fleet` that is another's from now on; what robots said before is of times below 0."""
+    """A `Fleet` that is another's from now on; what robots said before is of times below its beginning.
 
-    def __init__(self, fleet: Fleet) -> None:
-        self._fleet, self._began_s = fleet, fleet.time_s
-        self.ports: Mapping[str, RobotPort] = _Ports(fleet, self._began_s)
+    Parameters
+    ----------
+    begin_s
+        the time that it is now.
+    """
+
+    def __init__(self, fleet: Fleet, begin_s: float = 0.0) -> None:
+        self._fleet, self._off_s = fleet, fleet.time_s - begin_s
+        self._paused_s: float | None = None
+        self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s)
 
     @property
     def time_s(self) -> float:
-        return self._fleet.time_s - self._began_s
+        return self._fleet.time_s - self._off_s if self._paused_s is None else self._paused_s
+
+    def pause(self) -> None:
+        """The clock stands still until `resume`."""
+        self._paused_s = self.time_s
+
+    def resume(self) -> None:
+        """The clock goes on."""
+        if self._paused_s is not None:
+            self._off_s, self._paused_s = self._fleet.time_s - self._paused_s, None
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        return self._fleet.advance(until_s + self._began_s)
+        """See `Fleet`; while the clock stands still, hear for as long as it would have taken."""
+        return self._fleet.advance(self._fleet.time_s + until_s - self.time_s)
 
     def stop(self) -> None:
         self._fleet.stop()
@@ -34,8 +51,8 @@ class FromZero:
 class _Ports(Mapping[str, RobotPort]):
     """Those that are discovered later are in it as soon as they are."""
 
-    def __init__(self, fleet: Fleet, began_s: float) -> None:
-        self._fleet, self._began_s = fleet, began_s
+    def __init__(self, fleet: Fleet, off_s: Callable[[], float]) -> None:
+        self._fleet, self._off_s = fleet, off_s
 
     def __getitem__(self, robot: str) -> RobotPort:
         return RetoldPort(self._fleet.ports[robot], self._since_it_began)
@@ -47,4 +64,4 @@ class _Ports(Mapping[str, RobotPort]):
         return len(self._fleet.ports)
 
     def _since_it_began(self, said: Telemetry) -> Telemetry:
-        return replace(said, time_s=said.time_s - self._began_s)
+        return replace(said, time_s=said.time_s - self._off_s())

@@ -4,15 +4,27 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from muster._from_zero import FromZero
 from muster.bridges.fleet import Fleet, reason_of
-from muster.execution import Executor, Reallocation, Recorder, report_of, travel_of, way_of
+from muster.execution import (
+    Executor,
+    Past,
+    Reallocation,
+    Recorder,
+    Status,
+    report_of,
+    status_of,
+    travel_of,
+    way_of,
+)
+from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
@@ -57,41 +69,152 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    fleet = FromZero(fleet)
-    roads = Roads.of(mission) if mission.travel_rule == "map" else None
-    travel = travel_of(mission, roads)
-    executor = Executor(
-        mission,
-        plan,
-        fleet.ports,
-        way=way_of(mission, roads),
-        travel=travel,
-        replan=Reallocation(travel=travel, seed=seed),
-        observer=recorder,
-    )
+    live = Live(mission, plan, fleet, seed=seed, recorder=recorder)
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():
-            executor.tick(fleet.time_s)
-            if recorder is not None:
-                _tell_places(recorder, fleet.time_s, executor.crew, fleet.ports)
+            live.look()
             if on_happening is not None:
-                for happening in executor.happenings[told:]:
+                for happening in live.happenings[told:]:
                     on_happening(happening)
-                told = len(executor.happenings)
-            if executor.done:
+                told = len(live.happenings)
+            if live.done:
                 break
-            for event in fleet.advance(min(fleet.time_s + LOOK_S, executor.due_s)):
-                executor.report_if_it_fits(event, reason_of(event))
+            live.hear(live.time_s + LOOK_S)
     finally:
-        fleet.stop()
-    report = report_of(executor.account)
-    if not executor.done:
-        left = ", ".join(task.id for task in executor.ledger.open)
-        report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
+        live.stop()
+    report = live.result()
     if recorder is not None:
         recorder.on_report(report.as_dict())
     return report
+
+
+class Live:
+    """A plan that is being carried out by real robots: they are heard, and looked at, in turn.
+
+    Parameters
+    ----------
+    fleet
+        has a port for each robot of the mission, and stays open.
+    seed
+        of planning anew.
+    recorder
+        is told all that happens, and where robots say that they are.
+    past, begin_s
+        what was done before, of a mission that goes on, and up to when.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        fleet: Fleet,
+        *,
+        seed: int = 0,
+        recorder: Recorder | None = None,
+        past: Past | None = None,
+        begin_s: float = 0.0,
+    ) -> None:
+        self._fleet, self._recorder = FromZero(fleet, begin_s), recorder
+        roads = Roads.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, roads)
+        self.executor = Executor(
+            mission,
+            plan,
+            self._fleet.ports,
+            way=way_of(mission, roads),
+            travel=travel,
+            replan=Reallocation(travel=travel, seed=seed),
+            observer=recorder,
+            now=begin_s,
+            past=past,
+        )
+
+    @property
+    def time_s(self) -> float:
+        """The mission's clock; it stands still in a pause."""
+        return self._fleet.time_s
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self.executor.done
+
+    @property
+    def happenings(self) -> Sequence[Happening]:
+        """All that has happened so far."""
+        return self.executor.happenings
+
+    @property
+    def status(self) -> Status:
+        """What each robot does now, and how far each task is."""
+        return status_of(self.executor)
+
+    def look(self) -> None:
+        """See how far robots are, and send them on."""
+        self.executor.tick(self.time_s)
+        self.tell_places()
+
+    def hear(self, until_s: float) -> None:
+        """Hear and speak until a time of the mission's clock, or until something is due."""
+        for event in self._fleet.advance(min(until_s, self.executor.due_s)):
+            self.executor.report_if_it_fits(event, reason_of(event))
+
+    def tell_places(self) -> None:
+        """Tell the recorder where robots say that they are."""
+        if self._recorder is not None:
+            _tell_places(self._recorder, self.time_s, self.executor.crew, self._fleet.ports)
+
+    def pause(self) -> None:
+        """Robots stop where they are, and the mission's clock too, until `resume`."""
+        self.executor.stand()
+        self._fleet.pause()
+
+    def resume(self) -> None:
+        """Robots go on."""
+        self._fleet.resume()
+        self.executor.come_to(self.time_s)
+        self.executor.go_on()
+
+    def stop(self) -> None:
+        """Robots stay where they are."""
+        self._fleet.stop()
+
+    def result(self) -> Report:
+        """What it took, so far or in all."""
+        report = report_of(self.executor.account)
+        if not self.done:
+            left = ", ".join(task.id for task in self.executor.ledger.open)
+            report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
+        return report
+
+
+class _Heard(Protocol):
+    def unheard(self) -> Mapping[str, str]:
+        """Robots of the mission that have not said where they are, and what is missing."""
+        ...
+
+
+def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
+    """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
+
+    Raises
+    ------
+    NetworkError
+        if something is, when the time is over.
+    """
+    until = time.monotonic() + wait_s
+    while (unheard := fleet.unheard()) and not halt.is_set():
+        if time.monotonic() > until:
+            robot, why = next(iter(unheard.items()))
+            more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
+            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
+        time.sleep(0.05)
 
 
 def from_where_they_stand(mission: Mission, fleet: Fleet) -> Mission:

@@ -8,6 +8,7 @@ import pytest
 from tests.test_live import WorldAsFleet, mission
 
 import muster
+from muster._live import wait_for_robots
 from muster.cli import real
 from muster.cli.halting import ctrl_c_halts
 from muster.cli.main import run
@@ -78,7 +79,7 @@ def test_robots_that_do_not_say_where_they_are_are_named():
             return {"r_0": "nothing on /r_0/odom", "r_1": "nothing on /r_1/odom"}
 
     with pytest.raises(muster.MusterError, match=r"robot r_0: nothing on /r_0/odom within 0.1 s \(and 1 more\)"):
-        real.wait_for_robots(Silent(), threading.Event(), 0.1)
+        wait_for_robots(Silent(), threading.Event(), 0.1)
 
 
 def test_a_plan_that_breaks_a_rule_moves_no_robot(tmp_path):

@@ -136,6 +136,18 @@ def test_what_only_the_failed_robot_could_do_is_lost_with_that_reason():
     }
 
 
+def test_a_new_task_that_nobody_can_do_is_told_once_with_the_reason():
+    wanted = Task(id="new", position=(1, 0), only_robots=("r_1",))
+    events = [
+        Event(at_s=1, robot_fails="r_1"),
+        Event(at_s=2, new_task=wanted),
+        Event(at_s=3, delay_task=DelayedTask(task="0", by_s=1)),
+    ]
+    executor = carried_out(line(9.0, robots=2, events=events), plan_of(r_0=["0"]))
+    told = [entry.data["left_out"] for entry in executor.happenings if entry.kind == "replanned"]
+    assert told == [{}, {"new": "lock: only r_1 may do it, and takes no part any more"}, {}]
+
+
 def test_a_failed_robot_that_returns_goes_on():
     mission = line(5.0, events=[Event(at_s=1, robot_fails="r_0"), Event(at_s=50, robot_returns="r_0")])
     executor = carried_out(mission, plan_of(r_0=["0"]))

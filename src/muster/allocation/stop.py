@@ -79,7 +79,7 @@ class Stop:
     @property
     def hurried(self) -> bool:
         """Whether it was interrupted once more: reasons for tasks left out are then not worth waiting for."""
-        return self._hurried
+        return self._hurried or (self._whole is not None and self._whole.hurried)
 
     def interrupt(self) -> None:
         """End the algorithm at the next chance; it returns the best it has. A second time: leave out the reasons."""

@@ -17,6 +17,7 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
+from muster.cli.remote.option import server_option
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
@@ -43,6 +44,7 @@ _NOT_MINIMAL = "some of them may already be too many: not without each of them a
     help="Seconds for finding out whether all tasks can be done in one plan.",
 )
 @quiet_option
+@server_option
 def command(
     mission: str,
     robots: Path | None,
@@ -69,7 +71,7 @@ def command(
         problem = Problem.compile(loaded, ignored=ignore).ready()  # which reads the map
     except (MissionError, NotSupportedError) as error:
         if form == "json":
-            click.echo(json_text(_answer(errors=[f.as_dict() for f in error.findings])), nl=False)
+            click.echo(json_text(answer(errors=[f.as_dict() for f in error.findings])), nl=False)
         else:
             click.echo(str(error), err=True)
         return BAD_INPUT
@@ -77,16 +79,17 @@ def command(
     found = together(problem, _admits, time_limit=time_limit)
     if form == "json":
         conflict = None if found.conflict is None else asdict(found.conflict)
-        answer = _answer(impossible=[asdict(item) for item in lost], conflict=conflict, unknown=found.unknown)
-        click.echo(json_text(answer), nl=False)
+        told = answer(impossible=[asdict(item) for item in lost], conflict=conflict, unknown=found.unknown)
+        click.echo(json_text(told), nl=False)
     else:
-        _print(loaded, lost)
+        print_checked(loaded, lost)
         if len(lost) < len(loaded.tasks):
             _print_together(found, "all other tasks" if lost else "all tasks")
     return INCOMPLETE if (lost or found.conflict) and require_complete else DONE
 
 
-def _answer(**given: Any) -> dict[str, Any]:
+def answer(**given: Any) -> dict[str, Any]:
+    """What --format json prints: nothing wrong but what is given."""
     return {"errors": [], "impossible": [], "conflict": None, "unknown": False} | given
 
 
@@ -96,7 +99,7 @@ def _admits(mission: Mission, plan: Plan) -> bool:
     return verify(mission, plan).valid
 
 
-def _print(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
+def print_checked(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
     from muster.cli.tables import print_table
 
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")

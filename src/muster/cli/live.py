@@ -57,6 +57,6 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
 
 def tell(happening: Happening) -> None:
     """Say what happens, as it happens."""
-    from muster.report.record.messages import event_line
+    from muster.mission.event_lines import event_line
 
     click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)

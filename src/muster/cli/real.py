@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 import threading
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -26,7 +25,7 @@ from muster.cli.options import (
 )
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.report_tables import print_report
-from muster.mission.errors import MusterError, NetworkError
+from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text, read_plan
 
@@ -142,29 +141,6 @@ def planned(wishes: Wishes, mission: Mission) -> Plan:
     from muster import solve
 
     return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
-
-
-class _Heard(Protocol):
-    def unheard(self) -> Mapping[str, str]:
-        """Robots of the mission that have not said where they are, and what is missing."""
-        ...
-
-
-def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
-    """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
-
-    Raises
-    ------
-    NetworkError
-        if something is, when the time is over.
-    """
-    until = time.monotonic() + wait_s
-    while (unheard := fleet.unheard()) and not halt.is_set():
-        if time.monotonic() > until:
-            robot, why = next(iter(unheard.items()))
-            more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
-            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
-        time.sleep(0.05)
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:

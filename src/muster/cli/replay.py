@@ -116,7 +116,7 @@ def _how_it_ends(recording: Recording) -> str:
 
 
 def _print(recording: Recording, *, all_events: bool) -> None:
-    from muster.report.record.messages import event_line
+    from muster.mission.event_lines import event_line
 
     name, duration = recording.mission.name, f"{recording.duration_s:.1f} s"
     amounts = (counted(len(recording.plans), "plan"), counted(len(recording.events), "event"))

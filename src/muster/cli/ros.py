@@ -22,7 +22,6 @@ from muster.cli.real import (
     reported,
     require_outputs,
     ros_options,
-    wait_for_robots,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END
@@ -196,6 +195,8 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
 
 def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
     """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
+    from muster._live import wait_for_robots
+
     fleet, wishes = work.fleet_of(mission), work.wishes
     try:
         wait_for_robots(fleet, controller.halt, work.wait_s)

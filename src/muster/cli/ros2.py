@@ -20,7 +20,6 @@ from muster.cli.real import (
     reported,
     require_outputs,
     ros_options,
-    wait_for_robots,
 )
 from muster.mission.interrupts import TO_END
 
@@ -64,6 +63,7 @@ def command(
 
     Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are.
     """
+    from muster._live import wait_for_robots
     from muster.bridges.ros2.fleet import Ros2Fleet
     from muster.bridges.ros2.port import Arrival
     from muster.bridges.ros2.wire import open_wire

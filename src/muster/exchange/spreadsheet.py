@@ -34,13 +34,13 @@ def _rows(mission: Mission, verdict: Verdict, earth: Earth | None) -> Iterator[t
         for order, v in enumerate(route.visits, 1):
             done.add(v.task)
             times = (round(value, 4) for value in (v.arrives_s, v.starts_s, v.ends_s, v.arrival_usage))
-            yield (_text(route.robot), order, _text(v.task), *where[v.task], *times)
+            yield (cell(route.robot), order, cell(v.task), *where[v.task], *times)
     for task in mission.tasks:
         if task.id not in done:
-            yield ("", "", _text(task.id), *where[task.id], "", "", "", "")
+            yield ("", "", cell(task.id), *where[task.id], "", "", "", "")
 
 
-def _text(name: str) -> str:
+def cell(name: str) -> str:
     """An id that no spreadsheet takes for a formula."""
     return f"'{name}" if name.startswith(_BEGIN_FORMULAS) else name
 

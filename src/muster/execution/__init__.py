@@ -2,23 +2,31 @@
 
 from muster.execution.executor import Executor, Happening
 from muster.execution.monitor import Limits
+from muster.execution.past import Deed, Past
 from muster.execution.reallocation import Reallocation, Revision
 from muster.execution.record import Observer, Recorder
-from muster.execution.report import Report, report_of
+from muster.execution.report import Report, broken_off, report_of
 from muster.execution.rewiring import rewire
+from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of
 
 __all__ = [
+    "Deed",
     "Executor",
     "Happening",
     "Limits",
     "Observer",
+    "Past",
     "Reallocation",
     "Recorder",
     "Report",
     "Revision",
+    "RobotStatus",
+    "Status",
+    "broken_off",
     "report_of",
     "rewire",
+    "status_of",
     "travel_of",
     "way_of",
 ]

@@ -99,29 +99,35 @@ class Changes:
             hand.stop(now)
             yield Change("robot_returns", {"robot": hand.robot.id})
 
-    def _join(self, robot: Robot, now: float) -> Change:
+    def require_newcomer(self, robot: Robot) -> None:
+        """Raise ParameterError where a robot cannot join: its id is taken, or it does not fit the mission."""
         if robot.id in self.crew:
             raise ParameterError(f"robot_joins: {shown(robot.id)}; expected an id that no robot has")
         if not self.travel.knows(robot.id):
             raise ParameterError(f"robot_joins: {shown(robot.id)}; expected a robot with rows in the travel tables")
+        self._require_fit("robot_joins", robots=(robot,))
+
+    def _join(self, robot: Robot, now: float) -> Change:
+        self.require_newcomer(robot)
         self.crew[robot.id] = new_hand(self.mission, robot, self.ports, now)
         return Change("robot_joins", {"robot": plain(robot)})
 
     def _add(self, task: Task) -> Change:
         if task.id in self.ledger.tasks:
             raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
-        self._require_fit(task)
+        self._require_fit("new_task", tasks=(task,))
         self.ledger.tasks[task.id] = task
         return Change("new_task", {"task": plain(task)})
 
-    def _require_fit(self, task: Task) -> None:
-        """A mission with this task, and those that there are, must be one."""
-        robots = {robot.id: robot for robot in (*self.mission.robots, *(hand.robot for hand in self.crew.values()))}
+    def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
+        """A mission with these robots and tasks, and those that there are, must be one."""
+        there = {robot.id: robot for robot in (*self.mission.robots, *(hand.robot for hand in self.crew.values()))}
         try:
-            self.mission.at_once(robots=tuple(robots.values()), tasks=(*self.ledger.tasks.values(), task))
+            self.mission.at_once(robots=(*there.values(), *robots), tasks=(*self.ledger.tasks.values(), *tasks))
         except MissionError as error:
             found = error.findings[0]
-            raise ParameterError(f"new_task: {task.id}: {found.value}; expected {found.expected}") from None
+            name = [*(robot.id for robot in robots), *(task.id for task in tasks)][0]
+            raise ParameterError(f"{what}: {name}: {found.value}; expected {found.expected}") from None
 
     def _cancel(self, task: str, now: float) -> Iterator[Change]:
         if task in self.ledger.ends_s or task in self.ledger.cancelled:
@@ -134,6 +140,9 @@ class Changes:
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
         """Work under way goes on where it is."""
+        if len(to) != self.mission.dimensions:
+            expected = f"{self.mission.dimensions} coordinates"
+            raise ParameterError(f"move_task: {task}: position {list(to)}; expected {expected}")
         at = self._at(task)
         if task in self.ledger.ends_s or task in self.ledger.cancelled:
             return

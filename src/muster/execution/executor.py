@@ -19,6 +19,7 @@ from muster.execution.hand import Activity, Hand
 from muster.execution.ledger import Ledger
 from muster.execution.monitor import Limits
 from muster.execution.overseer import Overseer
+from muster.execution.past import Past
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.report import Account
@@ -26,7 +27,7 @@ from muster.execution.rest import Rest
 from muster.execution.situation import required_routes, rest_of, whole_plan
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
-from muster.mission.model import Event, Mission
+from muster.mission.model import Event, Mission, Robot
 from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
@@ -73,6 +74,8 @@ class Executor:
         is told all that happens.
     now
         seconds of the mission's clock at which it begins.
+    past
+        what was done before, of a mission that goes on; then `now` is the time that it has reached.
     peers
         the other robots' say, where this is the executor of those alone that have a port: then the mission is not over
         when they have nothing to do.
@@ -96,6 +99,7 @@ class Executor:
         limits: Limits | None = None,
         observer: Observer | None = None,
         now: float = 0.0,
+        past: Past | None = None,
         peers: Peers | None = None,
     ) -> None:
         self.mission = mission
@@ -120,11 +124,13 @@ class Executor:
         self._asked: list[Change] = []
         self._left_out = {item.task: told(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
-        self.begun_s = now
+        self.begun_s = now if past is None else 0.0
         self._stood_still_at = -1
         for robot, tasks in required_routes(mission, plan).items():
             if robot in self.crew:
                 self.crew[robot].route = list(tasks)
+        if past is not None:
+            self._recall(past)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
         self._observer.on_plan(now, plan)
@@ -167,6 +173,21 @@ class Executor:
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
             self.tell("without_effect", plain(event))
+
+    def stand(self) -> None:
+        """Let robots stop where they are; nothing is to be asked of this until `go_on`."""
+        for hand in self._present:
+            hand.stand(self.now_s)
+
+    def go_on(self) -> None:
+        """Let robots go on with work that they stopped; at the next tick those go on that were under way."""
+        for hand in self._present:
+            if hand.activity is Activity.WORKING:
+                hand.send_again(self.now_s)
+
+    def require_newcomer(self, robot: Robot) -> None:
+        """Raise ParameterError where a robot cannot join; its port need not be there yet."""
+        self._changes.require_newcomer(robot)
 
     def report_if_it_fits(self, event: Event, reason: str = "") -> bool:
         """`report` where nobody is there to hear of an error: what does not fit is refused, and that is told."""
@@ -230,6 +251,14 @@ class Executor:
     def _capacity(self, hand: Hand) -> float | None:
         return None if "capacity" in self.planned.ignored else hand.capacity
 
+    def _recall(self, past: Past) -> None:
+        """Robots keep of their routes what is left to do; all of it is planned anew from where they are."""
+        past.recall(self.ledger, self.crew)
+        left = {task.id for task in self.ledger.open} - past.barred.keys()
+        for hand in self.crew.values():
+            hand.route = [] if hand.out else [task for task in hand.route if task in left]
+        self._script = [event for event in self._script if event.at_s > self.now_s]
+
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
         if not self._alone:
@@ -272,9 +301,11 @@ class Executor:
         for hand in self.crew.values():
             if hand.out:
                 hand.route = []
+        fresh = revision.left_out.keys() - self._left_out.keys() - set(revision.dropped)
+        left_out = {task: why for task, why in revision.left_out.items() if task in fresh}
         self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
         self.revisions.append(revision)
-        self.tell("replanned", {"causes": causes, **revision.difference()})
+        self.tell("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
         self._observer.on_plan(self.now_s, self.plan)
 
     def _end_if_over(self) -> None:

@@ -146,6 +146,14 @@ class Hand:
         self.work = None
         self.turn_to(now, Activity.IDLE)
 
+    def stand(self, now: float) -> None:
+        """Stop for a while: who is under way has to be sent again, who works keeps what is left of the work."""
+        if self.activity is Activity.WORKING:
+            self._waypoints = self._waypoints[self.passed :]
+            self._order = self.port.cancel()
+        elif self.activity in MOVING:
+            self.stop(now)
+
     def turn_to(self, now: float, activity: Activity) -> None:
         """Go on to another activity under the same order."""
         self.activity, self.begun_s = activity, now

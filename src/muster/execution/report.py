@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from muster.execution.ledger import Ledger
@@ -176,6 +176,13 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
             TaskReport(task, ledger.done_by[task], *ledger.usage[task], ledger.waited_s(task)) for task in done
         ),
     )
+
+
+def broken_off(report: Report, account: Account, reason: str) -> Report:
+    """The report of a mission that ends before it is over: tasks under way are lost too, for that reason."""
+    told = {*report.tasks_done, *(task for task, _ in report.tasks_lost)}
+    under_way = tuple((task.id, reason) for task in account.ledger.open if task.id not in told)
+    return replace(report, tasks_lost=report.tasks_lost + under_way)
 
 
 def _objective(account: Account) -> ObjectiveReport:

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.mission.geodesy import wgs84_to_enu
 from muster.mission.kinds import INVALID, Fault, Path, Record, shown
 from muster.mission.model import Origin
 from muster.mission.places import LatLon
@@ -126,6 +125,8 @@ def _metres(places: Sequence[Any], origin: Origin | None) -> list[Any]:
     metres: list[Any] = [INVALID] * len(places)
     if origin is None or not right:
         return metres
+    from muster.mission.geodesy import wgs84_to_enu  # brings NumPy, which a server that shows missions is without
+
     spatial = [(*places[k][:2], places[k][2] if len(places[k]) == 3 else origin.alt_m) for k in right]
     points = wgs84_to_enu(spatial, (origin.lat_deg, origin.lon_deg, origin.alt_m))
     for k, point in zip(right, points.tolist(), strict=True):

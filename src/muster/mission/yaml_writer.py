@@ -19,11 +19,11 @@ def yaml_text(mission: Mission) -> str:
             continue
         data = plain(value)
         if isinstance(data, list) and data:
-            lines += [f"{f.name}:", *(f"  - {_flow(item)}" for item in data)]
+            lines += [f"{f.name}:", *(f"  - {flow_text(item)}" for item in data)]
         elif f.name == "suitability" and isinstance(data, dict):
-            lines += [f"{f.name}:", *(f"  {_word(name)}: {_flow(row)}" for name, row in data.items())]
+            lines += [f"{f.name}:", *(f"  {_word(name)}: {flow_text(row)}" for name, row in data.items())]
         else:
-            lines.append(f"{f.name}: {_flow(data)}")
+            lines.append(f"{f.name}: {flow_text(data)}")
     return "\n".join(lines) + "\n"
 
 
@@ -39,11 +39,12 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _flow(data: Any) -> str:
+def flow_text(data: Any) -> str:
+    """Plain data as YAML on one line, as it may stand anywhere in a mission file."""
     if isinstance(data, dict):
-        return "{" + ", ".join(f"{_word(key)}: {_flow(item)}" for key, item in data.items()) + "}"
+        return "{" + ", ".join(f"{_word(key)}: {flow_text(item)}" for key, item in data.items()) + "}"
     if isinstance(data, list):
-        return "[" + ", ".join(_flow(item) for item in data) + "]"
+        return "[" + ", ".join(flow_text(item) for item in data) + "]"
     if isinstance(data, str):
         return _word(data)
     if isinstance(data, float) and data.is_integer() and abs(data) < 1e15:

@@ -18,6 +18,8 @@ NO_WALLS = np.empty((0, 4))
 NO_DISCS = np.empty((0, 3))
 _SEAM = 1e-9
 """By which share a wall is longer than it says, so that no beam slips through where two walls join."""
+_ALONG = 1e-12
+"""Sine of the angle between a beam and a wall below which the wall is seen edge on, and so not at all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,6 +119,7 @@ def _to_walls(beams: Floats, walls: Floats) -> Floats:
     """Along each beam (n, 2) from the origin to the first wall (k, 4): (n,).
 
     With a the wall's one end and w the way to the other, t d = a + s w gives t = a x w / d x w, s = a x d / d x w.
+    A wall along a beam is not met: what rounding leaves of d x w says nothing.
     """
     if not len(walls):
         return np.full(len(beams), math.inf)
@@ -125,6 +128,7 @@ def _to_walls(beams: Floats, walls: Floats) -> Floats:
     dx, dy = beams[:, :1], beams[:, 1:]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of walls along a beam
         across = dx * wy - dy * wx
+        across = np.where(np.abs(across) > _ALONG * np.hypot(wx, wy), across, np.nan)
         along = (ax * wy - ay * wx) / across
         share = (ax * dy - ay * dx) / across
     met = (along >= 0) & (share >= -_SEAM) & (share <= 1 + _SEAM)

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.event_lines import event_line
 from muster.motion.grid import Floats
-from muster.report.record.messages import event_line
 from muster.report.record.recording import Happening
 
 Picture = npt.NDArray[np.uint8]

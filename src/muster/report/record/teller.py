@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.event_lines import event_line
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record import messages, scene
@@ -84,7 +85,7 @@ class Teller(ABC):
         """Write what has happened; what each kind means is told in `situation`."""
         self._add("/muster/event", now, messages.json_bytes({"time_s": now, "kind": kind, "data": data}))
         level = messages.WARNING if kind in ALARMING else messages.INFO
-        self._write("/log", now, messages.log(now, level, messages.event_line(kind, data)))
+        self._write("/log", now, messages.log(now, level, event_line(kind, data)))
         changed = self._situation.take(kind, data)
         if changed is not None:
             self._write("/scene", now, scene.update([self._entity(now, kind, changed)]))

@@ -1,0 +1,122 @@
+"""A plan as files of other tools: what each format needs, and what a person has to know before anything flies."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from muster.exchange.antimeridian import crosses
+from muster.exchange.earth import Earth
+from muster.exchange.fence import Fence
+from muster.exchange.geojson import geojson_text
+from muster.exchange.gpx import gpx_text
+from muster.exchange.itinerary import Itinerary, itineraries
+from muster.exchange.kml import kml_text
+from muster.exchange.qgc_writer import PlanFiles
+from muster.exchange.separation import meetings
+from muster.exchange.spreadsheet import csv_text
+from muster.exchange.survey import survey
+from muster.exchange.thinning import thinned
+from muster.exchange.wishes import Wishes
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+from muster.motion.roads import Roads
+from muster.motion.world import body_of
+from muster.verification import Verdict
+
+
+@dataclass(frozen=True)
+class Files:
+    """Texts by the names of their files, and what a person has to know of them."""
+
+    texts: Mapping[str, str]
+    messages: tuple[str, ...]
+
+
+def text_of(mission: Mission, verdict: Verdict, form: str) -> str:
+    """An admissible plan as one file: geojson, gpx, kml or csv.
+
+    Raises
+    ------
+    MissionError
+        if the format needs a place on Earth and the mission has none.
+    """
+    if form == "csv":
+        return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
+    earth = Earth.of(mission, f"--to {form}")
+    writer = {"geojson": geojson_text, "gpx": gpx_text, "kml": kml_text}[form]
+    return writer(survey(mission, verdict, itineraries(mission, verdict), earth))
+
+
+def plan_files(mission: Mission, verdict: Verdict, wishes: Wishes) -> Files:
+    """An admissible plan as QGroundControl's files, one for each robot that has tasks.
+
+    Raises
+    ------
+    MissionError
+        if the mission has no place on Earth.
+    ParameterError
+        if drones have no height to fly at.
+    """
+    earth = Earth.of(mission, "--to qgc")
+    roads = Roads.of(mission) if mission.travel_rule == "map" else None
+    whole = itineraries(mission, verdict, roads)
+    _require_heights(mission, whole, wishes.altitude)
+    team = [_as_wished(itinerary, roads, wishes) for itinerary in whole]
+    busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
+    files = dict(zip(_file_names([i.robot.id for i in busy]), busy, strict=True))
+    plans = PlanFiles(mission, earth, team, wishes.firmware)
+    texts = {name: json.dumps(plans.plan(i), indent=4, sort_keys=True) + "\n" for name, i in files.items()}
+    messages = [f"{i.robot.id}: no tasks, no file" for i in team if i not in busy]
+    messages += [message for i in busy for message in _notes(plans, i)]
+    if mission.map is not None and mission.map.boundary is None:
+        messages.append("warning: the map is an image; expected a boundary for a fence, the files have none")
+    messages += [f"warning: {meeting}" for meeting in meetings(team, wishes.clearance)]
+    return Files(texts, tuple(messages))
+
+
+def _as_wished(itinerary: Itinerary, roads: Roads | None, wishes: Wishes) -> Itinerary:
+    """With fewer bends around corners, and a drone no lower than it may fly."""
+    if roads is not None and wishes.tolerance:
+        clear = partial(roads.clear, body_of(itinerary.robot))
+        itinerary = thinned(itinerary, wishes.tolerance, clear)
+    if wishes.altitude is None or itinerary.robot.kind == "ground":
+        return itinerary
+    return itinerary.at_least(wishes.altitude)
+
+
+def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
+    """What a person has to know of one robot's file."""
+    name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
+    for k in fence.passed:
+        yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
+    for broken in fence.broken:
+        how = "does not stay in" if broken == "the boundary" else "leads through"
+        yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
+    if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):
+        told = "autopilots may take the outside of such a fence for its inside"
+        yield f"warning: {name}: its fence crosses the meridian of 180 degrees; {told}"
+    low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
+    if itinerary.robot.kind == "air" and low:
+        where = f"task {low[0].task}" if low[0].task else "a way point"
+        yield f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height"
+
+
+def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: float | None) -> None:
+    drones = [i.robot.id for i in team if i.robot.kind == "air" and len(i.passages) > 1]
+    if drones and mission.dimensions == 2 and not altitude:
+        raise ParameterError(f"--altitude missing; expected metres above the start for {drones[0]} in the plane")
+
+
+def _file_names(ids: list[str]) -> list[str]:
+    """A name for each robot's file: its id, where files can be called so; no two differ by case alone."""
+    names: list[str] = []
+    for robot in ids:
+        stem = "".join(c if c.isalnum() or c in "_-." else "_" for c in robot).lstrip(".") or "robot"
+        taken, name, k = {known.casefold() for known in names}, f"{stem}.plan", 2
+        while name.casefold() in taken:
+            name, k = f"{stem}-{k}.plan", k + 1
+        names.append(name)
+    return names

@@ -1,0 +1,49 @@
+"""What happens while a mission is carried out, each event in a line for people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def event_line(kind: str, data: Mapping[str, Any]) -> str:
+    """An event in a line for people: `starts: robot r_0, task 7`."""
+    if kind == "replanned":
+        return _replanned(data)
+    if kind == "found":
+        return found_line(data)
+    parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
+    return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
+
+
+def found_line(data: Mapping[str, Any]) -> str:
+    """`found: tag 5 at 4.02, 0.31 by r_0, sure to 0.05 m; becomes found-5`."""
+    place = ", ".join(f"{value + 0.0:.2f}" for value in data.get("position", ()))
+    robots, task = " ".join(data.get("robots", ())), data.get("task")
+    line = f"found: tag {data.get('tag')} at {place} by {robots}, sure to {data.get('deviation_m', 0.0):.2f} m"
+    return f"{line}; becomes {task}" if task else line
+
+
+def _replanned(data: Mapping[str, Any]) -> str:
+    """`replanned after robot_fails a: t from a to b, n to c; given up: x; nobody can do: y`."""
+    causes = ", ".join(" ".join(_short(of) for of in cause.values()) for cause in data.get("causes", ()))
+    moved = [f"{task} from {robots[0]} to {robots[1]}" for task, robots in data.get("moved", {}).items()]
+    added = [f"{task} to {robot}" for task, robot in data.get("added", {}).items()]
+    line = f"replanned after {causes}: {', '.join([*moved, *added]) or 'no task changes robot'}"
+    for words, tasks in (("given up", data.get("dropped", {})), ("nobody can do", data.get("left_out", {}))):
+        line += f"; {words}: {', '.join(tasks)}" if tasks else ""
+    return line
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, Mapping):
+        if "id" in value:
+            return str(value["id"])
+        return ", ".join(
+            _short(of) if key in ("kind", "task", "robot") else f"{key} {_short(of)}" for key, of in value.items()
+        )
+    if isinstance(value, float):
+        return f"{value:.2f}"
+    if isinstance(value, list | tuple):
+        return " ".join(map(_short, value))
+    return str(getattr(value, "id", value))

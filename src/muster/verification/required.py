@@ -1,0 +1,27 @@
+"""Plans that are handed on to robots and to other tools: only those that break no rule."""
+
+from __future__ import annotations
+
+from muster.mission.errors import Finding, PlanError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.verification.judge import verify
+from muster.verification.verdict import Verdict
+
+
+def require_admissible(mission: Mission, plan: Plan, file: str) -> Verdict:
+    """What the judge says of a plan that breaks no rule; `file` names it in the message.
+
+    Raises
+    ------
+    PlanError
+        if it breaks one.
+    """
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        first, *others = verdict.violations
+        more = f" and {len(others)} more" if others else ""
+        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
+        expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
+        raise PlanError([Finding(file, None, first.kind, f"{told}{more}", expected)])
+    return verdict
