@@ -1,0 +1,152 @@
+"""Connections to a database and its transactions. Every failure of the database becomes a StoreError of one line.
+
+SQLite keeps a log of what is written ahead (WAL): readers and one writer do not wait for each other. With
+synchronous=FULL what was committed survives a power failure as well; it costs one fsync a transaction. A transaction
+that writes takes the lock at its beginning (BEGIN IMMEDIATE), so it cannot fail half-way because another wrote.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.exc import SQLAlchemyError
+
+from muster.mission.errors import MissingExtraError
+from muster.server.store.columns import as_json
+from muster.server.store.failures import store_error
+from muster.server.store.urls import database_url, shown, sqlite_file
+from muster.server.words import StoreError
+
+_PATIENCE_S = 10
+_NEVER_FOR_EVER = {
+    "connect_timeout": _PATIENCE_S,
+    "tcp_user_timeout": 1000 * _PATIENCE_S,
+    "keepalives_idle": _PATIENCE_S // 2,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
+}
+"""Options of libpq: a server that does not answer any more, because its machine or the network is gone, is given up."""
+
+
+class Database:
+    """A database that need not have tables yet.
+
+    `name` is what messages call it; `failures` counts how often it failed. A server sets `require`, which looks at the
+    beginning of each transaction of PostgreSQL that writes whether it may.
+    """
+
+    def __init__(self, url: str, name: str = "") -> None:
+        address = database_url(url)
+        self.name = name or shown(address)
+        self.file = sqlite_file(address)
+        self.failures = 0
+        self.require: Callable[[Connection], None] = lambda _: None  # raises if a transaction may not write
+        self._turn = Lock()  # SQLite has one writer at a time: threads of this process queue here instead of polling
+        if self.file is None:
+            self._engine = _postgresql(address)
+        else:
+            self._engine = _sqlite(address)
+
+    @property
+    def is_sqlite(self) -> bool:
+        return self.file is not None
+
+    @contextmanager
+    def reading(self) -> Iterator[Connection]:
+        """A transaction that reads."""
+        with self._failing(), self._engine.connect() as connection:
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[Connection]:
+        """A transaction that writes: all of it, or nothing if it raises."""
+        if not self.is_sqlite:
+            with self._failing(), self._engine.begin() as connection:
+                self.require(connection)
+                yield connection
+            return
+        with self._my_turn(), self._failing(), self._engine.execution_options(writes=True).begin() as connection:
+            yield connection
+
+    @contextmanager
+    def snapshot(self) -> Iterator[Connection]:
+        """A transaction that reads all at one moment, whatever others write meanwhile."""
+        engine = self._engine if self.is_sqlite else self._engine.execution_options(isolation_level="REPEATABLE READ")
+        with self._failing(), engine.connect() as connection:
+            yield connection
+
+    def close(self) -> None:
+        self._engine.dispose()
+
+    @contextmanager
+    def _my_turn(self) -> Iterator[None]:
+        """Alone among the threads that write; one that waits for others who wait for a lock does not do so for ever."""
+        if not self._turn.acquire(timeout=_PATIENCE_S):
+            self.failures += 1
+            raise StoreError(f"{self.name}: is locked by another program; end it, or wait")
+        try:
+            yield
+        finally:
+            self._turn.release()
+
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        try:
+            yield
+        except SQLAlchemyError as error:
+            self.failures += 1
+            raise store_error(error, self.name) from None
+
+
+def _sqlite(address: Any) -> Engine:
+    engine = create_engine(
+        address, json_serializer=as_json, hide_parameters=True, connect_args={"timeout": _PATIENCE_S}
+    )
+
+    @event.listens_for(engine, "connect")
+    def set_up(connection: Any, _: Any) -> None:
+        connection.isolation_level = None  # the driver begins no transaction of its own
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+            connection.execute(f"PRAGMA {pragma}").close()
+
+    @event.listens_for(engine, "begin")
+    def begin(connection: Connection) -> None:
+        writes = connection.get_execution_options().get("writes", False)
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+    return engine
+
+
+def _postgresql(address: Any) -> Engine:
+    try:
+        engine = create_engine(
+            address,
+            json_serializer=as_json,
+            hide_parameters=True,
+            pool_pre_ping=True,  # a server that was started anew is found again
+            connect_args={"application_name": "muster", **_NEVER_FOR_EVER},
+        )
+    except ImportError as error:
+        raise MissingExtraError("web", "PostgreSQL") from error
+
+    @event.listens_for(engine, "connect")
+    def set_up(connection: Any, _: Any) -> None:
+        connection.execute(f"SET lock_timeout = '{_PATIENCE_S}s'")
+        connection.commit()
+
+    return engine
+
+
+def make_folder(file: Path) -> None:
+    """The folder of a new database, for this user alone."""
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(
+            f"{file.parent}: {error.strerror or error}; expected a folder that can be made for the database"
+        ) from None

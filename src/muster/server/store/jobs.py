@@ -1,0 +1,130 @@
+"""Jobs: long work, from being asked for to being over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, insert, select, update
+
+from muster.server.store.database import Database
+from muster.server.store.plans import add_plan
+from muster.server.store.schema import jobs
+from muster.server.words import ConflictError, Job, JobState, NotFoundError
+
+
+class JobTable:
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def add(self, kind: str, mission: str, mission_version: int, arguments: Mapping[str, Any], author: str) -> Job:
+        """A new job, queued."""
+        row = {
+            "kind": kind,
+            "state": "queued",
+            "mission": mission,
+            "mission_version": mission_version,
+            "arguments": dict(arguments),
+            "author": author,
+            "asked_at": datetime.now(UTC),
+            "error": "",
+        }
+        with self._database.writing() as connection:
+            return Job(**connection.execute(insert(jobs).values(row).returning(jobs)).one()._mapping)
+
+    def get(self, job: int) -> Job:
+        """One job.
+
+        Raises
+        ------
+        NotFoundError
+            if there is none.
+        """
+        with self._database.reading() as connection:
+            return _get(connection, job)
+
+    def begin(self, job: int) -> Job:
+        """A queued job is under way.
+
+        Raises
+        ------
+        ConflictError
+            if it is not queued: cancelled, for example.
+        NotFoundError
+            if there is none.
+        """
+        return self._move(job, ("queued",), state="running", begun_at=datetime.now(UTC))
+
+    def progress(self, job: int, data: Mapping[str, Any]) -> None:
+        """The newest progress of a job that is under way; of any other it is left out."""
+        under_way = (jobs.c.id == job, jobs.c.state == "running")
+        with self._database.writing() as connection:
+            connection.execute(update(jobs).where(*under_way).values(progress=dict(data)))
+
+    def end(self, job: int, state: JobState, result: Mapping[str, Any] | None = None, error: str = "") -> Job:
+        """A job is over: `done`, `failed` or `cancelled`.
+
+        Raises
+        ------
+        ConflictError
+            if it was over already.
+        NotFoundError
+            if there is none.
+        """
+        over = {"state": state, "result": None if result is None else dict(result), "error": error}
+        return self._move(job, ("queued", "running"), **over, ended_at=datetime.now(UTC))
+
+    def end_with_plan(self, job: int, plan: Mapping[str, Any], why: str, progress: Mapping[str, Any] | None) -> Job:
+        """A job is done, and its plan is there: both or neither, so that no crash makes a second plan of it.
+
+        Raises
+        ------
+        ConflictError
+            if it is not under way: cancelled, for example.
+        NotFoundError
+            if there is none.
+        """
+        with self._database.writing() as connection:
+            over = {"state": "done", "ended_at": datetime.now(UTC)}
+            if progress is not None:
+                over["progress"] = dict(progress)
+            moved = _move(connection, job, ("running",), **over)
+            entry = add_plan(connection, moved.mission, moved.mission_version, "planned", moved.author, plan)
+            return _move(connection, job, ("done",), result={"plan": entry.id, "why": why})
+
+    def requeue(self) -> list[Job]:
+        """At start: what was under way when the server ended is queued again. All that is queued, the oldest first."""
+        again = {"state": "queued", "begun_at": None, "progress": None}
+        with self._database.writing() as connection:
+            connection.execute(update(jobs).where(jobs.c.state == "running").values(again))
+            rows = connection.execute(select(jobs).where(jobs.c.state == "queued").order_by(jobs.c.id))
+            return [Job(**row._mapping) for row in rows]
+
+    def _move(self, job: int, states: tuple[JobState, ...], **values: Any) -> Job:
+        with self._database.writing() as connection:
+            return _move(connection, job, states, **values)
+
+    def list(self, state: JobState | None = None, limit: int = 200) -> list[Job]:
+        """The newest jobs, of one state or of all, the newest first."""
+        query = select(jobs).order_by(jobs.c.id.desc()).limit(limit)
+        if state is not None:
+            query = query.where(jobs.c.state == state)
+        with self._database.reading() as connection:
+            return [Job(**row._mapping) for row in connection.execute(query)]
+
+
+def _move(connection: Connection, job: int, states: tuple[JobState, ...], **values: Any) -> Job:
+    which = (jobs.c.id == job, jobs.c.state.in_(states))
+    moved = connection.execute(update(jobs).where(*which).values(values).returning(jobs)).one_or_none()
+    if moved is None:
+        found = _get(connection, job)
+        raise ConflictError(f"job {job} is {found.state}; expected one that is {' or '.join(states)}")
+    return Job(**moved._mapping)
+
+
+def _get(connection: Connection, job: int) -> Job:
+    row = connection.execute(select(jobs).where(jobs.c.id == job)).one_or_none()
+    if row is None:
+        raise NotFoundError(f"no job {job}")
+    return Job(**row._mapping)

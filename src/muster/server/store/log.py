@@ -1,0 +1,143 @@
+"""The log of runs, which only grows: entries, and stretches of tracks.
+
+The database refuses to change it, too: its triggers are in the first migration.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection, Row, Table, func, insert, select, update
+
+from muster.mission.errors import ParameterError
+from muster.server.store.columns import as_json
+from muster.server.store.database import Database
+from muster.server.store.schema import entries as entry_table
+from muster.server.store.schema import runs
+from muster.server.store.schema import stretches as stretch_table
+from muster.server.words import ConflictError, Entry, NotFoundError, Stretch
+
+_AT_ONCE = 64
+
+Item = TypeVar("Item", Entry, Stretch)
+
+
+class LogTable:
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def append(self, run: int, time_s: float, entries: Sequence[Entry], stretches: Sequence[Stretch] = ()) -> int:
+        """Write what follows in one transaction; says how many entries were new.
+
+        What is there already is left out, so whoever does not know whether it was written writes it again; another
+        entry in its place is somebody else's. Stretches are numbered by who writes them, and are not compared. The
+        run's `time_s` becomes `time_s` if that is later, and its report the data of an entry `report`.
+
+        Raises
+        ------
+        ConflictError
+            if there is a gap before an entry or stretch, or another entry is there.
+        NotFoundError
+            if there is no such run.
+        ParameterError
+            if an entry or stretch is of another run.
+        """
+        with self._database.writing() as connection:
+            row = connection.execute(select(runs.c.time_s).where(runs.c.id == run).with_for_update()).one_or_none()
+            if row is None:
+                raise NotFoundError(f"no run {run}")
+            last = _last(connection, entry_table, run)
+            _require_same(connection, run, [entry for entry in entries if entry.seq <= last])
+            new = _following(run, last, entries)
+            tracks = _following(run, _last(connection, stretch_table, run), stretches)
+            now = datetime.now(UTC)
+            if new:
+                connection.execute(insert(entry_table), [_entry_row(entry, now) for entry in new])
+            if tracks:
+                connection.execute(insert(stretch_table), [dict(vars(stretch)) for stretch in tracks])
+            changes: dict[str, Any] = {"time_s": time_s} if time_s > row.time_s else {}
+            if report := next((entry for entry in new if entry.kind == "report"), None):
+                changes["report"] = dict(report.data)
+            if changes:
+                connection.execute(update(runs).where(runs.c.id == run).values(changes))
+        return len(new)
+
+    def entries(self, run: int, after: int = 0, limit: int | None = None) -> list[Entry]:
+        """Entries with a `seq` beyond `after`, in order."""
+        query = select(entry_table).where(entry_table.c.run == run, entry_table.c.seq > after)
+        with self._database.reading() as connection:
+            return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
+
+    def last_seq(self, run: int) -> int:
+        """The `seq` of the last entry, 0 without any."""
+        with self._database.reading() as connection:
+            return _last(connection, entry_table, run)
+
+    def stretches(self, run: int) -> Iterator[Stretch]:
+        """The tracks, in order; read in portions, so that no transaction waits for whoever takes them."""
+        query = select(stretch_table).where(stretch_table.c.run == run).order_by(stretch_table.c.seq).limit(_AT_ONCE)
+        rows = self._rows(query)
+        while rows:
+            yield from (Stretch(**{**row._mapping, "data": bytes(row.data)}) for row in rows)
+            rows = self._rows(query.where(stretch_table.c.seq > rows[-1].seq))
+
+    def tracked_s(self, run: int) -> float:
+        """Until when there are tracks, 0 without any."""
+        query = select(func.max(stretch_table.c.until_s)).where(stretch_table.c.run == run)
+        with self._database.reading() as connection:
+            return float(connection.execute(query).scalar() or 0.0)
+
+    def last_stretch(self, run: int) -> int:
+        """The `seq` of the last stretch, 0 without any."""
+        with self._database.reading() as connection:
+            return _last(connection, stretch_table, run)
+
+    def _rows(self, query: Any) -> Sequence[Row[Any]]:
+        with self._database.reading() as connection:
+            return connection.execute(query).all()
+
+
+def _last(connection: Connection, table: Table, run: int) -> int:
+    last: int | None = connection.execute(select(func.max(table.c.seq)).where(table.c.run == run)).scalar()
+    return last or 0
+
+
+def _following(run: int, last: int, items: Sequence[Item]) -> list[Item]:
+    """What is new, without a gap after `last`."""
+    new: list[Item] = []
+    for item in items:
+        what = type(item).__name__.lower()
+        if item.run != run or item.seq < 1:
+            raise ParameterError(f"{what} {item.seq} of run {item.run}; expected 1 or more, of run {run}")
+        if item.seq <= last:
+            continue
+        if item.seq > last + 1:
+            raise ConflictError(f"run {run}: {what} {item.seq} does not follow {last}; expected {last + 1}")
+        new.append(item)
+        last = item.seq
+    return new
+
+
+def _require_same(connection: Connection, run: int, again: Sequence[Entry]) -> None:
+    """What is written again must be what is there."""
+    if not again:
+        return
+    numbers = [entry.seq for entry in again]
+    query = select(entry_table).where(
+        entry_table.c.run == run, entry_table.c.seq >= min(numbers), entry_table.c.seq <= max(numbers)
+    )
+    there = {row.seq: (row.time_s, row.kind, row.data) for row in connection.execute(query)}
+    for entry in again:
+        said = (entry.time_s, entry.kind, json.loads(as_json(dict(entry.data))))
+        if entry.seq in there and there[entry.seq] != said:
+            raise ConflictError(
+                f"run {run}: entry {entry.seq} is {there[entry.seq][1]} at {there[entry.seq][0]:g} s, not {entry.kind} "
+                f"at {entry.time_s:g} s; expected that one server alone writes this log"
+            )
+
+
+def _entry_row(entry: Entry, now: datetime) -> dict[str, Any]:
+    return {**vars(entry), "data": dict(entry.data), "at": entry.at or now}

@@ -1,0 +1,61 @@
+"""Brings a database to the newest tables, by Alembic, which is imported only if something is due."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sqlalchemy import Connection, inspect, text
+
+from muster.server.store.database import Database
+from muster.server.store.schema import HEAD
+from muster.server.words import StoreError
+
+MIGRATIONS = Path(__file__).parent / "migrations"
+_LOCK = 0x4D55_5354  # of PostgreSQL: one program migrates, others wait
+
+
+def revision(connection: Connection) -> str | None:
+    """The migration that a database has; None of one without tables of Muster."""
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    found: str | None = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+    return found
+
+
+def migrate(database: Database, folder: Path = MIGRATIONS, head: str = HEAD) -> bool:
+    """Bring it to `head`; says whether something was due. All migrations that are due are one transaction.
+
+    Raises
+    ------
+    StoreError
+        if it was made by a newer Muster, or cannot be changed.
+    """
+    with database.reading() as connection:
+        if revision(connection) == head:
+            return False
+    with database.writing() as connection:
+        if not database.is_sqlite:
+            connection.execute(text(f"SELECT pg_advisory_xact_lock({_LOCK})"))
+        if revision(connection) == head:  # another program was quicker
+            return False
+        _upgrade(connection, database.name, folder, head)
+    return True
+
+
+def _upgrade(connection: Connection, name: str, folder: Path, head: str) -> None:
+    from alembic import command
+    from alembic.config import Config
+    from alembic.script import ScriptDirectory
+    from alembic.util.exc import CommandError
+
+    config = Config(attributes={"connection": connection})
+    config.set_main_option("script_location", str(folder).replace("%", "%%"))
+    config.set_main_option("path_separator", "os")
+    found = revision(connection)
+    known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
+    if found is not None and found not in known:
+        raise StoreError(f"{name}: made by a newer Muster (tables {found}); expected {head} or older: upgrade Muster")
+    try:
+        command.upgrade(config, head)
+    except CommandError as error:
+        raise StoreError(f"{name}: its tables cannot be brought from {found} to {head}: {error}") from None

@@ -1,0 +1,249 @@
+"""Missions and their versions. Files that versions have in common are kept once, by their SHA-256."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Collection, Mapping
+from datetime import UTC, datetime
+from hashlib import sha256
+from typing import Any
+
+from sqlalchemy import Connection, Row, and_, insert, select, update
+
+from muster.server.store.database import Database
+from muster.server.store.schema import blobs, mission_files, mission_versions, missions
+from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError
+
+_LONGEST_ID = 80
+
+
+class MissionTable:
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def entry(self, mission: str) -> MissionEntry:
+        """What the list has of one mission.
+
+        Raises
+        ------
+        NotFoundError
+            if there is none, or it was deleted.
+        """
+        with self._database.reading() as connection:
+            row = connection.execute(_ENTRIES.where(missions.c.id == mission, ~missions.c.hidden)).one_or_none()
+        if row is None:
+            raise NotFoundError(f"no mission {mission}")
+        return _entry(row)
+
+    def get(self, mission: str, version: int | None = None) -> MissionVersion:
+        """One version with its files; without a number the newest. A deleted mission's versions are there by number.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission or version.
+        """
+        with self._database.reading() as connection:
+            return _version(connection, mission, _newest(connection, mission) if version is None else version)
+
+    def versions(self, mission: str) -> list[MissionVersion]:
+        """All versions without their files, the newest first.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission.
+        """
+        query = select(mission_versions).where(mission_versions.c.mission == mission)
+        with self._database.reading() as connection:
+            rows = connection.execute(query.order_by(mission_versions.c.version.desc())).all()
+        if not rows:
+            raise NotFoundError(f"no mission {mission}")
+        return [_without_files(row) for row in rows]
+
+    def create(
+        self,
+        name: str,
+        text: str,
+        files: Mapping[str, bytes],
+        summary: Mapping[str, Any],
+        author: str,
+        note: str = "",
+        *,
+        shipped: bool = False,
+        reserved: Collection[str] = (),
+    ) -> MissionVersion:
+        """A new mission. Its id is made of the name, with a number where a mission has it or it is `reserved`.
+
+        A mission that is `shipped` gets its name as id.
+
+        Raises
+        ------
+        ConflictError
+            if the mission is `shipped`, and there already.
+        """
+        with self._database.writing() as connection:
+            if shipped:
+                mission = name
+                if _is_taken(connection, mission):
+                    raise ConflictError(f"mission {mission} is there already")
+            else:
+                mission = _free_id(connection, name, reserved)
+            connection.execute(insert(missions).values(id=mission, newest=1, shipped=shipped, hidden=False))
+            _write(connection, mission, 1, text, files, summary, author, note)
+            return _version(connection, mission, 1)
+
+    def save(
+        self,
+        mission: str,
+        text: str,
+        files: Mapping[str, bytes],
+        summary: Mapping[str, Any],
+        author: str,
+        note: str,
+        base_version: int,
+    ) -> MissionVersion:
+        """A new version, made from `base_version`.
+
+        Raises
+        ------
+        ConflictError
+            if another version is the newest: somebody else saved meanwhile.
+        NotFoundError
+            if there is no such mission.
+        """
+        with self._database.writing() as connection:
+            newest = _newest(connection, mission, to_write=True)
+            if newest != base_version:
+                raise ConflictError(
+                    f"mission {mission} was changed meanwhile: its newest version is {newest}, yours was made from "
+                    f"{base_version}; look at the newest, and save again"
+                )
+            connection.execute(update(missions).where(missions.c.id == mission).values(newest=newest + 1))
+            _write(connection, mission, newest + 1, text, files, summary, author, note)
+            return _version(connection, mission, newest + 1)
+
+    def delete(self, mission: str) -> None:
+        """Take it out of the list; its versions, plans and runs stay.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission.
+        """
+        with self._database.writing() as connection:
+            _newest(connection, mission, to_write=True)
+            connection.execute(update(missions).where(missions.c.id == mission).values(hidden=True))
+
+    def restore(self, mission: str) -> None:
+        """Put it into the list again.
+
+        Raises
+        ------
+        NotFoundError
+            if there never was such a mission.
+        """
+        with self._database.writing() as connection:
+            if not _is_taken(connection, mission):
+                raise NotFoundError(f"no mission {mission}")
+            connection.execute(update(missions).where(missions.c.id == mission).values(hidden=False))
+
+    def list(self) -> list[MissionEntry]:
+        """Every mission that was not deleted, by its id."""
+        with self._database.reading() as connection:
+            rows = connection.execute(_ENTRIES.where(~missions.c.hidden).order_by(missions.c.id))
+            return [_entry(row) for row in rows]
+
+
+_ENTRIES = select(missions, mission_versions.c.summary, mission_versions.c.at).join(
+    mission_versions, and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
+)
+
+
+def _entry(row: Row[Any]) -> MissionEntry:
+    return MissionEntry(
+        id=row.id, shipped=row.shipped, version=row.newest, changed_at=row.at, **_of_summary(row.summary, row.id)
+    )
+
+
+def _of_summary(summary: Mapping[str, Any], mission: str) -> dict[str, Any]:
+    counts = {key: summary.get(key, 0) for key in ("robots", "tasks", "dimensions")}
+    return {"name": summary.get("name", mission), **counts}
+
+
+def _newest(connection: Connection, mission: str, *, to_write: bool = False) -> int:
+    query = select(missions.c.newest).where(missions.c.id == mission, ~missions.c.hidden)
+    newest: int | None = connection.execute(query.with_for_update() if to_write else query).scalar()
+    if newest is None:
+        raise NotFoundError(f"no mission {mission}")
+    return newest
+
+
+def _version(connection: Connection, mission: str, version: int) -> MissionVersion:
+    which = (mission_versions.c.mission == mission, mission_versions.c.version == version)
+    row = connection.execute(select(mission_versions).where(*which)).one_or_none()
+    if row is None:
+        raise NotFoundError(f"no mission {mission} of version {version}")
+    named = (mission_files.c.mission == mission, mission_files.c.version == version)
+    query = select(mission_files.c.name, blobs.c.data).join(blobs, blobs.c.sha256 == mission_files.c.sha256)
+    files = connection.execute(query.where(*named).order_by(mission_files.c.name))
+    return _without_files(row, {name: bytes(data) for name, data in files})
+
+
+def _without_files(row: Row[Any], files: Mapping[str, bytes] | None = None) -> MissionVersion:
+    return MissionVersion(
+        mission=row.mission,
+        version=row.version,
+        text=row.text,
+        author=row.author,
+        at=row.at,
+        note=row.note,
+        files=files or {},
+    )
+
+
+def _write(
+    connection: Connection,
+    mission: str,
+    version: int,
+    text: str,
+    files: Mapping[str, bytes],
+    summary: Mapping[str, Any],
+    author: str,
+    note: str,
+) -> None:
+    row = {"text": text, "summary": dict(summary), "author": author, "note": note, "at": datetime.now(UTC)}
+    connection.execute(insert(mission_versions).values(mission=mission, version=version, **row))
+    for name, data in files.items():
+        digest = _keep(connection, data)
+        connection.execute(insert(mission_files).values(mission=mission, version=version, name=name, sha256=digest))
+
+
+def _keep(connection: Connection, data: bytes) -> str:
+    """The digest of a blob that is in the table afterwards. Two may bring it at once."""
+    digest = sha256(data).hexdigest()
+    if connection.dialect.name == "sqlite":
+        from sqlalchemy.dialects.sqlite import insert as insert_or_leave
+    else:
+        from sqlalchemy.dialects.postgresql import insert as insert_or_leave  # type: ignore[assignment]
+    connection.execute(insert_or_leave(blobs).values(sha256=digest, data=data).on_conflict_do_nothing())
+    return digest
+
+
+def _free_id(connection: Connection, name: str, reserved: Collection[str]) -> str:
+    plain = slug(name)
+    mission, k = plain, 2
+    while mission in reserved or _is_taken(connection, mission):
+        mission, k = f"{plain}-{k}", k + 1
+    return mission
+
+
+def _is_taken(connection: Connection, mission: str) -> bool:
+    return connection.execute(select(missions.c.id).where(missions.c.id == mission)).scalar() is not None
+
+
+def slug(name: str) -> str:
+    """A name as it may stand in an address: letters and digits of ASCII, `-`, `_` and `.` between them."""
+    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", plain)[:_LONGEST_ID].strip("-._") or "mission"

@@ -1,0 +1,113 @@
+"""Runs: plans that are or were carried out. What happened in them is in their log."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, insert, select, update
+
+from muster.server.store.actions import add_action
+from muster.server.store.database import Database
+from muster.server.store.schema import runs
+from muster.server.words import OVER, ConflictError, NotFoundError, Run, Who, World
+
+_CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
+
+
+class RunTable:
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def add(
+        self,
+        mission: str,
+        mission_version: int,
+        plan: int,
+        world: World,
+        settings: Mapping[str, Any],
+        speed: float | None,
+        author: str,
+        by: Who | None = None,
+    ) -> Run:
+        """A new run, starting; in the same transaction the action of whoever starts it, so that none is without."""
+        row = {
+            "mission": mission,
+            "mission_version": mission_version,
+            "plan": plan,
+            "world": world,
+            "settings": dict(settings),
+            "speed": speed,
+            "state": "starting",
+            "time_s": 0.0,
+            "author": author,
+            "at": datetime.now(UTC),
+            "resumed": 0,
+            "remark": "",
+        }
+        with self._database.writing() as connection:
+            run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
+            if by is not None:
+                said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
+                add_action(connection, by, "run.start", said, run.id, "done")
+            return run
+
+    def get(self, run: int) -> Run:
+        """One run.
+
+        Raises
+        ------
+        NotFoundError
+            if there is none.
+        """
+        with self._database.reading() as connection:
+            return _get(connection, run)
+
+    def unfinished(self) -> list[Run]:
+        """Runs that are not over, the oldest first."""
+        query = select(runs).where(runs.c.state.not_in(OVER)).order_by(runs.c.id)
+        with self._database.reading() as connection:
+            return [Run(**row._mapping) for row in connection.execute(query)]
+
+    def set(self, run: int, **fields: Any) -> Run:
+        """Change `state`, `speed`, `time_s`, `remark`, `resumed` or `ended_at`.
+
+        A run that is over ended now, if not told otherwise.
+
+        Raises
+        ------
+        ConflictError
+            if it is over, and would be in another state.
+        NotFoundError
+            if there is none.
+        """
+        if unknown := fields.keys() - _CHANGEABLE:
+            raise TypeError(f"{', '.join(sorted(unknown))}: no field of a run that changes")
+        with self._database.writing() as connection:
+            before = _get(connection, run, to_write=True)
+            state = fields.get("state", before.state)
+            if before.state in OVER and state != before.state:
+                raise ConflictError(f"run {run} is over: {before.state}")
+            if state in OVER and before.ended_at is None:
+                fields = {"ended_at": datetime.now(UTC), **fields}
+            if not fields:
+                return before
+            changed = connection.execute(update(runs).where(runs.c.id == run).values(fields).returning(runs)).one()
+            return Run(**changed._mapping)
+
+    def list(self, limit: int = 200) -> list[Run]:
+        """The newest runs, the newest first."""
+        with self._database.reading() as connection:
+            return [Run(**row._mapping) for row in connection.execute(_NEWEST_FIRST.limit(limit))]
+
+
+_NEWEST_FIRST = select(runs).order_by(runs.c.id.desc())
+
+
+def _get(connection: Connection, run: int, *, to_write: bool = False) -> Run:
+    query = select(runs).where(runs.c.id == run)
+    row = connection.execute(query.with_for_update() if to_write else query).one_or_none()
+    if row is None:
+        raise NotFoundError(f"no run {run}")
+    return Run(**row._mapping)

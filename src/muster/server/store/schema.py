@@ -1,0 +1,186 @@
+"""The tables. What is changed here needs a migration, too: a test compares them.
+
+`HEAD` is the newest migration: a database that has it is opened without a look at the others.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    Boolean,
+    Column,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    Table,
+    UniqueConstraint,
+)
+
+from muster.server.store.columns import Instant, Number, Words
+
+HEAD = "0001"
+
+metadata = MetaData(
+    naming_convention={
+        "pk": "pk_%(table_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+    }
+)
+
+
+def _always(name: str, kind: Any, *more: Any) -> Column[Any]:
+    return Column(name, kind, *more, nullable=False)
+
+
+def _json() -> JSON:
+    return JSON(none_as_null=True)
+
+
+def _numbered(name: str, *columns: Any) -> Table:
+    """A table whose rows are numbered; no number is given twice, also when its row is gone."""
+    return Table(name, metadata, Column("id", Integer, primary_key=True), *columns, sqlite_autoincrement=True)
+
+
+def _of_a_version() -> ForeignKeyConstraint:
+    return ForeignKeyConstraint(
+        ["mission", "mission_version"], ["mission_versions.mission", "mission_versions.version"]
+    )
+
+
+missions = Table(
+    "missions",
+    metadata,
+    Column("id", Words, primary_key=True),
+    _always("newest", Integer),
+    _always("shipped", Boolean),
+    _always("hidden", Boolean),
+)
+
+mission_versions = Table(
+    "mission_versions",
+    metadata,
+    Column("mission", Words, ForeignKey("missions.id"), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    _always("text", Words),
+    _always("summary", _json()),
+    _always("author", Words),
+    _always("note", Words),
+    _always("at", Instant),
+)
+
+blobs = Table(
+    "blobs",
+    metadata,
+    Column("sha256", Words, primary_key=True),
+    _always("data", LargeBinary),
+)
+
+mission_files = Table(
+    "mission_files",
+    metadata,
+    Column("mission", Words, primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("name", Words, primary_key=True),
+    _always("sha256", Words, ForeignKey("blobs.sha256")),
+    ForeignKeyConstraint(["mission", "version"], ["mission_versions.mission", "mission_versions.version"]),
+)
+
+plans = _numbered(
+    "plans",
+    _always("mission", Words),
+    _always("mission_version", Integer),
+    _always("version", Integer),
+    _always("origin", Words),
+    _always("author", Words),
+    _always("at", Instant),
+    _always("head", _json()),
+    _always("body", _json()),
+    _of_a_version(),
+    UniqueConstraint("mission", "version"),
+)
+
+jobs = _numbered(
+    "jobs",
+    _always("kind", Words),
+    _always("state", Words),
+    _always("mission", Words),
+    _always("mission_version", Integer),
+    _always("arguments", _json()),
+    _always("author", Words),
+    _always("asked_at", Instant),
+    Column("begun_at", Instant),
+    Column("ended_at", Instant),
+    Column("progress", _json()),
+    Column("result", _json()),
+    _always("error", Words),
+    _of_a_version(),
+    Index(None, "state"),
+)
+
+runs = _numbered(
+    "runs",
+    _always("mission", Words),
+    _always("mission_version", Integer),
+    _always("plan", Integer, ForeignKey("plans.id")),
+    _always("world", Words),
+    _always("settings", _json()),
+    Column("speed", Number),
+    _always("state", Words),
+    _always("time_s", Number),
+    _always("author", Words),
+    _always("at", Instant),
+    Column("ended_at", Instant),
+    _always("resumed", Integer),
+    _always("remark", Words),
+    Column("report", _json()),
+    _of_a_version(),
+    Index(None, "state"),
+)
+
+entries = Table(
+    "entries",
+    metadata,
+    Column("run", Integer, ForeignKey("runs.id"), primary_key=True),
+    Column("seq", Integer, primary_key=True),
+    _always("time_s", Number),
+    _always("kind", Words),
+    _always("data", _json()),
+    _always("at", Instant),
+)
+
+stretches = Table(
+    "stretches",
+    metadata,
+    Column("run", Integer, ForeignKey("runs.id"), primary_key=True),
+    Column("seq", Integer, primary_key=True),
+    _always("from_s", Number),
+    _always("until_s", Number),
+    _always("data", LargeBinary),
+)
+
+actions = _numbered(
+    "actions",
+    _always("at", Instant),
+    _always("who", Words),
+    _always("role", Words),
+    _always("address", Words),
+    _always("verb", Words),
+    _always("data", _json()),
+    Column("run", Integer, ForeignKey("runs.id"), index=True),
+    Column("applied_s", Number),
+    _always("outcome", Words),
+)
+
+pruning = Table(
+    "pruning",
+    metadata,
+    Column("run", Integer, primary_key=True, autoincrement=False),
+)
+"""Runs whose log may be deleted: a row stands here within the transaction that prunes it alone."""

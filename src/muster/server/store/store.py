@@ -1,0 +1,73 @@
+"""All tables of one database together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sqlalchemy import text
+
+from muster.server.store.actions import ActionTable
+from muster.server.store.database import Database, make_folder
+from muster.server.store.jobs import JobTable
+from muster.server.store.log import LogTable
+from muster.server.store.migrate import migrate, revision
+from muster.server.store.missions import MissionTable
+from muster.server.store.plans import PlanTable
+from muster.server.store.runs import RunTable
+from muster.server.store.schema import HEAD
+from muster.server.words import StoreError
+
+
+@dataclass(frozen=True)
+class Store:
+    """A database of mission control. Every method of its tables is one transaction, and may be called by any thread.
+
+    Times are of the clock of this machine. What fails in the database raises StoreError.
+    """
+
+    database: Database
+    missions: MissionTable
+    plans: PlanTable
+    jobs: JobTable
+    runs: RunTable
+    log: LogTable
+    actions: ActionTable
+
+    @classmethod
+    def open(cls, url: str) -> Store:
+        """Open a database; make it, with its folder, or bring it to the newest tables where that is due.
+
+        Parameters
+        ----------
+        url
+            `sqlite:///FILE` or `postgresql://USER@HOST/NAME`.
+
+        Raises
+        ------
+        StoreError
+            if it cannot be opened, or was made by a newer Muster.
+        ParameterError
+            if the URL is none.
+        """
+        database = Database(url)
+        if database.file is not None:
+            make_folder(database.file)
+        try:
+            migrate(database)
+        except BaseException:
+            database.close()
+            raise
+        tables = (MissionTable, PlanTable, JobTable, RunTable, LogTable, ActionTable)
+        return cls(database, *(table(database) for table in tables))  # type: ignore[arg-type]
+
+    def close(self) -> None:
+        """End all connections."""
+        self.database.close()
+
+    def check(self) -> None:
+        """Raise StoreError unless it can be read and written; a full disk shows only where something is written."""
+        with self.database.writing() as connection:
+            found = revision(connection)
+            connection.execute(text("UPDATE alembic_version SET version_num = version_num"))
+        if found != HEAD:
+            raise StoreError(f"{self.database.name}: its tables are {found}; expected {HEAD}: restart the server")

@@ -1,0 +1,220 @@
+"""What is passed between the parts of mission control: plain frozen data, with the words of the API.
+
+Times are aware datetimes in UTC where they are of the wall clock, and seconds (`..._s`) where they are of a mission's
+clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, Literal
+
+from muster.mission.errors import MusterError
+
+Role = Literal["watch", "command"]
+JobState = Literal["queued", "running", "done", "failed", "cancelled"]
+RunState = Literal["starting", "running", "paused", "ended", "cancelled", "failed"]
+World = Literal["kinematic", "physics", "ros1", "ros2", "mavlink"]
+
+OVER = ("ended", "cancelled", "failed")
+"""States of a run after which nothing more happens in it."""
+
+
+class NotFoundError(MusterError):
+    """There is no such mission, plan, job, run or record."""
+
+
+class ConflictError(MusterError):
+    """It cannot be done as things are now; the message says why: a run that is over, a mission changed by another."""
+
+
+class ForbiddenError(MusterError):
+    """Whoever asked may only watch."""
+
+
+class BusyError(MusterError):
+    """A limit is reached; the message names it. The same may be asked again later."""
+
+
+class StoreError(MusterError):
+    """The database cannot be read or written: full, read-only, gone; the message says which, and what to do."""
+
+
+@dataclass(frozen=True)
+class Who:
+    """Who asks: a name, what they may do, and from which address."""
+
+    name: str
+    role: Role
+    address: str = ""
+
+    def require_command(self) -> None:
+        """Raise ForbiddenError where they may only watch."""
+        if self.role != "command":
+            raise ForbiddenError(f"{self.name} may only watch; expected the role command")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissionEntry:
+    """A mission of the list; `version` is its newest, 0 for a shipped one that nobody has used yet."""
+
+    id: str
+    name: str
+    shipped: bool
+    version: int
+    robots: int
+    tasks: int
+    dimensions: int
+    changed_at: datetime | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissionVersion:
+    """A mission's text as it was at one time, with the files that it names (floor plans, tables) by their names."""
+
+    mission: str
+    version: int
+    text: str
+    author: str
+    at: datetime | None
+    note: str = ""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanEntry:
+    """A plan of one version of a mission; `version` counts the plans of the mission; `plan` is as in a plan file."""
+
+    id: int
+    mission: str
+    mission_version: int
+    version: int
+    origin: Literal["planned", "uploaded"]
+    author: str
+    at: datetime
+    plan: Mapping[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """Long work: asked for, under way, over.
+
+    Parameters
+    ----------
+    kind
+        `plan` (others may come).
+    arguments
+        what was asked for, plain.
+    progress
+        the newest: for a plan `elapsed_s`, `share` (0 to 1, or null), `weight`, `objective`, `bound`, and `history`,
+        which has [seconds, objective] of each improvement.
+    result
+        for a plan `{"plan": its id}`.
+    error
+        one line for a person.
+    """
+
+    id: int
+    kind: str
+    state: JobState
+    mission: str
+    mission_version: int
+    arguments: Mapping[str, Any]
+    author: str
+    asked_at: datetime
+    begun_at: datetime | None = None
+    ended_at: datetime | None = None
+    progress: Mapping[str, Any] | None = None
+    result: Mapping[str, Any] | None = None
+    error: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """A plan that is or was carried out.
+
+    Parameters
+    ----------
+    settings
+        `seed`, `dt_s`, `avoidance`, `noise` of a simulated world; of a bridge what it needs (docs/mission-control.md).
+    speed
+        times real time; null: as fast as it goes. Of real robots always 1.
+    time_s
+        up to where the log reaches on the mission's clock.
+    resumed
+        how often it went on after a crash.
+    remark
+        one line for a person: why it failed, that it is not being kept.
+    report
+        as `muster simulate --format json` prints it, when it is over.
+    """
+
+    id: int
+    mission: str
+    mission_version: int
+    plan: int
+    world: World
+    settings: Mapping[str, Any]
+    speed: float | None
+    state: RunState
+    time_s: float
+    author: str
+    at: datetime
+    ended_at: datetime | None = None
+    resumed: int = 0
+    remark: str = ""
+    report: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """One entry of a run's log, which only grows. `seq` counts from 1 within a run.
+
+    Kinds are those of a record's events (docs/records.md), and: `plan` (data: `plan`, `lines`), `command` (a user's
+    action took effect; data: `action`, its id), `report` (data: the report), `resumed`.
+    """
+
+    run: int
+    seq: int
+    time_s: float
+    kind: str
+    data: Mapping[str, Any]
+    at: datetime | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stretch:
+    """Where robots were for a while: one piece of a run's tracks, packed (see `runs.tracks`). `seq` counts from 1."""
+
+    run: int
+    seq: int
+    from_s: float
+    until_s: float
+    data: bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Action:
+    """What a user did, for the audit log; of a run also how and when it took effect on the mission's clock.
+
+    Parameters
+    ----------
+    verb
+        `mission.save`, `mission.delete`, `plan.ask`, `plan.upload`, `job.cancel`, `job.stop`, `run.start`, `run.pause`,
+        `run.resume`, `run.speed`, `run.cancel`, `run.event`, `login`, `refused`, ...
+    outcome
+        empty as long as it is not known; `done`, or why it was refused.
+    """
+
+    id: int
+    at: datetime
+    who: str
+    role: str
+    address: str
+    verb: str
+    data: Mapping[str, Any]
+    run: int | None = None
+    applied_s: float | None = None
+    outcome: str = ""

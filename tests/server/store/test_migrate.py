@@ -1,0 +1,89 @@
+"""Databases of older Musters are brought on; a new one has the tables that the code knows."""
+
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from sqlalchemy import text
+
+from muster.server.store import Store
+from muster.server.store.database import Database
+from muster.server.store.migrate import MIGRATIONS, migrate, revision
+from muster.server.store.schema import HEAD, metadata
+
+LATER = '''
+"""Runs have a colour."""
+import sqlalchemy as sa
+from alembic import op
+revision, down_revision = "later", "{head}"
+def upgrade() -> None:
+    op.add_column("runs", sa.Column("colour", sa.String, nullable=False, server_default="blue"))
+{more}
+'''
+
+
+def later(tmp_path, more=""):
+    """The migrations, and one that is still to come."""
+    folder = tmp_path / "migrations"
+    shutil.copytree(MIGRATIONS, folder)
+    (folder / "versions" / "later.py").write_text(LATER.format(head=HEAD, more=more))
+    return folder
+
+
+def test_tables_are_those_that_the_code_knows(store):
+    from alembic.autogenerate import compare_metadata
+    from alembic.migration import MigrationContext
+
+    with store.database.reading() as connection:
+        assert revision(connection) == HEAD
+        context = MigrationContext.configure(connection, opts={"compare_server_default": True})
+        assert compare_metadata(context, metadata) == []
+
+
+def test_an_older_database_is_brought_on(filled, tmp_path):
+    """It keeps its rows, its triggers; and a second time there is nothing to do."""
+    filled.store.log.append(filled.run, 1.0, [filled.entry(1)])
+    folder = later(tmp_path)
+    assert migrate(filled.store.database, folder, "later")
+    assert not migrate(filled.store.database, folder, "later")
+    with filled.store.database.reading() as connection:
+        assert connection.execute(text("SELECT colour FROM runs")).scalars().all() == ["blue"]
+    assert filled.store.log.append(filled.run, 1.0, [filled.entry(1), filled.entry(2)]) == 1
+
+
+def test_a_migration_that_fails_leaves_everything_as_it_was(filled, tmp_path):
+    folder = later(tmp_path, "    raise RuntimeError('half-way')")
+    with pytest.raises(RuntimeError, match="half-way"):
+        migrate(filled.store.database, folder, "later")
+    with filled.store.database.reading() as connection:
+        assert revision(connection) == HEAD
+        assert "colour" not in connection.execute(text("SELECT * FROM runs")).one()._mapping
+    filled.store.check()
+
+
+def test_two_who_open_a_new_database_at_once(database_url):
+    with ThreadPoolExecutor(4) as threads:
+        stores = list(threads.map(lambda _: Store.open(database_url), range(4)))
+    for store in stores:
+        store.check()
+        store.close()
+
+
+def test_alembic_is_imported_only_if_something_is_due(store, database_url):
+    code = (
+        "import sys\nfrom muster.server.store import Store\nStore.open(sys.argv[1]).close()\n"
+        "heavy = {'alembic', 'sqlalchemy.orm', 'scipy', 'shapely', 'matplotlib', 'numpy'}\n"
+        "print(sorted(heavy & sys.modules.keys()))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, database_url], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("[]\n", "")
+
+
+def test_a_path_with_percent_signs(tmp_path):
+    folder = tmp_path / "100% here"
+    shutil.copytree(MIGRATIONS, folder)
+    database = Database(f"sqlite:///{tmp_path}/new.db")
+    assert migrate(database, folder)
+    database.close()

@@ -1,0 +1,109 @@
+"""What is thrown away, and what stays."""
+
+from dataclasses import astuple
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from sqlalchemy import select, text, update
+from tests.server.store.conftest import SUMMARY
+
+from muster.server.store import Store
+from muster.server.store.prune import Pruned, prune
+from muster.server.store.schema import actions, jobs, mission_versions, plans, pruning, runs
+from muster.server.words import NotFoundError, StoreError, Who
+
+LONG_AGO = datetime.now(UTC) - timedelta(days=100)
+
+
+def age(store, table, *columns):
+    """All that is in a table now was written long ago."""
+    with store.database.writing() as connection:
+        connection.execute(update(table).values(dict.fromkeys(columns, LONG_AGO)))
+
+
+def make_old(store):
+    for table, *columns in ((runs, "at"), (jobs, "asked_at"), (actions, "at"), (plans, "at"), (mission_versions, "at")):
+        age(store, table, *columns)
+    with store.database.writing() as connection:
+        for table in (runs, jobs):
+            connection.execute(update(table).where(table.c.ended_at.is_not(None)).values(ended_at=LONG_AGO))
+
+
+@pytest.fixture
+def old(filled):
+    """An old run that is over, an old one that is not, jobs, actions, versions; then the same anew."""
+    store = filled.store
+    store.log.append(filled.run, 1.0, [filled.entry(1), filled.entry(2)], [filled.stretch(1)])
+    store.actions.add(Who("bo", "command"), "run.pause", {}, filled.run)
+    store.actions.add(Who("bo", "command"), "login", {})
+    store.runs.set(filled.run, state="ended")
+    store.jobs.end(store.jobs.add("plan", "Yard", 1, {}, "ann").id, "failed")
+    store.jobs.add("plan", "Yard", 1, {}, "ann")  # queued
+    filled.unused = store.plans.add("Yard", 1, "planned", "ann", {}).id
+    filled.under_way_plan = store.plans.add("Yard", 1, "planned", "ann", {}).id
+    filled.under_way = store.runs.add("Yard", 1, filled.under_way_plan, "kinematic", {}, 1.0, "ann").id
+    store.missions.save("Yard", "2", {"old.png": b"old"}, SUMMARY, "ann", "", 1)
+    store.missions.save("Yard", "3", {}, SUMMARY, "ann", "", 2)
+    filled.newest_plan = store.plans.add("Yard", 3, "planned", "ann", {}).id
+    store.missions.create("Forgotten", "", {"map.png": b"gone"}, SUMMARY, "ann")
+    store.missions.delete("Forgotten")
+    make_old(store)
+    store.actions.add(Who("bo", "command"), "login", {})
+    return filled
+
+
+GONE = Pruned(
+    runs=1, entries=2, stretches=1, actions=2, jobs=1, plans=2, mission_versions=2, missions=1, files=2
+)  # plans: of the run, and the unused; versions: 2 of Yard, 1 of Forgotten; files: old.png, gone
+
+
+def test_what_goes_and_what_stays(old, database_url):
+    store = old.store
+    assert prune(database_url, 30, dry_run=True) == GONE
+    assert [run.id for run in store.runs.list()] == [old.under_way, old.run]  # nothing went yet
+    assert prune(database_url, 30) == GONE
+    assert [run.id for run in store.runs.list()] == [old.under_way]
+    assert store.log.entries(old.run) == []
+    assert [plan.id for plan in store.plans.list()] == [old.newest_plan, old.under_way_plan]
+    assert [version.version for version in store.missions.versions("Yard")] == [3, 1]
+    assert dict(store.missions.get("Yard", 1).files) == {"map.png": b"\x00\x89"}
+    with pytest.raises(NotFoundError):
+        store.missions.versions("Forgotten")
+    assert [job.state for job in store.jobs.list()] == ["queued"]
+    assert [action.verb for action in store.actions.list()] == ["login"]
+    assert set(astuple(prune(database_url, 30))) == {0}
+
+
+def test_what_is_young_stays(old, database_url):
+    assert set(astuple(prune(database_url, 200))) == {0}
+    assert len(old.store.runs.list()) == 2
+
+
+def test_numbers_are_not_given_again(old, database_url):
+    last = old.store.runs.add("Yard", 3, old.newest_plan, "kinematic", {}, 1.0, "ann").id
+    old.store.runs.set(last, state="cancelled")
+    make_old(old.store)
+    prune(database_url, 30)
+    assert old.store.runs.add("Yard", 3, old.newest_plan, "kinematic", {}, 1.0, "ann").id == last + 1
+    assert old.store.plans.add("Yard", 3, "planned", "ann", {}).version == 5
+
+
+def test_only_pruning_may_delete_of_the_log_and_it_leaves_no_door_open(old, database_url):
+    store = old.store
+    old.run = old.under_way
+    store.log.append(old.under_way, 1.0, [old.entry(1)])
+    prune(database_url, 30)
+    with store.database.reading() as connection:
+        assert connection.execute(select(pruning)).all() == []
+    with pytest.raises(StoreError, match="only grows"), store.database.writing() as connection:
+        connection.execute(text("DELETE FROM entries"))
+    assert store.log.last_seq(old.under_way) == 1
+
+
+def test_a_server_at_work_goes_on(old, database_url):
+    """Pruning has a connection of its own: a store that is open sees what is left, and writes on."""
+    server = Store.open(database_url)
+    prune(database_url, 0)
+    old.run = old.under_way
+    assert server.log.append(old.under_way, 1.0, [old.entry(1)]) == 1
+    server.close()
