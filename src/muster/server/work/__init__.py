@@ -1,0 +1,12 @@
+"""Planning and other long work, in processes of their own with limits on memory and time.
+
+The server asks a `Pool`; the pool keeps processes (`worker`) that do `tasks` one at a time. They speak JSON lines:
+`{"task", "arguments"}` one way, any number of `{"progress"}` and one `{"done"}` or `{"failed"}` the other. A line
+`{"stop": true}` (`Halt`) asks what is under way to end with what it has.
+"""
+
+from muster.server.work.errors import OutOfMemory, TimedOut, WorkerDied, WorkError
+from muster.server.work.halt import Halt
+from muster.server.work.pool import Pool
+
+__all__ = ["Halt", "OutOfMemory", "Pool", "TimedOut", "WorkError", "WorkerDied"]

@@ -1,0 +1,149 @@
+"""What a map and a form change in a mission's text: places, robots, tasks, single cells of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from muster.server.work.editing.edits import EditError, append, data_of, remove, set_value, set_values
+from muster.server.work.editing.nodes import Path
+from muster.server.work.editing.zones import add_zone
+
+TEAMS = {"robot": "robots", "task": "tasks"}
+
+
+def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
+    """Put a robot, a task, or the corner of a zone elsewhere; a height stays."""
+    if one["what"] == "zone":
+        return set_value(text, ("map", "zones", int(one["id"]), "polygon", int(one["corner"])), [x, y])
+    path = _path_of(text, one["what"], one["id"])
+    item = _at(data_of(text), path)
+    if "position" not in item:
+        raise EditError(f"{one['id']} is placed in degrees (lat_lon); change that in the text")
+    return set_value(text, (*path, "position"), [x, y, *item["position"][2:]])
+
+
+def add(text: str, what: str, x: float, y: float) -> str:
+    """Put a new robot or task there; a robot is like the last one, a task has the type of the last one.
+
+    Where the mission is in space and there is no last one, it is put on the ground.
+    """
+    items = data_of(text).get(TEAMS[what]) or []
+    last = items[-1] if items and isinstance(items[-1], dict) else {}
+    height = list(last.get("position", []))[2:] or ([0] if is_in_space(data_of(text)) else [])
+    alike = {key: value for key, value in last.items() if what == "robot" or key == "type"}
+    new = {"id": _free_id(items, "r_" if what == "robot" else ""), "position": [x, y, *height]}
+    return append(text, (TEAMS[what],), {**new, **{k: v for k, v in alike.items() if k not in (*new, "lat_lon")}})
+
+
+def add_beside(text: str, what: str) -> str:
+    """Put a new robot or task two metres east of the last one."""
+    items: Sequence[Any] = data_of(text).get(TEAMS[what]) or []
+    position = items[-1].get("position") if items and isinstance(items[-1], dict) else None
+    x, y = position[:2] if isinstance(position, list) and len(position) > 1 else (0.0, 0.0)
+    return add(text, what, float(x) + 2, float(y))
+
+
+def drop(text: str, what: str, name: str | int) -> str:
+    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, locks) lets go of it."""
+    if what == "zone":
+        return remove(text, ("map", "zones", int(name)))
+    text = remove(text, _path_of(text, what, str(name)))
+    key = "prerequisites" if what == "task" else "only_robots"
+    for k, task in enumerate(data_of(text).get("tasks") or []):
+        named = task.get(key) if isinstance(task, dict) else None
+        if not isinstance(named, list) or str(name) not in map(str, named):
+            continue
+        rest = [other for other in named if str(other) != str(name)]
+        path: Path = ("tasks", k, key)
+        text = set_value(text, path, rest) if rest else remove(text, path)
+    return text
+
+
+def set_cell(text: str, path: Sequence[str | int], value: object) -> str:
+    """Give a cell of a table a value; None takes its key out."""
+    path = tuple(path)
+    owner = _at(data_of(text), path[:-1]) if len(path) > 1 and path[0] != "rules" else data_of(text).get("rules") or {}
+    if value is None:
+        return remove(text, path) if path[-1] in owner else text
+    if path[0] == "rules" and not owner:
+        return set_value(text, ("rules",), {str(path[-1]): value})
+    return set_value(text, path, value)
+
+
+def set_coordinate(text: str, path: Sequence[str | int], axis: int, value: float) -> str:
+    """Change one coordinate of the position of the item at `path`."""
+    path = tuple(path)
+    position = _at(data_of(text), path).get("position")
+    if not isinstance(position, list) or axis > len(position):
+        raise EditError("the place is not written as a list of numbers; change it in the text")
+    return set_value(text, (*path, "position"), [*position[:axis], value, *position[axis + 1 :]])
+
+
+def rename(text: str, name: str) -> str:
+    """Give the mission another name."""
+    return set_value(text, ("name",), name)
+
+
+def is_in_space(data: Mapping[str, Any]) -> bool:
+    """Whether a robot or a task has a height."""
+    return any(len(position) > 2 for position in _positions(data).values())
+
+
+def raised(text: str) -> str:
+    """Make a mission 3-D: every robot and task that has no height gets the height 0."""
+    positions = _positions(data_of(text))
+    return set_values(text, {path: [*place, 0] for path, place in positions.items() if len(place) == 2})
+
+
+def _positions(data: Mapping[str, Any]) -> dict[Path, list[Any]]:
+    """The places of robots and tasks as they are written, by where they stand."""
+    return {
+        (team, k, "position"): item["position"]
+        for team in TEAMS.values()
+        for k, item in enumerate(data.get(team) or [])
+        if isinstance(item, dict) and isinstance(item.get("position"), list)
+    }
+
+
+def _path_of(text: str, what: str, name: str) -> Path:
+    items = data_of(text).get(TEAMS[what]) or []
+    for k, item in enumerate(items):
+        if isinstance(item, dict) and str(item.get("id")) == str(name):
+            return TEAMS[what], k
+    raise EditError(f"{what} {name}: no such one in the text")
+
+
+def _at(data: Any, path: Path) -> Any:
+    try:
+        for step in path:
+            data = data[step]
+    except (KeyError, IndexError, TypeError):
+        raise EditError(f"{'.'.join(map(str, path))}: nothing stands there in the text") from None
+    return data
+
+
+def _free_id(items: Iterable[Any], prefix: str) -> int | str:
+    """The number after the greatest one that an id ends with, behind what ids begin with."""
+    taken = {str(item.get("id")) for item in items if isinstance(item, dict)}
+    number = max((int(name[len(prefix) :]) for name in taken if _is_number(name, prefix)), default=-1) + 1
+    return f"{prefix}{number}" if prefix else number
+
+
+def _is_number(name: str, prefix: str) -> bool:
+    rest = name[len(prefix) :]
+    return name.startswith(prefix) and rest.isascii() and rest.isdecimal() and len(rest) < 10
+
+
+CHANGES: Mapping[str, Callable[..., str]] = {
+    "move": move,
+    "add": add,
+    "add_beside": add_beside,
+    "drop": drop,
+    "set_cell": set_cell,
+    "set_coordinate": set_coordinate,
+    "rename": rename,
+    "raised": raised,
+    "add_zone": add_zone,
+}
+"""What may be asked for by name."""

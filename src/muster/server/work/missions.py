@@ -1,0 +1,123 @@
+"""Missions and plans that a worker is given: read in its own folder, and they lead nowhere out of it."""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from muster.mission.errors import Finding, MissionError
+from muster.mission.kinds import Fault, shown
+from muster.mission.kinds import Path as Keys
+from muster.mission.model import SCHEMA, Mission, findings
+from muster.mission.plan import Plan, plan_from
+from muster.mission.reading import mission_from
+from muster.mission.yaml_reader import parse_data
+
+_HALF_CHARACTER = re.compile("[\ud800-\udfff]")
+_HERE = "mission"  # the folder of the mission's own file, within the worker's
+
+
+def mission_of(given: Mapping[str, Any]) -> Mission:
+    """The mission in `{"text", "files", "name"}`: its YAML, and the files that it names by their names (base64).
+
+    It is laid down in the present folder, a subfolder of which becomes the present one: its files may be needed later.
+
+    Raises
+    ------
+    MissionError
+        with everything that is wrong with it; also if it names a file that is not among `files`.
+    """
+    files = laid_down(given.get("files") or {})
+    file = _file_name(str(given.get("name") or "mission"))
+    text = given["text"]
+    if _HALF_CHARACTER.search(text):
+        raise MissionError([Finding(str(file), None, "", "half a character", "a text that UTF-8 can hold")])
+    data, source, faults = parse_data(text, file, "a mission: schema, robots, tasks")
+    astray = list(_astray(data, files))
+    if astray:
+        raise MissionError(findings(astray, source))
+    if "schema" not in data:
+        faults.append(Fault(("schema",), "missing", SCHEMA))
+    return mission_from(data, source, faults)
+
+
+def plan_of(given: object, name: str = "plan") -> Plan:
+    """The plan in plain data, as a plan file holds it.
+
+    Raises
+    ------
+    PlanError
+        with everything that is wrong with it.
+    """
+    return plan_from(given, name)
+
+
+def laid_down(files: Mapping[str, str]) -> frozenset[str]:
+    """Write files (base64, by name) beside where a mission's own file would be; go there; where they are.
+
+    Raises
+    ------
+    MissionError
+        for a name that leads out of the present folder.
+    """
+    Path(_HERE).mkdir()
+    places = {name: Path(_normal(Path(_HERE, name))) for name in files}
+    for name, place in places.items():
+        if place.is_absolute() or not place.parts or place.parts[0] == ".." or not name.isprintable():
+            expected = "a name of a file beside the mission"
+            raise MissionError([Finding(shown(name), None, "", "leads elsewhere", expected)])
+    for name, place in places.items():
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(base64.b64decode(files[name], validate=True))
+        except (OSError, ValueError) as error:
+            raise MissionError([Finding(shown(name), None, "", str(error), "a file in base64")]) from None
+    os.chdir(_HERE)
+    return frozenset(map(_normal, files))
+
+
+def _normal(name: str | Path) -> str:
+    """A name of a file without detours."""
+    return os.path.normpath(name)
+
+
+def _file_name(name: str) -> Path:
+    """What a mission's file is called in messages."""
+    plain = name.isprintable() and "/" not in name and not name.startswith(".")
+    stem = name if plain else "mission"
+    return Path(stem if stem.endswith((".yaml", ".yml")) else f"{stem}.yaml")
+
+
+def _astray(data: Mapping[str, Any], files: Collection[str]) -> Iterator[Fault]:
+    """The files that a mission names and that are not with it."""
+    for keys, name in _named(data):
+        if _normal(name) not in files:
+            yield Fault(keys, shown(name), "one of the files that are with the mission")
+            continue
+        picture = _picture_of_map(name) if keys[-1] == "ros_yaml" else None
+        if picture is not None and _normal(Path(name).parent / picture) not in files:
+            yield Fault(keys, f"{shown(name)}, whose image is {shown(picture)}", "an image that is with the mission")
+
+
+def _named(data: Mapping[str, Any]) -> Iterator[tuple[Keys, str]]:
+    """Every value of a mission that names a file."""
+    for group, keys in (("map", ("ros_yaml", "image")), ("travel", None)):
+        table = data.get(group)
+        if isinstance(table, dict):
+            for key, value in table.items():
+                if isinstance(value, str) and (keys is None or key in keys):
+                    yield (group, key), value
+
+
+def _picture_of_map(name: str) -> str | None:
+    """The image that a map file of ROS names; None where it cannot be read, which whoever needs it will say."""
+    from muster.motion.maps.ros_yaml import read_ros_map
+
+    try:
+        return read_ros_map(Path(name)).image
+    except MissionError:
+        return None

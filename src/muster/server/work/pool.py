@@ -1,0 +1,169 @@
+"""The workers of a server: started when they are needed, used again, at most so many at once."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import tempfile
+from collections.abc import AsyncIterator, Mapping, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from muster.server.work.errors import TimedOut, WorkError
+from muster.server.work.folders import OF_WORK, sweep
+from muster.server.work.halt import Halt
+from muster.server.work.process import PROGRAM, Progress, Worker
+from muster.server.work.tasks import TASKS, Task
+
+_ANY = Task("", limit_s=None)
+
+
+class Pool:
+    """Gives work to processes, in the order in which it comes.
+
+    Long work (plans) never keeps short work (checks, explanations) waiting: each has places of its own.
+
+    Parameters
+    ----------
+    workers
+        how many processes do long work at most; as many more may do short work.
+    memory_mb
+        how much memory each may have.
+    idle_s
+        how long a process without work is kept.
+    program
+        what is started; arguments are the memory and this process's id.
+    """
+
+    def __init__(self, *, workers: int, memory_mb: int, idle_s: float = 60.0, program: Sequence[str] = PROGRAM) -> None:
+        self._memory_mb = memory_mb
+        self._idle_s = idle_s
+        self._program = program
+        self._places = {long: asyncio.Semaphore(workers) for long in (False, True)}
+        self._idle: list[Worker] = []
+        self._alarms: dict[Worker, asyncio.TimerHandle] = {}
+        self._workers: set[Worker] = set()
+        self._leaving: set[asyncio.Task[None]] = set()
+        self._closed = False
+        self._folder: Path | None = None
+        self.busy = 0
+        self.waiting = 0
+
+    async def run(
+        self,
+        task: str,
+        arguments: Mapping[str, Any],
+        *,
+        on_progress: Progress | None = None,
+        limit_s: float | None = None,
+        halt: Halt | None = None,
+    ) -> dict[str, Any]:
+        """Have a task done; cancelling whoever awaits this kills the process at once.
+
+        Parameters
+        ----------
+        task
+            one of TASKS.
+        arguments
+            plain data.
+        on_progress
+            is told how far it is.
+        limit_s
+            how long it may take once it has begun; by default as the task says.
+        halt
+            asks it to end with what it has; tasks that cannot do that pass it over.
+
+        Raises
+        ------
+        WorkError
+            OutOfMemory, TimedOut, WorkerDied; with `.findings` of arguments that are wrong.
+        """
+        known = TASKS.get(task, _ANY)
+        limit_s = known.limit_s if limit_s is None else limit_s
+        async with self._place(self._places[known.long]), self._worker() as worker:
+            try:
+                async with asyncio.timeout(limit_s):
+                    return await worker.ask(task, arguments, on_progress, halt or Halt())
+            except TimeoutError:
+                raise TimedOut(f"it took longer than {limit_s:g} s, and was stopped") from None
+
+    async def close(self) -> None:
+        """End all processes; who waits for work hears that its worker died."""
+        self._closed = True
+        for worker in list(self._idle):
+            self._dismiss(worker)
+        for worker in list(self._workers):
+            worker.kill()
+            await worker.gone.wait()
+        if self._folder is not None:
+            await asyncio.to_thread(shutil.rmtree, self._folder, ignore_errors=True)
+
+    @asynccontextmanager
+    async def _place(self, places: asyncio.Semaphore) -> AsyncIterator[None]:
+        self.waiting += 1
+        try:
+            await places.acquire()
+        finally:
+            self.waiting -= 1
+        self.busy += 1
+        try:
+            yield
+        finally:
+            self.busy -= 1
+            places.release()
+
+    @asynccontextmanager
+    async def _worker(self) -> AsyncIterator[Worker]:
+        """A process, kept for the next piece of work if this one has ended by an answer."""
+        if self._closed:
+            raise WorkError("the server is closing; expected to be asked again when it is back")
+        worker = self._idle_worker() or await self._new_worker()
+        try:
+            yield worker
+        finally:
+            if worker.alive and not self._closed:
+                self._keep(worker)
+            else:
+                self._dismiss(worker)
+
+    def _idle_worker(self) -> Worker | None:
+        while self._idle:
+            worker = self._idle.pop()
+            self._alarms.pop(worker).cancel()
+            if worker.alive:
+                return worker
+            self._dismiss(worker)
+        return None
+
+    async def _new_worker(self) -> Worker:
+        if self._folder is None:
+            self._folder = await asyncio.to_thread(_new_folder)
+        worker = await Worker.start(self._program, self._folder, self._memory_mb)
+        self._workers.add(worker)
+        return worker
+
+    def _keep(self, worker: Worker) -> None:
+        self._idle.append(worker)
+        self._alarms[worker] = asyncio.get_running_loop().call_later(self._idle_s, self._dismiss, worker)
+
+    def _dismiss(self, worker: Worker) -> None:
+        """Kill a process: it holds nothing that would be lost."""
+        if worker in self._idle:
+            self._idle.remove(worker)
+            self._alarms.pop(worker).cancel()
+        worker.kill()
+        leaving = asyncio.create_task(self._see_off(worker))
+        self._leaving.add(leaving)  # the loop itself holds tasks but weakly
+        leaving.add_done_callback(self._leaving.discard)
+
+    async def _see_off(self, worker: Worker) -> None:
+        await worker.see_off()
+        self._workers.discard(worker)
+
+
+def _new_folder() -> Path:
+    """A folder for this pool's temporary files; those that servers left behind which were killed are removed."""
+    sweep(OF_WORK)
+    return Path(tempfile.mkdtemp(prefix=f"{OF_WORK}{os.getpid()}-"))

@@ -1,0 +1,42 @@
+"""Files of other tools as missions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from muster import load
+from muster.mission.errors import Finding, MissionError
+from muster.mission.kinds import shown
+from muster.mission.yaml_writer import yaml_text
+from muster.server.work.missions import laid_down
+
+_SUFFIXES = (".csv", ".tsp", ".plan")
+_OPTIONS = ("robots", "suitability", "salesmen", "depot")
+
+
+def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """`{"name", "files", ...}` -> `{"text", "name"}`: a mission as YAML, and what it is called.
+
+    `name` is which of `files` (base64, by name) is the mission: a task-list CSV, with `robots` and perhaps
+    `suitability`, which name others of them; TSPLIB, with `salesmen` and perhaps `depot`; a `.plan` of QGroundControl,
+    of which all `.plan` files are taken together.
+    """
+    name, files = arguments["name"], arguments["files"]
+    options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
+    for key in (name, *(options[key] for key in ("robots", "suitability") if key in options)):
+        if key not in files or "/" in key:
+            raise MissionError([Finding(shown(key), None, "", "no such file", "one of the files that were given")])
+    path = Path(name)
+    if path.suffix.lower() not in _SUFFIXES:
+        raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(_SUFFIXES)}")])
+    laid_down(files)
+    mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
+    return {"text": yaml_text(mission), "name": mission.name}
+
+
+def _folder_of_plans(files: Mapping[str, str]) -> Path:
+    """The one plan that was given; or where they all are."""
+    plans = [name for name in files if name.lower().endswith(".plan")]
+    return Path(plans[0]) if len(plans) == 1 else Path()

@@ -1,0 +1,25 @@
+"""Why a plan is as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from muster._explaining import left_out, one_task, require_fit
+from muster._explaining.sentences import words_on_left_out, words_on_task
+from muster.server.work.missions import mission_of, plan_of
+
+
+def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """`{"mission", "plan", "task"}` -> what `muster explain --format json` prints, and `words`: sentences.
+
+    Without `task`: why tasks are left out.
+    """
+    mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
+    require_fit(mission, plan, "plan")
+    task = arguments.get("task")
+    if task is None:
+        missing = left_out(mission, plan)
+        return {**missing.as_dict(), "words": words_on_left_out(missing)}
+    found = one_task(mission, plan, task)
+    return {**found.as_dict(), "words": words_on_task(found)}

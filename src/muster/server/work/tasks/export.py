@@ -1,0 +1,70 @@
+"""A plan as files of other tools."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from pathlib import PurePath
+from typing import Any
+
+from muster.exchange.files import plan_files, text_of
+from muster.exchange.wishes import FORMATS, Wishes
+from muster.mission.errors import ParameterError
+from muster.mission.hints import did_you_mean
+from muster.mission.kinds import shown
+from muster.server.work.missions import mission_of, plan_of
+from muster.verification.required import require_admissible
+
+
+def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """`{"mission", "plan", "to", "options"}` -> `{"files": {name: base64}, "messages"}`.
+
+    `to` is one of FORMATS, or `json`: the plan's own file. `options` are those of `Wishes`, for qgc.
+    """
+    form, options = arguments["to"], arguments.get("options") or {}
+    if form not in (*FORMATS, "json"):
+        raise ParameterError(
+            f"to: {shown(form)}; expected {', '.join((*FORMATS, 'json'))}{did_you_mean(form, FORMATS)}"
+        )
+    wishes = _wishes(options) if form == "qgc" else None
+    if options and wishes is None:
+        raise ParameterError(f"options: {shown(options)}; expected none with {form}")
+    mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
+    if form == "json":
+        return _answer({f"{_stem(mission.name)}.json": plan.text()})
+    verdict = require_admissible(mission, plan, "plan")
+    if wishes is not None:
+        files = plan_files(mission, verdict, wishes)
+        return _answer(files.texts, files.messages)
+    return _answer({f"{_stem(mission.name)}.{form}": text_of(mission, verdict, form)})
+
+
+def _answer(texts: Mapping[str, str], messages: tuple[str, ...] = ()) -> dict[str, Any]:
+    files = {name: base64.b64encode(text.encode("utf-8")).decode("ascii") for name, text in texts.items()}
+    return {"files": files, "messages": list(messages)}
+
+
+_RANGES = {"altitude": (0.0, 1e5), "clearance": (0.0, 1e5), "tolerance": (0.0, 1e3)}
+_FIRMWARES = ("px4", "ardupilot")
+
+
+def _wishes(options: Mapping[str, Any]) -> Wishes:
+    """The options, checked as the command checks them."""
+    known = [f.name for f in fields(Wishes)]
+    for name, value in options.items():
+        if name not in known:
+            raise ParameterError(f"options: {shown(name)}; expected {', '.join(known)}{did_you_mean(name, known)}")
+        if name == "firmware" and value not in _FIRMWARES:
+            raise ParameterError(f"firmware: {shown(value)}; expected {' or '.join(_FIRMWARES)}")
+        if name in _RANGES and value is not None:
+            low, high = _RANGES[name]
+            if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+                raise ParameterError(f"{name}: {shown(value)}; expected metres, from {low:g} to {high:g}")
+    return Wishes(**{name: value for name, value in options.items() if value is not None})
+
+
+def _stem(name: str) -> str:
+    """A mission's name, where files can be called so."""
+    plain = "".join(c if c.isalnum() or c in "_-." else "_" for c in PurePath(name).name)
+    return plain.lstrip(".")[:100] or "plan"

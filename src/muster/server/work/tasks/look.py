@@ -1,0 +1,20 @@
+"""What stands in a mission's text, right or wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from muster.mission.errors import ParameterError
+from muster.server.work.editing.edits import data_of, size_of
+
+_MOST_VALUES = 50_000  # so that whoever asked is not kept busy with the answer
+
+
+def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """`{"text", "keys"}` -> `{"data"}`: what stands at these keys of the whole."""
+    data = data_of(arguments["text"])
+    found = {key: data[key] for key in arguments["keys"] if key in data}
+    if size_of(found) > _MOST_VALUES:
+        raise ParameterError(f"the mission has too many values; expected at most {_MOST_VALUES} to be shown here")
+    return {"data": found}

@@ -1,0 +1,127 @@
+"""A process that works: reads requests, a JSON line each, from its standard input, and answers on its standard output.
+
+Started by the pool alone: `python -m muster.server.work.worker MEMORY_MB PARENT`. It ends when its input does, and is
+killed when the server is gone. What libraries print goes to standard error: the real standard output is for answers.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib
+import json
+import os
+import resource
+import signal
+import sys
+import tempfile
+import traceback
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from muster.allocation.stop import Stop
+from muster.mission.errors import InputError, MusterError
+from muster.server.work.errors import MOST_FINDINGS
+from muster.server.work.requests import requests
+from muster.server.work.tasks import TASKS, Task
+
+_NICE = 10  # lower than the server, so that its page stays quick
+_SPENT = 0.5  # share of the memory; a worker that has held so much is not used again
+_KILL_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
+
+Send = Callable[[Mapping[str, Any]], None]
+
+
+def main(arguments: list[str], tasks: Mapping[str, Task] = TASKS) -> None:
+    """Work until there is no more input."""
+    memory_mb, parent = (int(word) for word in arguments)
+    _end_with(parent)
+    _limit(memory_mb * 2**20)
+    send = _sending(_protected_output())
+    for line, stop in requests(open(0, "rb", closefd=False)):  # noqa: SIM115 - read until the end of the process
+        answer = _answer(json.loads(line), tasks, send, stop)
+        spent = _held_most() > _SPENT * memory_mb * 2**20
+        send({**answer, "spent": spent})
+
+
+def _end_with(parent: int) -> None:
+    """Be killed when the server is gone, which the end of the input would say only after this piece of work."""
+    if sys.platform != "linux":
+        return
+    import ctypes
+
+    ctypes.CDLL(None).prctl(_KILL_WITH_PARENT, signal.SIGKILL)
+    if os.getppid() != parent:  # it went before that could be asked for
+        sys.exit()
+
+
+def _limit(size: int) -> None:
+    """No more memory than that, no core files, and behind everything else in the queue for processors."""
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    os.nice(_NICE)
+
+
+def _protected_output() -> BinaryIO:
+    """The real standard output; from now on everything else that is printed goes to standard error."""
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    return answers
+
+
+def _sending(answers: BinaryIO) -> Send:
+    def send(message: Mapping[str, Any]) -> None:
+        answers.write(json.dumps(message, ensure_ascii=False).encode("utf-8", "replace") + b"\n")
+        answers.flush()
+
+    return send
+
+
+def _held_most() -> int:
+    """The most memory that this process has held so far, bytes.
+
+    On Linux not by getrusage, which counts what the server held when it started this process.
+    """
+    if sys.platform == "linux":
+        status = Path("/proc/self/status").read_text(encoding="utf-8")
+        return 1024 * int(status.split("VmHWM:")[1].split()[0])
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS
+
+
+def _answer(request: Mapping[str, Any], tasks: Mapping[str, Task], send: Send, stop: Stop) -> dict[str, Any]:
+    """Do one piece of work, in a folder of its own, and say what came of it."""
+    home = Path.cwd()
+    try:
+        task = tasks[request["task"]]
+        run = importlib.import_module(task.module).run
+        stops = (stop,) if task.stoppable else ()
+        with tempfile.TemporaryDirectory(prefix="task-") as folder:
+            os.chdir(folder)
+            try:
+                return {"done": run(request["arguments"], lambda progress: send({"progress": progress}), *stops)}
+            finally:
+                os.chdir(home)
+    except Exception as error:
+        return {"failed": _failure(error)}
+
+
+def _failure(error: Exception) -> dict[str, Any]:
+    """A line for a person, with all findings of an input that is wrong."""
+    if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
+        return {"kind": "memory", "error": "", "findings": []}
+    if isinstance(error, InputError):
+        first, *others = error.findings
+        more = f" (and {len(others)} more)" if others else ""
+        findings = [finding.as_dict() for finding in error.findings[:MOST_FINDINGS]]
+        return {"kind": "input", "error": f"{first}{more}", "findings": findings}
+    if isinstance(error, MusterError):
+        return {"kind": "input", "error": " ".join(str(error).split()), "findings": []}
+    if isinstance(error, RecursionError):
+        return {"kind": "input", "error": "nested too deep; expected plain data of a mission or plan", "findings": []}
+    traceback.print_exception(error)
+    told = traceback.format_exception_only(error)[-1].strip()
+    return {"kind": "internal", "error": f"internal error: {told}", "findings": []}
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

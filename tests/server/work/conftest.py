@@ -1,0 +1,20 @@
+"""What the tests of workers share."""
+
+import asyncio
+
+import pytest
+
+from muster.server.work import Pool
+
+
+@pytest.fixture(scope="module")
+def asked():
+    """Gives a worker a piece of work; what it answers."""
+    with asyncio.Runner() as runner:
+        pool = Pool(workers=1, memory_mb=512)
+
+        def ask(task, limit_s=None, on_progress=None, halt=None, **arguments):
+            return runner.run(pool.run(task, arguments, limit_s=limit_s, on_progress=on_progress, halt=halt))
+
+        yield ask
+        runner.run(pool.close())

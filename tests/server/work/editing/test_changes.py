@@ -1,0 +1,84 @@
+"""What the map and the form change in a mission's text."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from muster.server.work.editing import changes
+from muster.server.work.editing.edits import EditError, data_of
+
+TEXT = """\
+schema: muster/1
+name: yard   # ours
+map:
+  boundary: [[0, 0], [9, 0], [9, 9]]
+  zones:
+    - {polygon: [[1, 1], [2, 1], [2, 2]]}
+robots:
+  - {id: r_0, position: [0, 0, 2.5], speed_mps: 2}   # the quick one
+  - {id: far, lat_lon: [35.5, 24.1]}
+tasks:
+  - {id: 7, type: D, position: [5, 5, 0], only_robots: [r_0]}
+  - {id: 8, position: [6, 6, 0], prerequisites: [7, 9]}
+  - {id: 9, position: [7, 7, 0], prerequisites: [7]}
+"""
+PLACES = st.floats(-1e4, 1e4).map(lambda x: round(x, 3))
+
+
+@given(x=PLACES, y=PLACES)
+def test_what_is_dragged_is_there_and_keeps_its_height(x: float, y: float) -> None:
+    data = data_of(changes.move(TEXT, {"what": "robot", "id": "r_0"}, x, y))
+    assert data["robots"][0]["position"] == [x, y, 2.5]
+    data = data_of(changes.move(TEXT, {"what": "task", "id": "8"}, x, y))
+    assert data["tasks"][1]["position"] == [x, y, 0]
+    data = data_of(changes.move(TEXT, {"what": "zone", "id": 0, "corner": 2}, x, y))
+    assert data["map"]["zones"][0]["polygon"] == [[1, 1], [2, 1], [x, y]]
+
+
+def test_a_place_in_degrees_is_not_moved_in_metres() -> None:
+    with pytest.raises(EditError, match="degrees"):
+        changes.move(TEXT, {"what": "robot", "id": "far"}, 1, 2)
+
+
+def test_what_is_added_is_like_the_last_with_a_name_of_its_own() -> None:
+    data = data_of(changes.add(TEXT, "task", 1.5, 2))
+    assert data["tasks"][-1] == {"id": 10, "position": [1.5, 2, 0]}
+    data = data_of(changes.add(TEXT.replace("  - {id: far, lat_lon: [35.5, 24.1]}\n", ""), "robot", 3, 4))
+    assert data["robots"][-1] == {"id": "r_1", "position": [3, 4, 2.5], "speed_mps": 2}
+
+
+def test_a_task_that_goes_is_no_prerequisite_any_more() -> None:
+    tasks = data_of(changes.drop(TEXT, "task", "7"))["tasks"]
+    assert tasks == [{"id": 8, "position": [6, 6, 0], "prerequisites": [9]}, {"id": 9, "position": [7, 7, 0]}]
+    assert "only_robots" not in data_of(changes.drop(TEXT, "robot", "r_0"))["tasks"][0]
+    with pytest.raises(EditError, match="no such one"):
+        changes.drop(TEXT, "task", "77")
+
+
+def test_cells_set_and_clear_keys() -> None:
+    text = changes.set_cell(TEXT, ("robots", 0, "speed_mps"), 0.5)
+    assert data_of(text)["robots"][0]["speed_mps"] == 0.5
+    assert "speed_mps" not in data_of(changes.set_cell(text, ("robots", 0, "speed_mps"), None))["robots"][0]
+    assert changes.set_cell(TEXT, ("robots", 0, "skills"), None) == TEXT
+    assert data_of(changes.set_cell(TEXT, ("rules", "objective"), "max"))["rules"] == {"objective": "max"}
+    assert data_of(changes.set_coordinate(TEXT, ("tasks", 0), 1, -3))["tasks"][0]["position"] == [5, -3, 0]
+    assert "name: yard   # ours" in text
+
+
+def test_a_mission_in_the_plane_is_made_3d_and_keeps_its_comments() -> None:
+    flat = "robots:\n  - {id: a, position: [1, 2]}  # first\ntasks:\n  - id: 1\n    position:\n      - 3\n      - 4\n"
+    text = changes.raised(flat)
+    assert changes.is_in_space(data_of(text))
+    assert not changes.is_in_space(data_of(flat))
+    assert "[1, 2, 0]}  # first" in text
+    assert data_of(text)["tasks"][0]["position"] == [3, 4, 0]
+    assert changes.raised(text) == text
+    assert data_of(changes.set_coordinate(flat, ("tasks", 0), 2, 5))["tasks"][0]["position"] == [3, 4, 5]
+
+
+def test_places_that_others_share_are_not_raised_behind_their_backs() -> None:
+    shared = "robots:\n  - {id: a, position: &p [1, 2]}\ntasks:\n  - {id: 1, position: *p, z: *p}\n"
+    with pytest.raises(EditError, match="change it in the text itself"):
+        changes.raised(shared)
