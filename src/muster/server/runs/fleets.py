@@ -1,0 +1,111 @@
+"""Fleets of real robots, as the settings of a run say; each is ready when it is given back."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from muster._live import wait_for_robots
+from muster.bridges.fleet import Fleet
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+
+_WAIT_S = 10.0
+_ANYWHERE_M = 1e6
+"""After a crash drones are where they are, in the air maybe."""
+
+
+def fleet_ready(
+    world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
+) -> tuple[Fleet, Callable[[], None]]:
+    """The robots of a mission, heard and ready; and what they are told when all is done.
+
+    Parameters
+    ----------
+    halt
+        ends waiting for robots.
+    again
+        whether the mission is under way already.
+
+    Raises
+    ------
+    MusterError
+        if the bridge lacks something, or robots do not answer.
+    """
+    makes = {"ros1": _ros1, "ros2": _ros2, "mavlink": _mavlink}
+    return makes[world](mission, settings, halt, again)
+
+
+def _ros1(
+    mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool
+) -> tuple[Fleet, Callable[[], None]]:
+    from muster.bridges.ros1.extra import require_rospy
+
+    require_rospy()
+    from muster.bridges.ros1.fleet import Ros1Fleet
+    from muster.bridges.ros1.node import become_node
+
+    become_node("muster", settings.get("master"))
+    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz")
+    fleet = Ros1Fleet(mission, joins=not settings.get("known_only", False), **own)
+    return _heard(fleet, settings, halt), _nothing
+
+
+def _ros2(
+    mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool
+) -> tuple[Fleet, Callable[[], None]]:
+    from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.port import Arrival
+    from muster.bridges.ros2.wire import open_wire
+
+    fleet = Ros2Fleet(
+        mission,
+        wire=open_wire(settings.get("by"), settings.get("domain")),
+        arrival=Arrival(near_m=settings.get("arrival_m", 0.25)),
+        joins=not settings.get("known_only", False),
+        **_some(settings, "give", "namespace"),
+    )
+    return _heard(fleet, settings, halt), _nothing
+
+
+def _mavlink(
+    mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool
+) -> tuple[Fleet, Callable[[], None]]:
+    from muster.bridges.mavlink import MavlinkFleet
+    from muster.bridges.mavlink.settings import Settings
+
+    endpoints = settings.get("endpoints")
+    if not isinstance(endpoints, Mapping):
+        raise ParameterError("endpoints: missing; expected for each robot how it is reached")
+    if not settings.get("arm", False):
+        raise ParameterError("arm: missing; expected true: without it nothing flies")
+    own = _some(settings, "offboard", "low_battery") | ({"far_m": _ANYWHERE_M} if again else {})
+    fleet = MavlinkFleet(mission, endpoints, Settings(arm=True, **own), height_m=settings.get("height_m"))
+    try:
+        fleet.connect(settings.get("wait_s", _WAIT_S))
+    except BaseException:
+        fleet.close()
+        raise
+    ends: dict[str, Callable[[], None]] = {"hold": _nothing, "return": fleet.go_back, "land": fleet.land}
+    at_end = settings.get("at_end", "hold")
+    if at_end not in ends:
+        raise ParameterError(f"at_end: {at_end}; expected {', '.join(ends)}")
+    return fleet, ends[at_end]
+
+
+def _heard(fleet: Any, settings: Mapping[str, Any], halt: threading.Event) -> Fleet:
+    try:
+        wait_for_robots(fleet, halt, settings.get("wait_s", _WAIT_S))
+    except BaseException:
+        fleet.close()
+        raise
+    return fleet  # type: ignore[no-any-return]
+
+
+def _some(settings: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {name: settings[name] for name in names if name in settings}
+
+
+def _nothing() -> None:
+    """They stay where they are."""

@@ -1,0 +1,120 @@
+"""`python -m muster.server.runs.runner`: carries one plan out, for a server at the other end of its pipes.
+
+The first line says what is to be carried out: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`,
+`settings`, `speed`, and of a run that goes on `log`, `until_s`, `tracked_s`. Others are users' actions: `id`, `verb`,
+`data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sys
+import threading
+from collections.abc import Mapping
+from contextlib import ExitStack, closing
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, plan_from
+from muster.mission.yaml_writer import plain
+from muster.server.runs.lock import alone
+from muster.server.runs.performance import Course, Performance
+from muster.server.runs.pipe import Inbox, Outbox
+from muster.server.runs.scribe import Scribe
+from muster.server.work.folders import OF_RUNS
+from muster.server.work.missions import mission_of
+
+REAL = ("ros1", "ros2", "mavlink")
+STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
+"""Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
+
+
+def main() -> int:
+    with TemporaryDirectory(prefix=f"{OF_RUNS}{os.getpid()}-", ignore_cleanup_errors=True) as folder:
+        return _obey(folder)
+
+
+def _obey(folder: str) -> int:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's affair
+    lines, said = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever prints does not disturb the server
+    ended, real = threading.Event(), threading.Event()
+    inbox, outbox = Inbox(lines, lambda: _end(ended, real, folder)), Outbox(said)
+    begin = inbox.take(None)
+    if begin is None:
+        return 0
+    if begin["world"] in REAL:
+        real.set()
+        signal.signal(signal.SIGTERM, lambda *_: ended.set())
+    try:
+        _carry_out(begin, folder, inbox, outbox, ended)
+    except MusterError as error:
+        outbox.say({"type": "failed", "reason": str(error).splitlines()[0]})
+    outbox.close()
+    return 0
+
+
+def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
+    """The server is gone. A simulated run is made good later; real robots are told to stand first."""
+    ended.set()
+    if not real.is_set():
+        shutil.rmtree(folder, ignore_errors=True)
+        os._exit(0)
+
+
+def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outbox, ended: threading.Event) -> None:
+    real, log = begin["world"] in REAL, begin["log"]
+    with ExitStack() as stack:
+        if real:
+            stack.enter_context(alone(begin["lock"]))
+        os.chdir(folder)
+        mission = mission_of(begin["mission"])
+        outbox.say({"type": "mission", "mission": _shown(mission)})
+        scribe = Scribe(
+            mission,
+            outbox,
+            log=log,
+            tracked_s=begin["tracked_s"],
+            stretch_s=REAL_STRETCH_S if real else STRETCH_S,
+            again=not real,
+        )
+        plan = plan_from(begin["plan"], "the plan")
+        with closing(_course(begin, mission, plan, scribe, ended)) as course:
+            performance = Performance(course, scribe, inbox, outbox, speed=begin["speed"], ended=ended.is_set)
+            if real:
+                performance.recall(log)
+            else:
+                performance.catch_up(log, begin["until_s"])
+            outbox.say({"type": "going"})
+            performance.perform()
+
+
+def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scribe, ended: threading.Event) -> Course:
+    settings, log = begin["settings"], begin["log"]
+    if begin["world"] not in REAL:
+        from muster.server.runs.simulated import SimulatedCourse
+
+        return SimulatedCourse(mission, plan, begin["world"], settings, scribe)
+    from muster.server.runs.fleets import fleet_ready
+    from muster.server.runs.real import RealCourse
+
+    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
+    try:
+        return RealCourse(mission, plan, fleet, scribe, seed=settings.get("seed", 0), log=log, at_end=at_end)
+    except BaseException:
+        fleet.close()
+        raise
+
+
+def _shown(mission: Mission) -> dict[str, Any]:
+    """The mission as plain data, without what pages have no use for."""
+    data: dict[str, Any] = plain(mission)
+    return {key: value for key, value in data.items() if key != "travel"} | {"dimensions": mission.dimensions}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

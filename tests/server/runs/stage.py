@@ -1,0 +1,98 @@
+"""A run without processes: what users ask for comes at moments of the mission's clock, what is told is collected."""
+
+from contextlib import closing
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from muster.mission.clock import VirtualClock
+from muster.server.runs.performance import Performance
+from muster.server.runs.scribe import Scribe
+from muster.server.runs.simulated import SimulatedCourse
+from muster.server.runs.tracks import unpacked
+
+
+@dataclass
+class Kept:
+    """What a run told: entries as a log has them, tracks, and what is out of date soon."""
+
+    log: list = field(default_factory=list)
+    tracks: list = field(default_factory=list)
+    others: list = field(default_factory=list)
+    full = False
+
+    def entry(self, message):
+        self.log.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
+
+    def stretch(self, from_s, until_s, data):
+        self.tracks.append((from_s, until_s, unpacked(data)))
+
+    def say(self, message):
+        self.others.append(message)
+
+    say_if_room = say
+
+
+class Script:
+    """An inbox: (moment, verb, data) of the mission's clock, each said once it has come, or while nothing goes on."""
+
+    def __init__(self, course, asked):
+        self._course = course
+        self._asked = [
+            (at_s, {"id": k, "verb": verb, "data": data, "who": "ada"})
+            for k, (at_s, verb, data) in enumerate(asked, start=1)
+        ]
+
+    def take(self, wait_s=0.0):
+        if self._asked and (wait_s is None or self._course.time_s >= self._asked[0][0]):
+            return self._asked.pop(0)[1]
+        assert wait_s is not None, "it waits for ever"
+        return None
+
+
+def performed(
+    mission,
+    plan,
+    asked=(),
+    *,
+    world="kinematic",
+    log=(),
+    tracked_s=0.0,
+    settings=None,
+    ended=lambda: False,
+    until_s=None,
+):
+    """Carry a plan out to its end; returns what was told, behind the log that there was."""
+    kept = Kept()
+    scribe = Scribe(mission, kept, log=log, tracked_s=tracked_s)
+    with closing(SimulatedCourse(mission, plan, world, settings or {}, scribe)) as course:
+        script = Script(course, asked)
+        performance = Performance(course, scribe, script, kept, speed=None, ended=ended, clock=VirtualClock(step_s=1.0))
+        performance.catch_up(log, max([until_s or 0.0, *(entry["time_s"] for entry in log)]) if log else 0.0)
+        performance.perform()
+    return kept
+
+
+def performed_with_crashes(mission, plan, asked, crashes, **how):
+    """The log and the tracks of a run that is killed each time when so many entries are kept, and resumed."""
+    log, tracks = [], []
+    for crash in [*crashes, None]:
+        kept = performed(mission, plan, asked, log=log, tracked_s=tracks[-1][1] if tracks else 0.0, **how)
+        log = [*log, *kept.log][: None if crash is None else max(crash, len(log))]
+        reached = log[-1]["time_s"] if log else 0.0
+        tracks += [one for one in kept.tracks if crash is None or one[1] <= reached]
+    return log, tracks
+
+
+def require_same(log, tracks, whole):
+    """What is killed and resumed leaves the log and the tracks of what never was."""
+    assert story(log) == story(whole.log)
+    assert [entry["seq"] for entry in log] == list(range(1, len(log) + 1))
+    assert [(a, b) for a, b, _ in tracks] == [(a, b) for a, b, _ in whole.tracks]
+    for one, other in zip(tracks, whole.tracks, strict=True):
+        np.testing.assert_array_equal(one[2].states, other[2].states)
+
+
+def story(log):
+    """A log without what tells of crashes, and without numbers."""
+    return [(entry["time_s"], entry["kind"], entry["data"]) for entry in log if entry["kind"] != "resumed"]

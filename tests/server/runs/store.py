@@ -1,0 +1,15 @@
+"""A database with a plan in it, as runs need."""
+
+import muster
+from muster.mission.yaml_writer import yaml_text
+from muster.server.words import Who
+
+ADA = Who("ada", "command")
+EVE = Who("eve", "watch")
+
+
+def planned(store, mission, **how):
+    """The id of a plan of a mission."""
+    version = store.missions.create(mission.name, yaml_text(mission), {}, {"name": mission.name}, "ada")
+    plan = muster.solve(mission, **{"iterations": 100, **how})
+    return store.plans.add(version.mission, version.version, "planned", "ada", plan.as_dict()).id

@@ -1,0 +1,144 @@
+"""Runs and jobs on either database, and what becomes of them when a database's server is gone for a while."""
+
+import asyncio
+import json
+import os
+import signal
+from itertools import pairwise
+
+from tests.server.databases import database_url, postgresql, postgresql_url
+from tests.server.desk.opened import TINY
+from tests.server.runs.process import serving, until
+from tests.server.runs.store import ADA, planned
+
+import muster
+from muster.server.desk.desk import open_desk
+from muster.server.settings import Settings
+from muster.server.store.store import Store
+
+__all__ = ["database_url", "postgresql", "postgresql_url"]
+
+
+async def watched(runs, run, holds=lambda said: False):
+    """All that watchers are told, until something holds."""
+    said = []
+    async for text in runs.feed(run).watch(0):
+        said.append(json.loads(text))
+        if holds(said[-1]):
+            break
+    return said
+
+
+def going_at(time_s):
+    return lambda said: said["type"] == "states" and said["time_s"] > time_s
+
+
+async def gone(runs, run):
+    while runs.feed(run) is not None:
+        await asyncio.sleep(0.01)
+
+
+def judge(store, run, tasks, resumed):
+    """It ended, and all of it is kept once."""
+    found, log = store.runs.get(run), store.log.entries(run)
+    assert (found.state, found.resumed, found.remark) == ("ended", resumed, "")
+    assert found.report == log[-1].data
+    assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
+    told = [*found.report["tasks_done"], *(lost["task"] for lost in found.report["tasks_lost"])]
+    assert sorted(told) == sorted(tasks)
+    stretches = list(store.log.stretches(run))
+    assert all(a.until_s < b.from_s for a, b in pairwise(stretches))
+    return log
+
+
+def test_a_run_is_killed_and_resumed_by_the_next_server(database_url):
+    mission = muster.load("31T-6R50")
+    settings = Settings(database=database_url, workers=1)
+
+    async def first():
+        async with open_desk(settings) as desk:
+            run = (await desk.runs.start(ADA, planned(desk.store, mission), speed=20.0)).id
+            await watched(desk.runs, run, going_at(5))
+            await desk.runs.act(ADA, run, "event", {"robot_fails": "r_0"})
+            os.kill(desk.runs.pid(run), signal.SIGKILL)
+            await watched(desk.runs, run, lambda said: said.get("kind") == "resumed")
+            return run
+
+    async def second(run):
+        async with open_desk(settings) as desk:
+            await desk.runs.act(ADA, run, "speed", {"speed": None})
+            await watched(desk.runs, run)
+            page = await desk.records.page(run)
+            return (
+                page,
+                desk.store,
+                judge(desk.store, run, [task.id for task in mission.tasks], 2),
+                await kept(desk, run),
+            )
+
+    async def kept(desk, run):
+        return {(action.verb, action.outcome) for action in await desk.actions.list(run=run)}
+
+    run = asyncio.run(first())
+    page, _, log, actions = asyncio.run(second(run))
+    assert "<html" in page
+    assert [entry.data["verb"] for entry in log if entry.kind == "command"] == ["event", "speed"]
+    assert actions == {(f"run.{verb}", "done") for verb in ("start", "event", "speed")}
+
+
+def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url):
+    mission = muster.load("31T-6R50")
+
+    async def story():
+        async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
+            desk.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ada")
+            run = (await desk.runs.start(ADA, planned(desk.store, mission), speed=10.0)).id
+            await watched(desk.runs, run, going_at(5))
+            job = await desk.jobs.ask_plan(ADA, "tiny", time_limit=1.0)
+            await asyncio.to_thread(postgresql.stop)
+            try:
+                pause = await desk.runs.act(ADA, run, "pause")
+                await watched(desk.runs, run, lambda said: said["type"] == "action" and said["id"] == pause.id)
+                during = await desk.runs.get(run)
+                os.kill(desk.runs.pid(run), signal.SIGKILL)
+                await desk.runs.act(ADA, run, "resume")
+                await desk.runs.act(ADA, run, "speed", {"speed": None})
+                messages = await watched(desk.runs, run, lambda said: said.get("kind") == "report")
+            finally:
+                await asyncio.to_thread(postgresql.start)
+            await gone(desk.runs, run)
+            *_, last = [each async for each in desk.jobs.follow(job.id)]
+            judge(desk.store, run, [task.id for task in mission.tasks], 1)
+            plans = [plan.id for plan in desk.store.plans.list("tiny")]
+            asked = [(action.verb, action.outcome) for action in desk.store.actions.list(run=run)]
+            return during, messages, last, plans, asked
+
+    during, messages, job, plans, asked = asyncio.run(story())
+    assert during.state == "paused"
+    assert during.remark.startswith("this run is not being kept: PostgreSQL")
+    assert "start it" in during.remark
+    assert [said["seq"] for said in messages if said["type"] == "entry"][-1] > 100
+    assert (job.state, [job.result["plan"]]) == ("done", plans)
+    assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
+
+
+def test_a_server_on_postgresql_is_killed_and_another_goes_on(postgresql_url):
+    with serving(postgresql_url) as first:
+        job = first.http.post("/missions/6T-2R/plans", json={"iterations": 10}).json()["id"]
+        plan = until(lambda: first.http.get(f"/jobs/{job}").json()["result"])["plan"]
+        run = first.http.post("/runs", json={"plan": plan, "speed": 5}).json()["id"]
+        until(lambda: len(first.http.get(f"/runs/{run}/events").json()) > 5)
+        waits = first.http.post("/missions/6T-2R/plans", json={"time_limit": 2}).json()["id"]
+        first.kill()
+    with serving(postgresql_url) as again:
+        assert (
+            again.http.post(f"/runs/{run}/actions", json={"verb": "speed", "data": {"speed": None}}).status_code == 202
+        )
+        until(lambda: again.http.get(f"/runs/{run}").json()["state"] == "ended")
+        assert again.http.get(f"/records/{run}/record.mcap").content.startswith(b"\x89MCAP")
+        until(lambda: again.http.get(f"/jobs/{waits}").json()["state"] == "done")
+        again.end()
+    store = Store.open(postgresql_url)
+    judge(store, run, [task.id for task in muster.load("6T-2R").tasks], 1)
+    assert sorted(plan.id for plan in store.plans.list()) == sorted(one.result["plan"] for one in store.jobs.list())
+    store.close()

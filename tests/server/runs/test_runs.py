@@ -1,0 +1,294 @@
+"""Runs as the API and the pages have them: with their own processes, a real database, and what may go wrong with it."""
+
+import asyncio
+import json
+import os
+import signal
+import sqlite3
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from itertools import pairwise
+
+import pytest
+from sqlalchemy import create_engine, event
+from tests.server.runs.stage import performed
+from tests.server.runs.store import ADA, EVE, planned
+
+import muster
+from muster.mission.errors import ParameterError
+from muster.mission.plan import plan_from
+from muster.server.desk.records import Records
+from muster.server.desk.runs import Runs
+from muster.server.runs.unkept import number_at
+from muster.server.settings import Settings
+from muster.server.words import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
+from muster.server.work.pool import Pool
+
+
+@asynccontextmanager
+async def opened(store, **settings):
+    runs = Runs(store, Settings(**settings))
+    await runs.start_up()
+    try:
+        yield runs
+    finally:
+        await runs.close()
+
+
+async def watched(runs, run, until=lambda message: False, after=0):
+    messages = []
+    async for text in runs.feed(run).watch(after):
+        messages.append(json.loads(text))
+        if until(messages[-1]):
+            break
+    return messages
+
+
+async def gone(runs, run):
+    while runs.feed(run) is not None:
+        await asyncio.sleep(0.01)
+
+
+def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
+    mission = muster.load("31T-6R50")
+    plan = planned(store, mission)
+
+    async def story():
+        async with opened(store) as runs:
+            run = await runs.start(ADA, plan, speed=None)
+            one, other = await asyncio.gather(watched(runs, run.id), watched(runs, run.id))
+            pool = Pool(workers=1, memory_mb=2048)
+            records = Records(store, pool, runs)
+            assert [one.id for one in await records.list()] == [run.id]  # as soon as watchers know that it is over
+            made = [await records.flown(run.id), await records.page(run.id), await records.mcap(run.id)]
+            made += [await records.export(run.id, "csv"), await records.export(run.id, "json")]
+            await pool.close()
+            return run.id, one, other, made
+
+    run, one, other, (flown, page, mcap, tables, log) = asyncio.run(story())
+    for messages in (one, other):
+        assert messages[0]["type"] == "hello"
+        assert [robot["id"] for robot in messages[0]["mission"]["robots"]] == [r.id for r in mission.robots]
+        entries = [message for message in messages if message["type"] == "entry"]
+        kept = store.log.entries(run)
+        assert [(e["seq"], e["kind"], e["data"]) for e in entries] == [(e.seq, e.kind, e.data) for e in kept]
+        assert {message["type"] for message in messages} == {"hello", "entry", "states", "status", "run"}
+    assert messages[-1] == {"type": "run", "state": "ended", "speed": None, "time_s": kept[-1].time_s, "remark": ""}
+    found = store.runs.get(run)
+    assert (found.state, found.report) == ("ended", kept[-1].data)
+    assert {row["task"] for row in flown["tasks"]} == {task.id for task in mission.tasks}
+    for row in flown["robots"]:
+        assert row["travelled_m"] <= row["usage_flown"] + 0.1
+    assert "<html" in page
+    assert mcap.startswith(b"\x89MCAP0")
+    assert set(tables) == {"tracks.csv", "events.csv"}
+    assert set(log) == {"log.json"}
+
+
+def test_a_runner_that_is_killed_goes_on_where_it_was(store):
+    plan = planned(store, muster.load("31T-6R50"))
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan, speed=20.0)).id
+            await watched(runs, run, lambda m: m["type"] == "states" and m["time_s"] > 5)
+            await runs.act(ADA, run, "pause")
+            await watched(runs, run, lambda m: m["type"] == "run" and m["state"] == "paused")
+            os.kill(runs.pid(run), signal.SIGKILL)
+            await runs.act(ADA, run, "event", {"robot_fails": "r_0"})
+            await runs.act(ADA, run, "speed", {"speed": None})
+            await runs.act(ADA, run, "resume")
+            await watched(runs, run)
+            await gone(runs, run)
+            return run
+
+    run = asyncio.run(story())
+    found, log = store.runs.get(run), store.log.entries(run)
+    assert (found.state, found.resumed, found.speed) == ("ended", 1, None)
+    assert [entry.data["verb"] for entry in log if entry.kind == "command"] == ["pause", "event", "speed", "resume"]
+    (pause, fails) = [entry.time_s for entry in log if entry.kind == "command"][:2]
+    assert pause == fails
+    assert {action.outcome for action in store.actions.list(run=run)} == {"done"}
+
+
+def test_a_runner_that_dies_of_itself_again_and_again_fails_the_run(store, monkeypatch):
+    plan = planned(store, muster.load("31T-6R50"))
+    monkeypatch.setenv("PYTHONHOME", "/nowhere")
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan)).id
+            await gone(runs, run)
+            return run
+
+    found = store.runs.get(asyncio.run(story()))
+    assert found.state == "failed"
+    assert "its process ended 3 times at 0.0 s" in found.remark
+
+
+class Pragma:
+    """Statements that each connection of a store is given before it is used."""
+
+    def __init__(self, store):
+        self.statements = ()
+        event.listen(store.database._engine, "checkout", self._checked_out)
+
+    def _checked_out(self, connection, *_):
+        for statement in self.statements:
+            connection.execute(statement).close()
+
+
+FULL = ("PRAGMA max_page_count = 1",)
+READ_ONLY = ("PRAGMA query_only = ON",)
+WORKS = ("PRAGMA max_page_count = 1000000", "PRAGMA query_only = OFF")
+
+
+@pytest.mark.parametrize(("refuses", "why"), [(FULL, "the disk is full"), (READ_ONLY, "may only be read")])
+def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_later(store, refuses, why):
+    plan, pragma = planned(store, muster.load("31T-6R50")), Pragma(store)
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan, speed=10.0)).id
+            await watched(runs, run, lambda m: m["type"] == "states" and m["time_s"] > 1)
+            await runs.act(ADA, run, "pause")
+            await watched(runs, run, lambda m: m["type"] == "run" and m["state"] == "paused")
+            pragma.statements = refuses
+            action = await runs.act(ADA, run, "speed", {"speed": None})
+            await runs.act(ADA, run, "resume")
+            messages = await watched(runs, run)
+            during = await runs.get(run), len(await runs.entries(run)), store.log.last_seq(run)
+            with pytest.raises(StoreError, match="is not kept yet"):
+                await Records(store, None, runs).mcap(run)
+            pragma.statements = WORKS
+            await gone(runs, run)
+            return run, messages, during, action
+
+    run, messages, (during, said, kept), action = asyncio.run(story())
+    assert during.state == "ended"
+    assert during.remark.startswith("this run is not being kept: ")
+    assert why in during.remark
+    assert any(m["type"] == "run" and m["remark"] == during.remark for m in messages)
+    assert kept < 60 < 100 < said
+    assert [e.seq for e in store.log.entries(run)] == [m["seq"] for m in messages if m["type"] == "entry"]
+    assert (store.runs.get(run).state, store.runs.get(run).remark) == ("ended", "")
+    assert store.log.last_stretch(run) > 50
+    assert action.id < 0 or refuses is FULL  # which may have room for a few bytes
+    asked = {action.verb: (action.outcome, action.who) for action in store.actions.list(run=run)}
+    assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
+
+
+def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
+    plan = planned(store, muster.load("31T-6R50"))
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan, speed=10.0)).id
+            await watched(runs, run, lambda m: m["type"] == "states" and m["time_s"] > 1)
+            lock = sqlite3.connect(store.database.file, isolation_level=None)
+            lock.execute("BEGIN IMMEDIATE")
+            begun = asyncio.get_running_loop().time()
+            paused = await runs.act(ADA, run, "pause")
+            took = asyncio.get_running_loop().time() - begun
+            again = await runs.act(ADA, run, "resume")
+            await watched(runs, run, lambda m: m["type"] == "action" and m["id"] == again.id)
+            told = asyncio.get_running_loop().time() - begun
+            os.kill(runs.pid(run), signal.SIGKILL)  # the next runner obeys neither a second time
+            lock.execute("COMMIT")
+            lock.close()
+            await runs.act(ADA, run, "speed", {"speed": None})
+            await watched(runs, run)
+            await gone(runs, run)
+            return run, (took, told), (paused, again)
+
+    run, took, unkept = asyncio.run(story())
+    assert 0.5 < took[0] < took[1] < 8  # of the database's own patience of 10 s
+    assert all(action.id < 0 for action in unkept)
+    asked = [(action.verb, action.outcome) for action in store.actions.list(run=run)]
+    assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
+    at = {action.verb: action.at for action in store.actions.list(run=run)}
+    assert (at["run.pause"], at["run.resume"]) == tuple(action.at for action in unkept)
+    commands = [entry.data["verb"] for entry in store.log.entries(run) if entry.kind == "command"]
+    assert commands == ["pause", "resume", "speed"]
+
+
+def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
+    plan = store.plans.get(planned(store, muster.load("31T-6R50")))
+    run = store.runs.add(plan.mission, plan.mission_version, plan.id, "kinematic", {}, None, "ada").id
+    at = datetime.now(UTC)
+    late = store.actions.add(ADA, "run.pause", {}, run, at)
+    assert store.actions.add(ADA, "run.pause", {}, run, at) == late
+    data = {"action": number_at(at), "verb": "pause", "data": {}, "who": "ada", "outcome": "done"}
+    kept = performed(muster.load("31T-6R50"), plan_from(plan.plan, "plan"), ((0.0, "pause", {}), (9e9, "resume", {})))
+    log = [Entry(run=run, **one) for one in kept.log]
+    commands = [k for k, one in enumerate(log) if one.kind == "command"]
+    log[commands[0]] = replace(log[commands[0]], data=data)
+    store.log.append(run, 0.0, log[: commands[1]])
+
+    async def story():
+        async with opened(store) as runs:
+            await runs.act(ADA, run, "resume")
+            await gone(runs, run)
+
+    asyncio.run(story())
+    commands = [entry.data["action"] for entry in store.log.entries(run) if entry.kind == "command"]
+    assert commands[0] == number_at(at)
+    assert len(commands) == 2
+    assert [action.outcome for action in store.actions.list(run=run)] == ["done", "done"]
+
+
+def test_a_runner_is_started_again_while_the_database_is_gone(store, monkeypatch):
+    plan = planned(store, muster.load("31T-6R50"))
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan, speed=10.0)).id
+            await watched(runs, run, lambda m: m["type"] == "states" and m["time_s"] > 5)
+            with monkeypatch.context() as gone_database:
+                gone_database.setattr(store.database, "_engine", create_engine("sqlite:////nowhere/muster.db"))
+                os.kill(runs.pid(run), signal.SIGKILL)
+                await runs.act(ADA, run, "speed", {"speed": None})
+                messages = await watched(runs, run, lambda m: m["type"] == "run" and m["state"] == "ended", after=10**6)
+            await gone(runs, run)
+            return run, messages[-1]
+
+    run, last = asyncio.run(story())
+    assert last["remark"].startswith("this run is not being kept: ")
+    log, found = store.log.entries(run), store.runs.get(run)
+    assert (found.state, found.resumed, found.remark) == ("ended", 1, "")
+    assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
+    stretches = list(store.log.stretches(run))
+    assert all(a.until_s < b.from_s for a, b in pairwise(stretches))
+
+
+def test_who_asks_for_what_cannot_be_is_told(store):
+    plan = planned(store, muster.load("31T-6R50"))
+
+    async def story():
+        async with opened(store, runs=1) as runs:
+            with pytest.raises(ForbiddenError):
+                await runs.start(EVE, plan)
+            with pytest.raises(NotFoundError):
+                await runs.start(ADA, 99)
+            wrong = (
+                ({"world": "ros1"}, "world: ros1; expected kinematic, physics"),
+                ({"speed": 0}, "speed: 0; expected a number above 0"),
+                ({"colour": "red"}, "colour: no setting"),
+                ({"dt_s": 7}, "dt_s: 7; expected"),
+            )
+            for how, why in wrong:
+                with pytest.raises(ParameterError, match=why):
+                    await runs.start(ADA, plan, **how)
+            run = (await runs.start(ADA, plan, speed=1.0, avoidance="no such")).id
+            with pytest.raises(BusyError, match="expected fewer than 1"):
+                await runs.start(ADA, plan)
+            await gone(runs, run)
+            with pytest.raises(ConflictError, match="is over: failed"):
+                await runs.act(ADA, run, "pause")
+            with pytest.raises(ParameterError, match="verb: stop"):
+                await runs.act(ADA, run, "stop")
+            return await runs.get(run)
+
+    found = asyncio.run(story())
+    assert (found.state, "no such" in found.remark) == ("failed", True)

@@ -1,0 +1,47 @@
+"""What may be asked of a run is checked before anything is started."""
+
+import pytest
+
+import muster
+from muster.mission.errors import ParameterError
+from muster.server.runs.simulated import SimulatedCourse
+from muster.server.runs.terms import require_world
+
+BRIDGES = ("ros1", "mavlink")
+
+
+@pytest.mark.parametrize(
+    ("world", "settings", "wrong"),
+    [
+        ("moon", {}, "world: moon; expected kinematic, physics, ros1, mavlink"),
+        ("ros2", {}, "world: ros2; expected kinematic, physics, ros1, mavlink"),
+        (
+            "kinematic",
+            {"drive": "goals"},
+            "drive: no setting of world kinematic; expected seed, dt_s, avoidance, noise",
+        ),
+        ("kinematic", {"seed": -1}, "seed: -1; expected a whole number, 0 to"),
+        ("kinematic", {"seed": True}, "seed: true; expected a whole number"),
+        ("kinematic", {"noise": [1]}, "noise: [1]; expected a mapping"),
+        ("kinematic", {"noise": {"position_m": -1.0}}, "position_m: -1.0; expected a number, 0 to inf"),
+        ("ros1", {"known_only": "yes"}, 'known_only: "yes"; expected true or false'),
+        ("mavlink", {"endpoints": {"r_0": 14550}}, "endpoints.r_0: 14550; expected a text"),
+    ],
+)
+def test_what_no_world_can_be_told(world, settings, wrong):
+    with pytest.raises(ParameterError) as refused:
+        require_world(world, BRIDGES, settings)
+    assert str(refused.value).startswith(wrong)
+
+
+def test_what_worlds_can_be_told():
+    require_world("physics", (), {"seed": 3, "dt_s": 0.05, "avoidance": "orca", "noise": {"position_m": 0}})
+    require_world("mavlink", BRIDGES, {"endpoints": {"r_0": "udp:0.0.0.0:14550"}, "arm": True, "height_m": 10})
+
+
+def test_noise_of_no_kind_is_refused():
+    mission = muster.load("6T-2R")
+    with pytest.raises(ParameterError, match=r"noise: .positon_m.; expected .* did you mean"):
+        SimulatedCourse(
+            mission, muster.solve(mission, "greedy"), "kinematic", {"noise": {"positon_m": 1.0}}, recorder=None
+        )
