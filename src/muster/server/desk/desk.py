@@ -1,0 +1,106 @@
+"""The desk: every service of mission control, opened and closed together."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass, replace
+
+from muster.server.desk.actions import Actions
+from muster.server.desk.jobs import Jobs
+from muster.server.desk.lock import Lock, TakenError, alone_with
+from muster.server.desk.missions import Missions
+from muster.server.desk.plans import Plans
+from muster.server.desk.records import Records
+from muster.server.desk.runs import Runs
+from muster.server.settings import Settings
+from muster.server.store.store import Store
+from muster.server.store.timed import TimedLog
+from muster.server.work.pool import Pool
+
+_THREADS = 12
+"""That wait for the database, fewer than its connections: while some wait for a lock pages can still be read."""
+
+_LOOK_S = 1.0
+"""Until it is looked again whether the database is still this server's own."""
+
+
+@dataclass(frozen=True)
+class Desk:
+    """What the API and the pages call; `store` and `pool` are for health and metrics alone."""
+
+    missions: Missions
+    plans: Plans
+    jobs: Jobs
+    runs: Runs
+    records: Records
+    actions: Actions
+    settings: Settings
+    store: Store
+    pool: Pool
+    taken: asyncio.Task[None] | None = None
+    """Raises when another server has the database: this one is to end then."""
+
+
+@asynccontextmanager
+async def open_desk(settings: Settings, appended: Callable[[float], None] = lambda _: None) -> AsyncIterator[Desk]:
+    """The desk; queued jobs and unfinished runs go on, and are left where they are when it closes.
+
+    Parameters
+    ----------
+    appended
+        is told how many seconds each writing of a run's log took.
+
+    Raises
+    ------
+    StoreError
+        if the database cannot be used, or another server uses it.
+    """
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(_THREADS, "muster"))
+    async with AsyncExitStack() as closing:
+        lock = closing.enter_context(alone_with(settings.database))
+        store = await asyncio.to_thread(Store.open, settings.database)
+        closing.push_async_callback(asyncio.to_thread, store.close)
+        store.database.require = lock.require
+        store = replace(store, log=TimedLog(store.database, appended))
+        pool = Pool(workers=settings.workers, memory_mb=settings.memory_mb)
+        closing.push_async_callback(pool.close)
+        runs = Runs(store, settings)
+        desk = Desk(
+            missions=Missions(store, pool),
+            plans=Plans(store, pool),
+            jobs=Jobs(store, pool, settings),
+            runs=runs,
+            records=Records(store, pool, runs),
+            actions=Actions(store),
+            settings=settings,
+            store=store,
+            pool=pool,
+        )
+        await desk.jobs.start()
+        closing.push_async_callback(desk.jobs.close)
+        await desk.runs.start_up()
+        closing.push_async_callback(desk.runs.close)
+        watch = asyncio.create_task(_until_taken(lock, runs))
+        closing.callback(watch.cancel)
+        yield replace(desk, taken=watch)
+
+
+async def _until_taken(lock: Lock, runs: Runs) -> None:
+    """Look after the lock, by a thread of its own as others may all wait for the database.
+
+    Raises
+    ------
+    TakenError
+        if another server has the database; nothing is carried out any more then.
+    """
+    with ThreadPoolExecutor(1, "muster-lock") as alone:
+        while True:
+            await asyncio.sleep(_LOOK_S)
+            try:
+                await asyncio.get_running_loop().run_in_executor(alone, lock.look)
+            except TakenError:
+                await runs.close()
+                raise

@@ -1,0 +1,227 @@
+"""Runs: plans are carried out, in simulated worlds or by real robots; watched, steered, and resumed after a crash."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import logging
+import tempfile
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from muster.mission.errors import ParameterError
+from muster.server.runs.carrying import TOO_LATE, Carrying
+from muster.server.runs.feed import Feed
+from muster.server.runs.terms import SIMULATED, require_action, require_speed, require_world
+from muster.server.runs.unkept import unkept
+from muster.server.settings import Settings
+from muster.server.words import Action, BusyError, ConflictError, Entry, Run, StoreError, Who, World
+from muster.server.work.folders import OF_RUNS, sweep
+
+if TYPE_CHECKING:
+    from muster.server.store.store import Store
+
+PATIENCE_S = 0.7
+"""Seconds for the database to take what a user asks of a run, before it is obeyed without: robots may have to stop."""
+
+_log = logging.getLogger("muster.runs")
+
+
+class Runs:
+    """All runs of a database, and those that are under way here."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self._store, self._settings = store, settings
+        self._live: dict[int, Carrying] = {}
+        self._tasks: dict[int, asyncio.Task[None]] = {}
+        self._beginning = 0
+        self._slow: set[asyncio.Task[Action]] = set()
+        self._last = datetime.now(UTC)
+
+    async def start_up(self) -> None:
+        """Go on with runs that a server left unfinished, however it ended."""
+        await asyncio.to_thread(sweep, OF_RUNS)
+        for run in await asyncio.to_thread(self._store.runs.unfinished):
+            self._carry(run)
+
+    async def close(self) -> None:
+        """End all runners; the runs go on when a server is there again. Real robots are told to stand."""
+        await asyncio.gather(*(carrying.close() for carrying in self._live.values()))
+        await asyncio.gather(*self._tasks.values())
+
+    async def start(
+        self, who: Who, plan: int, world: str = "kinematic", speed: float | None = 1.0, **settings: Any
+    ) -> Run:
+        """Begin to carry a plan out.
+
+        Raises
+        ------
+        ForbiddenError, NotFoundError, ParameterError
+            if they may only watch; there is no such plan; a world, speed or setting is none.
+        BusyError
+            if as many runs are under way as may be.
+        """
+        who.require_command()
+        require_world(world, self._settings.bridges, settings)
+        speed = require_speed(speed)
+        if world not in SIMULATED and speed != 1.0:
+            raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
+        if self.under_way + self._beginning >= self._settings.runs:
+            raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
+        self._beginning += 1
+        try:
+            return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
+        finally:
+            self._beginning -= 1
+
+    async def list(self, limit: int = 200) -> Sequence[Run]:
+        """The newest first."""
+        runs = await asyncio.to_thread(self._store.runs.list, limit)
+        return [self._newest(run) for run in runs]
+
+    async def get(self, run: int) -> Run:
+        """One run, as it is now.
+
+        Raises
+        ------
+        NotFoundError
+        """
+        carrying = self._live.get(run)
+        return carrying.run if carrying is not None else await asyncio.to_thread(self._store.runs.get, run)
+
+    async def act(self, who: Who, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
+        """Ask something of a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
+
+        What comes of it is told to watchers, and is in the action later. It is in the database before it is obeyed;
+        where that refuses or takes its time, it is obeyed all the same, as robots may have to be stopped.
+
+        Raises
+        ------
+        ForbiddenError, NotFoundError, ParameterError
+        ConflictError
+            if the run is over.
+        """
+        who.require_command()
+        said = require_action(verb, data or {})
+        state = (await self.get(run)).state
+        carrying = self._live.get(run)
+        if carrying is None or carrying.over:
+            raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
+        action = await self._added(unkept(who, f"run.{verb}", said, run, self._moment()), who, carrying)
+        if not carrying.ask(action):
+            if action.id > 0:
+                await asyncio.to_thread(self._store.actions.settle, action.id, TOO_LATE)
+            raise ConflictError(f"run {run} is over: {carrying.run.state}; expected one that is under way")
+        return action
+
+    async def entries(self, run: int, after: int = 0, limit: int | None = None) -> Sequence[Entry]:
+        """The log of a run beyond an entry.
+
+        Raises
+        ------
+        NotFoundError
+        """
+        carrying = self._live.get(run)
+        if carrying is not None:
+            return await carrying.journal.entries(after, limit)
+        await asyncio.to_thread(self._store.runs.get, run)
+        return await asyncio.to_thread(self._store.log.entries, run, after, limit)
+
+    async def kept(self, run: int) -> None:
+        """Wait until all that is known of a run here is in the database.
+
+        Raises
+        ------
+        StoreError
+            if that refuses it.
+        """
+        carrying = self._live.get(run)
+        if carrying is not None:
+            await carrying.journal.given()
+            if carrying.journal.trouble:
+                raise StoreError(f"run {run} is not kept yet: {carrying.journal.trouble}")
+
+    def feed(self, run: int) -> Feed | None:
+        """What watchers of a run are told; None where it is not under way."""
+        carrying = self._live.get(run)
+        return None if carrying is None else carrying.feed
+
+    def pid(self, run: int) -> int | None:
+        """The process that carries a run out; None where there is none."""
+        carrying = self._live.get(run)
+        return None if carrying is None else carrying.pid
+
+    @property
+    def under_way(self) -> int:
+        """How many runs are under way."""
+        return sum(not carrying.over for carrying in self._live.values())
+
+    @property
+    def watchers(self) -> int:
+        """How many watch, in all."""
+        return sum(carrying.feed.watchers for carrying in self._live.values())
+
+    @property
+    def troubles(self) -> Sequence[str]:
+        """Why runs under way are not being kept, a line each."""
+        live = tuple(self._live.items())
+        return tuple(f"run {run}: {each.journal.trouble}" for run, each in live if each.journal.trouble)
+
+    def statuses(self) -> Sequence[str]:
+        """The newest `status` of each run under way, as watchers were told it."""
+        texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
+        return tuple(text for text in texts if text)
+
+    def _add(self, who: Who, plan: int, world: str, speed: float | None, settings: Mapping[str, Any]) -> Run:
+        entry = self._store.plans.get(plan)
+        return self._store.runs.add(
+            entry.mission, entry.mission_version, plan, cast("World", world), settings, speed, who.name, by=who
+        )
+
+    def _carry(self, run: Run) -> Carrying:
+        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock(run.id)))
+        task = self._tasks[run.id] = asyncio.create_task(carrying.go())
+        task.add_done_callback(lambda _: self._forget(run.id))
+        return carrying
+
+    def _forget(self, run: int) -> None:
+        self._live.pop(run, None)
+        self._tasks.pop(run, None)
+
+    def _lock(self, run: int) -> Path:
+        """A file that is the same for every server on this machine with this database."""
+        key = hashlib.sha256(f"{self._settings.database} {run}".encode()).hexdigest()[:16]
+        return Path(tempfile.gettempdir()) / f"muster-run-{key}.lock"
+
+    def _newest(self, run: Run) -> Run:
+        carrying = self._live.get(run.id)
+        return run if carrying is None else carrying.run
+
+    async def _added(self, action: Action, who: Who, carrying: Carrying) -> Action:
+        """An action as the database has it; or as it is, where that refuses it or takes its time."""
+        if carrying.journal.trouble or self._slow:  # it would do so again
+            return action
+        what = (who, action.verb, action.data, action.run, action.at)
+        adding = asyncio.create_task(asyncio.to_thread(self._store.actions.add, *what))
+        done, _ = await asyncio.wait([adding], timeout=PATIENCE_S)
+        if not done:
+            self._slow.add(adding)
+            adding.add_done_callback(self._answered)
+            return action
+        try:
+            return adding.result()
+        except StoreError:
+            return action
+
+    def _answered(self, adding: asyncio.Task[Action]) -> None:
+        """The database has taken an action late, or refused it; it was obeyed, and is written down with its outcome."""
+        self._slow.discard(adding)
+        if not adding.cancelled() and (error := adding.exception()) is not None:
+            _log.warning("an action was not taken: %s", error)
+
+    def _moment(self) -> datetime:
+        """Now, and later than the last time."""
+        self._last = max(datetime.now(UTC), self._last + timedelta(microseconds=1))
+        return self._last

@@ -1,0 +1,61 @@
+"""What users do is written down before it is done."""
+
+import asyncio
+from contextlib import closing
+
+import pytest
+
+from muster.server.desk.actions import Actions
+from muster.server.store import Store
+from muster.server.words import ConflictError, Who
+
+ANN = Who("ann", "command")
+
+
+@pytest.fixture
+def store(tmp_path):
+    with closing(Store.open(f"sqlite:///{tmp_path}/muster.db")) as store:
+        yield store
+
+
+async def do(actions, error=None):
+    async with actions.of(ANN, "run.pause", {"n": 1}) as action:
+        [under_way] = await actions.list(limit=1)
+        assert (under_way, under_way.outcome) == (action, "")
+        if error is not None:
+            raise error
+
+
+def test_what_comes_of_it(store):
+    async def story():
+        actions = Actions(store)
+        await do(actions)
+        for error in (ConflictError("it is over\nreally"), ZeroDivisionError("x"), ConflictError("y" * 600)):
+            with pytest.raises(type(error)):
+                await do(actions, error)
+        added = await actions.add(ANN, "login", {})
+        await actions.settle(added.id, "done", 1.5)
+        found = await actions.list(limit=5)
+        assert [a.outcome for a in found] == ["done", "y" * 500, "broken off: ZeroDivisionError", "it is over", "done"]
+        assert [a.id for a in await actions.list(before=found[1].id)] == [a.id for a in found[2:]]
+
+    asyncio.run(story())
+
+
+def test_whoever_goes_away_leaves_a_line(store):
+    async def story():
+        actions = Actions(store)
+
+        async def forever():
+            async with actions.of(ANN, "mission.save", {}):
+                await asyncio.sleep(3600)
+
+        task = asyncio.create_task(forever())
+        while not await actions.list():
+            await asyncio.sleep(0.01)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        assert [a.outcome for a in await actions.list()] == ["broken off: CancelledError"]
+
+    asyncio.run(story())
