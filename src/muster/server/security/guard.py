@@ -1,0 +1,333 @@
+"""Before everything that answers: which host, from where, who, how often, how much; and the headers of every answer."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import math
+import time
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import quote
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocketDisconnect
+
+from muster.server.security.asking import SCOPE_KEY, Asker, Asking, WrongTokenError
+from muster.server.security.headers import is_page, is_static, with_security
+from muster.server.security.limits import Body, Buckets, Places, network_of
+from muster.server.security.origins import Hosts
+from muster.server.security.refusal import RefusalError, printable
+from muster.server.security.refusals import Audit
+from muster.server.settings import Settings
+from muster.server.words import Who
+
+log = logging.getLogger("muster.security")
+
+OPEN_TO_ALL = {"/healthz": ("GET", "HEAD"), "/login": ("GET", "HEAD", "POST")}
+"""Paths that strangers may ask for, and how; not otherwise, as a page that says so would be made for each of them."""
+REQUEST_KEY = "muster.request"
+_READING = ("GET", "HEAD", "OPTIONS")
+_AT_ONCE_S = 10.0
+_REQUESTS_A_PAGE = 25.0  # a page costs the server as much as so many other requests, and half a megabyte for a minute
+_PAGES_PER_S, _PAGES_AT_ONCE = 2.0, 40.0  # however few requests there may be
+_MESSAGES_PER_S = 100.0
+_FAILED_PER_S, _FAILED_AT_ONCE = 0.1, 10.0
+
+Observe = Callable[["Answered"], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answered:
+    """A request that is over, for logs and metrics; `path` is without the query, which may hold anything."""
+
+    id: str
+    scope: Scope
+    path: str
+    status: int
+    seconds: float
+    who: Who
+
+
+class Shield:
+    """What the guard of one server knows; login and metrics look at it too."""
+
+    def __init__(self, settings: Settings, asking: Asking, audit: Audit) -> None:
+        self.settings = settings
+        self.asking = asking
+        self.audit = audit
+        self.hosts = Hosts.of(settings)
+        self.tls = settings.certificate is not None
+        rate = settings.requests_per_s
+        self.by_address = Buckets(rate, _AT_ONCE_S * rate)
+        self.by_user = Buckets(rate, _AT_ONCE_S * rate)
+        pages = max(_PAGES_PER_S, rate / _REQUESTS_A_PAGE)
+        self.pages = Buckets(pages, _PAGES_AT_ONCE / _PAGES_PER_S * pages)
+        self.failed = Buckets(_FAILED_PER_S, _FAILED_AT_ONCE)
+        self.places = Places(settings.sockets, settings.sockets_per_address)
+
+    def warning(self) -> str:
+        """What whoever looks after the server should mend."""
+        return "" if self.asking.tokens is None else self.asking.tokens.look()
+
+    def require_unblocked(self, address: str) -> None:
+        """Slow down whoever tries tokens.
+
+        Raises
+        ------
+        RefusalError
+            if too many of this address were wrong.
+        """
+        wait_s = self.failed.wait_s(network_of(address))
+        if wait_s > 0:
+            raise RefusalError(429, f"too many wrong tokens; expected a pause of {math.ceil(wait_s)} s", retry_s=wait_s)
+
+    def failed_from(self, address: str) -> None:
+        """A wrong token came from there."""
+        self.failed.take(network_of(address))
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What is known of a request before anything answers it."""
+
+    scope: Scope
+    headers: dict[str, str]
+    address: str
+
+    @property
+    def socket(self) -> bool:
+        return bool(self.scope["type"] == "websocket")
+
+    @property
+    def changes(self) -> bool:
+        return self.socket or self.scope["method"] not in _READING
+
+
+class Guard:
+    """ASGI middleware, so that it stands before routes, mounts, files and WebSockets alike.
+
+    Parameters
+    ----------
+    observe
+        is told of every request that is over.
+    """
+
+    def __init__(self, app: ASGIApp, shield: Shield, observe: Observe = lambda _: None) -> None:
+        self.app = app
+        self._shield = shield
+        self._observe = observe
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        answer = _Answer(scope, send, tls=self._shield.tls)
+        peer = (scope.get("client") or ("",))[0]
+        request = _Request(scope, {}, peer)
+        asker = None
+        began = time.perf_counter()
+        try:
+            request = self._read(scope, peer)
+            asker = self._admitted(request, peer)
+            scope[SCOPE_KEY] = asker
+            scope[REQUEST_KEY] = answer.id
+            await (self._socket if request.socket else self._http)(request, asker, receive, answer)
+        except RefusalError as refusal:
+            who = asker.who if asker else Who("", "watch", request.address)
+            if refusal.status_code != 401 or isinstance(refusal, WrongTokenError):
+                self._shield.audit.refused(who, refusal.detail, answer.path, refusal.status_code)
+            await answer.refuse(refusal, request)
+        except WebSocketDisconnect:
+            pass  # whoever listened has left in the middle of a word
+        except Exception as error:  # nobody outside learns more than that, and where to look
+            if answer.gone:
+                log.debug("nobody listens any more: %s", type(error).__name__, extra={"request": answer.id})
+                return
+            log.error("failed: %s", type(error).__name__, exc_info=error, extra={"request": answer.id})
+            await answer.refuse(
+                RefusalError(500, f"internal error; the server's log says more of {answer.id}"), request
+            )
+        finally:
+            who = asker.who if asker else Who("", "watch", request.address)
+            seconds = time.perf_counter() - began
+            answered = Answered(
+                id=answer.id, scope=scope, path=answer.path, status=answer.status, seconds=seconds, who=who
+            )
+            self._observe(answered)
+
+    def _read(self, scope: Scope, peer: str) -> _Request:
+        """The headers, each name once; where the request comes from.
+
+        Raises
+        ------
+        RefusalError
+            if a header that counts is there twice.
+        """
+        headers: dict[str, str] = {}
+        for raw_name, raw in scope["headers"]:
+            name, value = raw_name.decode("latin-1").lower(), raw.decode("latin-1")
+            if name in headers and name in self._shield.asking.once:
+                raise RefusalError(400, f"header {name} twice; expected it once")
+            headers[name] = f"{headers[name]}; {value}" if name == "cookie" and name in headers else value
+        return _Request(scope, headers, self._shield.asking.proxies.address(peer, headers))
+
+    def _admitted(self, request: _Request, peer: str) -> Asker:
+        """Who asks, if the request may be answered.
+
+        Raises
+        ------
+        RefusalError
+            if it may not.
+        """
+        shield, path = self._shield, request.scope["path"]
+        if why := shield.hosts.why_not_host(request.headers.get("host", "")):
+            raise RefusalError(421, why)
+        if not is_static(path):
+            _take(shield.by_address, network_of(request.address))
+        asker = self._asker(request, peer)
+        reads_all = path.startswith("/_nicegui_ws/")  # as a request a socket of NiceGUI is, while it is polled
+        why = shield.hosts.why_not_origin(
+            request.headers,
+            "https" if request.scope["scheme"] in ("https", "wss") else "http",
+            changes=request.changes or reads_all,
+            by_cookie=asker is not None and asker.session is not None,
+        )
+        if why:
+            raise RefusalError(403, why)
+        if asker is None:
+            if is_static(path):
+                _take(shield.by_address, network_of(request.address))
+            if request.socket or request.scope["method"] not in OPEN_TO_ALL.get(path, ()):
+                raise RefusalError(401, "who asks is not known; expected Authorization: Bearer TOKEN, or a login")
+            return Asker(Who("", "watch", request.address))
+        if asker.holder is not None and not is_static(path):
+            _take(shield.by_user, asker.who.name)
+        if is_page(path):
+            _take(shield.pages, asker.who.name if asker.holder is not None else network_of(request.address))
+        return asker
+
+    def _asker(self, request: _Request, peer: str) -> Asker | None:
+        try:
+            return self._shield.asking.asker(request.headers, peer, request.address)
+        except WrongTokenError:  # whoever has a right one is let in, whatever neighbours tried
+            self._shield.require_unblocked(request.address)
+            self._shield.failed_from(request.address)
+            raise
+
+    async def _http(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
+        body = Body(receive, self._shield.settings.upload_bytes)
+        body.require_announced(request.headers.get("content-length"))
+        answer.body = body
+        await self.app(request.scope, body.receive, answer.send)
+        if body.refused is not None:
+            raise body.refused
+        if answer.status == 403 and asker.who.name:
+            self._shield.audit.refused(asker.who, "may only watch", answer.path, 403)
+
+    async def _socket(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
+        """As long as who opened it may watch; messages that come too fast are read later."""
+        holds = self._shield.asking.holds
+        pace = Buckets(_MESSAGES_PER_S, 4 * _MESSAGES_PER_S)
+        over = False
+
+        async def end() -> None:
+            nonlocal over
+            over = answer.gone = True
+            await answer.send({"type": "websocket.close", "code": 1008, "reason": "the login is over"})
+
+        async def paced() -> Message:
+            if over:
+                return {"type": "websocket.disconnect", "code": 1008}
+            message = await receive()
+            if message["type"] == "websocket.receive":
+                if not holds(asker):
+                    await end()
+                    return {"type": "websocket.disconnect", "code": 1008}
+                while wait_s := pace.take(""):
+                    await asyncio.sleep(wait_s)
+            return message
+
+        async def checked(message: Message) -> None:
+            if over:
+                raise OSError("the login is over")
+            if message["type"] == "websocket.send" and not holds(asker):
+                await end()
+                raise OSError("the login is over")  # as of a connection that broke
+            await answer.send(message)
+
+        with self._shield.places.place(request.address):
+            await self.app(request.scope, paced, checked)
+
+
+def _take(buckets: Buckets, key: str) -> None:
+    wait_s = buckets.take(key)
+    if wait_s > 0:
+        raise RefusalError(429, "too many requests; expected fewer", retry_s=wait_s)
+
+
+class _Answer:
+    """An answer on its way: its headers are ours too, and it may turn into a refusal as long as it has not begun."""
+
+    def __init__(self, scope: Scope, send: Send, *, tls: bool) -> None:
+        self._scope = scope
+        self._send = send
+        self._tls = tls
+        self._begun = False
+        self.gone = False  # the connection: what is raised from then on is no fault of ours
+        self.path = printable(scope["path"])  # before mounts change it
+        self.id = uuid.uuid4().hex[:12]
+        self.status = 101 if scope["type"] == "websocket" else 500
+        self.body: Body | None = None
+
+    async def send(self, message: Message) -> None:
+        if self.body is not None and self.body.refused is not None and not self._begun:
+            return  # whatever the application makes of it, the refusal is the answer
+        if message["type"] in ("http.response.start", "websocket.http.response.start"):
+            self._begun = True
+            self.status = message["status"]
+            headers = with_security(list(message.get("headers", ())), self.path, tls=self._tls)
+            message = {**message, "headers": [*headers, (b"x-request-id", self.id.encode())]}
+        elif message["type"] in ("websocket.accept", "websocket.close"):
+            self._begun = True
+        try:
+            await self._send(message)
+        except OSError:
+            self.gone = True
+            raise
+
+    async def refuse(self, refusal: RefusalError, request: _Request) -> None:
+        """Say why, if nothing was said yet."""
+        if self._begun:
+            return
+        self.body = None
+        if request.socket and "websocket.http.response" not in self._scope.get("extensions", {}):
+            self.status = refusal.status_code
+            await self.send({"type": "websocket.close", "code": 1008, "reason": refusal.detail[:100]})
+            return
+        status, headers, content = refusal.status_code, dict(refusal.headers or {}), refusal.as_problem()
+        if status == 401:
+            headers["www-authenticate"] = "Bearer"
+        if status in (408, 413):
+            headers["connection"] = "close"  # what is left of the body is not read
+        if status == 401 and _is_page(request):
+            status, headers["location"] = 303, f"/login?next={quote(request.scope['path'])}"
+        await self._respond(status, headers, content)
+
+    async def _respond(self, status: int, headers: dict[str, str], content: Any) -> None:
+        body = json.dumps(content).encode()
+        raw = [(name.encode(), value.encode("latin-1")) for name, value in headers.items()]
+        raw += [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
+        kind = "websocket.http.response" if self._scope["type"] == "websocket" else "http.response"
+        await self.send({"type": f"{kind}.start", "status": status, "headers": raw})
+        await self.send({"type": f"{kind}.body", "body": body})
+
+
+def _is_page(request: _Request) -> bool:
+    """Whether a person opens a page in a browser."""
+    scope = request.scope
+    wants = "text/html" in request.headers.get("accept", "")
+    return not request.socket and scope["method"] == "GET" and wants and not scope["path"].startswith("/api/")

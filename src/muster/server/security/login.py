@@ -1,0 +1,134 @@
+"""The page's login: a plain form, so that whoever is not known reaches nothing but it."""
+
+from __future__ import annotations
+
+from html import escape
+from urllib.parse import parse_qs
+
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.routing import Route
+
+from muster.server.security.asking import SCOPE_KEY, Asker
+from muster.server.security.guard import Shield
+from muster.server.security.refusal import RefusalError
+from muster.server.security.sessions import COOKIE, SECURE_COOKIE
+from muster.server.words import Who
+
+_FORM_BYTES = 4096
+
+_PAGE = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Muster: login</title>
+<link rel="icon" href="data:,">
+<style>
+  body {{ font: 16px/1.5 system-ui, sans-serif; margin: 0; min-height: 100vh; display: grid; place-items: center;
+         background: #f4f6f8; color: #17202a; }}
+  form {{ background: #fff; padding: 2rem; border-radius: 8px; width: min(24rem, 85vw); box-sizing: border-box;
+         box-shadow: 0 1px 6px #0003; }}
+  h1 {{ font-size: 1.3rem; margin: 0 0 1rem; }}
+  label, input, button {{ display: block; width: 100%; box-sizing: border-box; font: inherit; }}
+  input {{ padding: .5rem; margin: .3rem 0 1rem; border: 1px solid #5d6d7e; border-radius: 4px; }}
+  button {{ padding: .6rem; border: 0; border-radius: 4px; background: #0b5394; color: #fff; cursor: pointer; }}
+  :focus-visible {{ outline: 3px solid #e69f00; outline-offset: 2px; }}
+  p[role=alert] {{ border-left: 4px solid #b03a2e; padding-left: .7rem; }}
+  small {{ color: #4d5656; }}
+  @media (prefers-color-scheme: dark) {{ body {{ background: #17202a; color: #f4f6f8; }}
+    form {{ background: #212f3c; }} input {{ background: #17202a; color: inherit; }} small {{ color: #aeb6bf; }} }}
+</style>
+<form method="post" action="/login">
+  <h1>Mission control</h1>
+  {alert}
+  <label for="token">Your token</label>
+  <input name="username" autocomplete="username" value="muster" hidden>
+  <input id="token" name="token" type="password" autocomplete="current-password" required autofocus>
+  <input name="next" type="hidden" value="{next}">
+  <button>Log in</button>
+  <p><small>Whoever runs this server gives out tokens.</small></p>
+</form>
+</html>
+"""
+
+
+def login_routes(shield: Shield) -> list[Route]:
+    """`/login`, and `/logout`, to which the page posts."""
+
+    async def show(request: Request) -> Response:
+        if shield.asking.tokens is None:
+            return RedirectResponse("/", 303)
+        return _form(request.query_params.get("next", "/"))
+
+    async def log_in(request: Request) -> Response:
+        return await _logged_in(shield, request)
+
+    async def log_out(request: Request) -> Response:
+        asker: Asker = request.scope[SCOPE_KEY]
+        if asker.session is not None and shield.asking.sessions is not None:
+            shield.asking.sessions.end(asker.session)
+            shield.audit.logged_out(asker.who)
+        response = RedirectResponse("/login", 303)
+        for name in (COOKIE, SECURE_COOKIE):
+            response.delete_cookie(name, secure=name == SECURE_COOKIE, httponly=True, samesite="strict")
+        return response
+
+    return [
+        Route("/login", show, methods=["GET"], include_in_schema=False),
+        Route("/login", log_in, methods=["POST"], include_in_schema=False),
+        Route("/logout", log_out, methods=["POST"], include_in_schema=False),
+    ]
+
+
+async def _logged_in(shield: Shield, request: Request) -> Response:
+    """A session for a right token; the form again for a wrong one."""
+    asking = shield.asking
+    if asking.tokens is None or asking.sessions is None:
+        return RedirectResponse("/", 303)
+    asker: Asker = request.scope[SCOPE_KEY]
+    address = asker.who.address
+    shield.require_unblocked(address)
+    form = await _fields(request)
+    holder = asking.tokens.holder(form.get("token", "").strip())
+    if holder is None:
+        shield.failed_from(address)
+        shield.audit.refused(Who("", "watch", address), "wrong token at login", "/login", 403)
+        return _form(form.get("next", "/"), "Nobody has this token.", status=403)
+    shield.audit.logged_in(Who(holder.name, holder.role, address))
+    cookie, lasts_s = asking.sessions.begin(holder)
+    response = RedirectResponse(_own_path(form.get("next", "/")), 303)
+    secure = request.url.scheme == "https" or request.headers.get("origin", "").startswith("https://")
+    name = SECURE_COOKIE if secure else COOKIE
+    response.set_cookie(name, cookie, max_age=int(lasts_s), secure=secure, httponly=True, samesite="strict")
+    return response
+
+
+async def _fields(request: Request) -> dict[str, str]:
+    """A small form's fields.
+
+    Raises
+    ------
+    RefusalError
+        if it is none, or not small.
+    """
+    body = b""
+    async for piece in request.stream():
+        body += piece
+        if len(body) > _FORM_BYTES:
+            raise RefusalError(413, f"the form is too large; expected at most {_FORM_BYTES} bytes")
+    try:
+        fields = parse_qs(body.decode("ascii"), max_num_fields=10)
+    except ValueError:
+        raise RefusalError(400, "the form cannot be read; expected token=...") from None
+    return {name: values[0] for name, values in fields.items()}
+
+
+def _form(following: str, alert: str = "", status: int = 200) -> Response:
+    told = f'<p role="alert">{escape(alert)}</p>' if alert else ""
+    return HTMLResponse(_PAGE.format(alert=told, next=escape(_own_path(following), quote=True)), status)
+
+
+def _own_path(path: str) -> str:
+    """A path of this server, whatever a link says."""
+    own = path.startswith("/") and not path.startswith(("//", "/\\")) and path.isprintable()
+    return path if own and not path.startswith("/login") else "/"

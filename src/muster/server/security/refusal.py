@@ -1,0 +1,37 @@
+"""A request that is refused, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from starlette.exceptions import HTTPException
+
+
+class RefusalError(HTTPException):
+    """A request is refused; `detail` is one line for a person.
+
+    Parameters
+    ----------
+    status
+        of HTTP.
+    why
+        one line, which names what was found and what was expected.
+    retry_s
+        after how long the same may be asked again.
+    """
+
+    def __init__(self, status: int, why: str, *, retry_s: float | None = None) -> None:
+        headers = {} if retry_s is None else {"retry-after": str(max(1, math.ceil(retry_s)))}
+        super().__init__(status, printable(why), headers)
+
+    def as_problem(self) -> Mapping[str, Any]:
+        """As every error of the API."""
+        return {"error": self.detail, "findings": []}
+
+
+def printable(text: str, most: int = 200) -> str:
+    """What a stranger wrote, fit for a line of a log: short, without control characters."""
+    cut = text if len(text) <= most else text[: most - 3] + "..."
+    return "".join(c if c.isprintable() else c.encode("unicode_escape", "backslashreplace").decode() for c in cut)

@@ -1,0 +1,80 @@
+"""What was refused, in the audit log; so rarely that a flood of it fills no disk."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from muster.mission.errors import MusterError
+from muster.server.security.limits import Buckets, network_of
+from muster.server.words import Who
+
+log = logging.getLogger("muster.security")
+Keep = Callable[[Who, str, Mapping[str, Any]], Awaitable[object]]
+
+_OF_ONE_S = 10.0
+_IN_ALL_S = 10.0
+_AT_ONCE = 100
+_WAITING = 50
+
+
+class Audit:
+    """Logins and refusals, on their way to the audit log.
+
+    Of one address one refusal in ten seconds is kept, and 100 at once and 360 an hour of all: 3 MB a day at the very
+    most. The number that was left out before goes with the next one.
+
+    Parameters
+    ----------
+    keep
+        writes one into the audit log; None while there is no database.
+    """
+
+    def __init__(self, keep: Callable[[], Keep | None], clock: Callable[[], float] = time.monotonic) -> None:
+        self._keep = keep
+        self._of_one = Buckets(1 / _OF_ONE_S, 1.0, clock=clock)
+        self._in_all = Buckets(1 / _IN_ALL_S, _AT_ONCE, clock=clock)
+        self._left_out = 0
+        self._under_way: set[asyncio.Task[None]] = set()
+
+    def refused(self, who: Who, why: str, path: str, status: int) -> None:
+        """Note a refusal."""
+        if self._of_one.take(network_of(who.address)) or self._in_all.take("") or len(self._under_way) >= _WAITING:
+            self._left_out += 1
+            return
+        data: dict[str, Any] = {"why": why, "path": path, "status": status}
+        if self._left_out:
+            data["left_out"] = self._left_out
+            self._left_out = 0
+        log.warning("refused: %s", why, extra={"address": who.address, "path": path, "status": status})
+        self._note(who, "refused", data)
+
+    def logged_in(self, who: Who) -> None:
+        """Note a login."""
+        log.info("login of %s", who.name, extra={"user": who.name, "address": who.address})
+        self._note(who, "login", {"role": who.role})
+
+    def logged_out(self, who: Who) -> None:
+        """Note a logout."""
+        self._note(who, "logout", {})
+
+    def _note(self, who: Who, verb: str, data: Mapping[str, Any]) -> None:
+        task = asyncio.get_running_loop().create_task(self._write(who, verb, data))
+        self._under_way.add(task)
+        task.add_done_callback(self._under_way.discard)
+
+    async def _write(self, who: Who, verb: str, data: Mapping[str, Any]) -> None:
+        keep = self._keep()
+        if keep is None:
+            return
+        try:
+            await keep(who, verb, data)
+        except MusterError as error:  # nobody is let in or kept out by a full disk
+            log.error("not in the audit log: %s of %s: %s", verb, who.name, error)
+
+    async def settle(self) -> None:
+        """Until everything noted is written."""
+        await asyncio.gather(*self._under_way)

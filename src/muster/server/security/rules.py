@@ -1,0 +1,47 @@
+"""Which ways of serving are safe enough to begin at all."""
+
+from __future__ import annotations
+
+from urllib.parse import urlsplit
+
+from muster.mission.errors import ParameterError
+from muster.server.security.origins import is_loopback
+from muster.server.settings import Settings
+
+
+def require_safe(settings: Settings) -> None:
+    """Refuse to serve strangers without asking who they are, or in the clear without having been told to.
+
+    Raises
+    ------
+    ParameterError
+        naming the option that is missing.
+    """
+    if (settings.certificate is None) != (settings.key is None):
+        raise ParameterError("--tls-cert and --tls-key: one of them given; expected both")
+    if settings.tokens is None:
+        _require_alone(settings)
+    elif settings.user_header is not None and not settings.trusted_proxies:
+        raise ParameterError(f"--user-header {settings.user_header} given without --trusted-proxy; expected both")
+    encrypted = settings.certificate is not None
+    if not is_loopback(settings.host) and not encrypted and not settings.insecure_http:
+        raise ParameterError(
+            f"--host {settings.host} reaches beyond this machine without TLS; "
+            "expected --tls-cert and --tls-key, or --insecure-http where the network is trusted"
+        )
+    for origin in settings.public_origins:
+        parts = urlsplit(origin)
+        if parts.scheme not in ("http", "https") or not parts.hostname or parts.path.strip("/"):
+            raise ParameterError(f"--public-origin: {origin!r}; expected such as https://control.example.org")
+
+
+def _require_alone(settings: Settings) -> None:
+    """Without tokens everybody may command: nobody but this machine may reach the server."""
+    if not is_loopback(settings.host):
+        raise ParameterError(
+            f"--host {settings.host} reaches beyond this machine; "
+            "expected --tokens FILE (muster serve --new-token NAME makes one)"
+        )
+    for name, given in (("--user-header", settings.user_header), ("--public-origin", settings.public_origins)):
+        if given:
+            raise ParameterError(f"{name} given without --tokens FILE, which says who may command; expected both")
