@@ -1,0 +1,70 @@
+"""What this server is, who asks, and how it can plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import APIRouter
+
+from muster.server.api.asking import Asker, TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.words import Role
+
+API = 1
+"""Of the paths under /api/v1; grows when what a client relies on changes."""
+
+router = APIRouter(tags=["about"], route_class=BoundedRoute)
+
+
+@dataclass(frozen=True, kw_only=True)
+class About:
+    """What this server is.
+
+    Parameters
+    ----------
+    worlds
+        in which runs may be started here.
+    upload_bytes
+        the largest body of a request.
+    """
+
+    muster: str
+    api: int
+    worlds: list[str]
+    upload_bytes: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Me:
+    """Who asks, as the server sees it."""
+
+    name: str
+    role: Role
+    address: str
+
+
+@router.get("/about", summary="See what this server is")
+async def about(desk: TheDesk, who: Asker) -> About:
+    """Versions and limits."""
+    worlds = ["kinematic", "physics", *desk.settings.bridges]
+    return About(muster=_version(), api=API, worlds=worlds, upload_bytes=desk.settings.upload_bytes)
+
+
+@router.get("/me", summary="See who asks")
+async def me(who: Asker) -> Me:
+    """The role `watch` may read everything and change nothing."""
+    return Me(name=who.name, role=who.role, address=who.address)
+
+
+@router.get("/allocators", summary="List allocators")
+async def allocators(desk: TheDesk) -> list[dict[str, Any]]:
+    """Algorithms that plan, with their parameters."""
+    return list(await desk.plans.allocators())
+
+
+@cache
+def _version() -> str:
+    return version("muster-robotics")

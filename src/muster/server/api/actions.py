@@ -1,0 +1,18 @@
+"""Actions: who commanded what, and what came of it."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from muster.server.api.asking import TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import Before, Limit, RunQuery
+from muster.server.words import Action
+
+router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute)
+
+
+@router.get("", summary="Read the audit log")
+async def actions(desk: TheDesk, run: RunQuery = None, limit: Limit = 200, before: Before = None) -> list[Action]:
+    """Newest first; ask again with `before` the last `id` for more."""
+    return list(await desk.actions.list(run=run, limit=limit, before=before))

@@ -1,0 +1,47 @@
+"""The API put together: what is mounted under /api/v1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fastapi import FastAPI
+from fastapi.responses import HTMLResponse
+from starlette.requests import HTTPConnection
+
+from muster.server.api import about, actions, jobs, missions, plans, records, runs
+from muster.server.api.answers import ALWAYS, errors
+from muster.server.api.description import describe, listing
+from muster.server.api.problems import add_handlers
+from muster.server.desk.desk import Desk
+from muster.server.security import who_of as usual_who_of
+from muster.server.words import Who
+
+PREFIX = "/api/v1"
+
+
+def api(desk_of: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] = usual_who_of) -> FastAPI:
+    """An application to be mounted at PREFIX.
+
+    Parameters
+    ----------
+    desk_of
+        gives the services; called at each request, so that the app can be made before they are there.
+    who_of
+        says who asks; raises where nobody may.
+    """
+    app = FastAPI(openapi_url=None, docs_url=None, redoc_url=None, responses=errors(*ALWAYS))
+    app.state.desk_of, app.state.who_of = desk_of, who_of
+    add_handlers(app)
+    for part in (missions, plans, jobs, runs, records, actions, about):
+        app.include_router(part.router)
+    describe(app)
+
+    @app.get("/openapi.json", include_in_schema=False)
+    async def openapi() -> dict[str, object]:
+        return app.openapi()
+
+    @app.get("/docs", include_in_schema=False, response_class=HTMLResponse)
+    async def docs() -> str:
+        return listing(app)
+
+    return app

@@ -1,0 +1,133 @@
+"""Bodies of requests, read within limits: their length, how deep JSON goes, how many values it has, what texts hold.
+
+PostgreSQL takes no NUL, UTF-8 no lone surrogate, and JSON has neither NaN nor infinity; such a body is refused here,
+once, so that nothing behind has to think of it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import AsyncGenerator, Callable, Coroutine
+from typing import Any
+
+from fastapi import HTTPException, Request, Response
+from fastapi.routing import APIRoute
+
+MOST_VALUES = 500_000
+"""In one body of JSON: what takes at most some 50 MB once it is read."""
+DEEPEST = 60
+_TEXT = re.compile(rb'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)', re.DOTALL)
+"""A text, or what is left of one that does not end: what begins as one is one, so that no byte is read twice."""
+_TOO_LARGE, _BAD = 413, 400
+
+
+class BoundedRequest(Request):
+    """A request whose body is refused if it is longer than the server's `upload_bytes`, or JSON that none can keep."""
+
+    async def stream(self) -> AsyncGenerator[bytes, None]:
+        """The body in pieces; everything that reads it comes through here."""
+        most: int = self.app.state.desk_of().settings.upload_bytes
+        length = self.headers.get("content-length", "")
+        if length.isdecimal() and (len(length) > 18 or int(length) > most):
+            raise too_long(most)
+        read = 0
+        async for piece in super().stream():
+            read += len(piece)
+            if read > most:
+                raise too_long(most)
+            yield piece
+
+    async def json(self) -> Any:
+        """The body as plain data."""
+        return strict_json(await self.body())
+
+
+class BoundedRoute(APIRoute):
+    """A route that gets BoundedRequests."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """What answers a request."""
+        handle = super().get_route_handler()
+
+        async def bounded(request: Request) -> Response:
+            return await handle(BoundedRequest(request.scope, request.receive))
+
+        return bounded
+
+
+def too_long(most: int) -> HTTPException:
+    return HTTPException(_TOO_LARGE, f"the body is too long; expected at most {most} bytes")
+
+
+def strict_json(body: bytes) -> Any:
+    """JSON as plain data.
+
+    Raises
+    ------
+    HTTPException
+        400 or 413, if it is none, too deep, has too many values, numbers that are not finite, or texts with NUL or
+        half characters.
+    """
+    if _values(body) > MOST_VALUES and _values(_TEXT.sub(b"", body)) > MOST_VALUES:
+        raise HTTPException(_TOO_LARGE, f"the body has too many values; expected at most {MOST_VALUES}")
+    try:
+        text = body.decode("utf-8")
+        data = json.loads(text, parse_constant=_refuse, parse_float=_finite)
+    except UnicodeDecodeError as error:
+        raise HTTPException(_BAD, f"the body is no UTF-8 at byte {error.start}; expected JSON") from None
+    except json.JSONDecodeError as error:
+        raise HTTPException(_BAD, f"the body is no JSON at character {error.pos}: {error.msg}; expected JSON") from None
+    except RecursionError:
+        raise _too_deep() from None
+    except ValueError as error:  # of numbers
+        raise HTTPException(_BAD, f"the body holds {error}; expected finite numbers") from None
+    _require_flat(data)
+    if "\\u" in text:
+        _require_whole_texts(data)
+    return data
+
+
+def _values(body: bytes) -> int:
+    return body.count(b",") + body.count(b"[") + body.count(b"{")
+
+
+def _refuse(word: str) -> float:
+    raise ValueError(word)
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text[:20])
+    return value
+
+
+def _too_deep() -> HTTPException:
+    return HTTPException(_BAD, f"the body is too deep; expected at most {DEEPEST} levels of lists and mappings")
+
+
+def _require_flat(data: Any) -> None:
+    level = [data]
+    for _ in range(DEEPEST + 1):
+        level = [
+            item
+            for value in level
+            if isinstance(value, dict | list)
+            for item in (value.values() if isinstance(value, dict) else value)
+            if isinstance(item, dict | list)
+        ]
+        if not level:
+            return
+    raise _too_deep()
+
+
+def _require_whole_texts(data: Any) -> None:
+    plain = json.dumps(data, ensure_ascii=False)
+    try:
+        plain.encode("utf-8")
+    except UnicodeEncodeError:
+        raise HTTPException(_BAD, "the body holds half a character (a lone surrogate); expected whole texts") from None
+    if "\\u0000" in json.dumps(data).replace("\\\\", ""):
+        raise HTTPException(_BAD, "the body holds a NUL character; expected texts without") from None

@@ -1,0 +1,63 @@
+"""Jobs: long work that was asked for; followed, stopped, and cancelled."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import APIRouter, Query, WebSocket
+
+from muster.server.api.answers import errors
+from muster.server.api.asking import Asker, TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import JobId, Limit
+from muster.server.api.sockets import message, tell
+from muster.server.desk.jobs import Jobs
+from muster.server.words import Job, JobState
+
+router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
+
+
+@router.get("", summary="List jobs")
+async def jobs(
+    desk: TheDesk, state: Annotated[JobState | None, Query(description="Only those.")] = None, limit: Limit = 200
+) -> list[Job]:
+    """Newest first."""
+    return [job for job in await desk.jobs.list() if state in (None, job.state)][:limit]
+
+
+@router.get("/{job}", summary="See how far a job is")
+async def job(desk: TheDesk, job: JobId) -> Job:
+    """Its `progress`; when it is done its `result`, when it failed its `error`."""
+    return await desk.jobs.get(job)
+
+
+@router.delete("/{job}", summary="Cancel a job", responses=errors(409))
+async def cancel(desk: TheDesk, who: Asker, job: JobId) -> Job:
+    """Its process ends at once."""
+    return await desk.jobs.cancel(who, job)
+
+
+@router.post("/{job}/stop", status_code=202, summary="Stop a job with what it has", responses=errors(409))
+async def stop(desk: TheDesk, who: Asker, job: JobId) -> Job:
+    """Its search ends with the best plan so far, or with the first, and it is soon `done`.
+
+    One that waits for its turn is `cancelled`. Asked once more, it leaves out the reasons for tasks left out.
+    """
+    return await desk.jobs.stop(who, job)
+
+
+@router.websocket("/{job}/stream")
+async def stream(socket: WebSocket, desk: TheDesk, who: Asker, job: JobId) -> None:
+    """Each change of a job as `{"type": "job", ...}`, beginning with how it is, until it is over."""
+    await tell(socket, _changes(desk.jobs, job))
+
+
+async def _changes(jobs: Jobs, job: int) -> AsyncIterator[str]:
+    last = message("job", await jobs.get(job))
+    yield last
+    async for each in jobs.follow(job):
+        text = message("job", each)
+        if text != last:
+            yield text
+        last = text

@@ -1,0 +1,247 @@
+"""Missions: listed, read, made, changed, checked; every change is a new version."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
+from typing import Annotated, Any
+
+from fastapi import APIRouter, File, Header, HTTPException, Query, Request, Response, UploadFile
+from pydantic import Field
+
+from muster.server.api.answers import Responses, a_file, errors, file_answer, with_location
+from muster.server.api.asking import Asker, TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import (
+    LARGEST,
+    Body,
+    FileName,
+    Files,
+    MissionId,
+    Name,
+    Note,
+    OptionalVersion,
+    Text,
+    VersionNumber,
+)
+from muster.server.words import MissionEntry, MissionVersion, NotFoundError
+
+router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
+
+_EXAMPLE = """schema: muster/1
+name: yard
+robots: [{id: r_0, position: [0, 0]}]
+tasks: [{id: gate, position: [4, 3]}]
+"""
+_WITH_ETAG: Responses = {200: {"headers": {"ETag": {"description": "Its version.", "schema": {"type": "string"}}}}}
+_IfMatch = Annotated[
+    str | None, Header(max_length=100, pattern=r'^"[0-9]{1,9}"$', description="The ETag of the version it is based on.")
+]
+_BasedOn = Annotated[int | None, Query(ge=0, le=LARGEST, description="Instead of If-Match.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissionText:
+    """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
+
+    mission: str
+    version: int
+    text: str
+    author: str
+    at: datetime | None
+    note: str
+    files: Mapping[str, int]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checked:
+    """What is wrong with a mission, which tasks can never be done, how much is in it (null where it is none)."""
+
+    errors: list[dict[str, Any]]
+    impossible: list[dict[str, Any]]
+    summary: dict[str, Any] | None = None
+    mission: dict[str, Any] | None = None
+
+
+class NewMission(Body):
+    """A mission to be kept."""
+
+    text: Text = Field(examples=[_EXAMPLE])
+    files: Files = Field(default={}, examples=[{}])
+    name: Name | None = Field(default=None, description="Instead of the mission's own.")
+
+
+class ChangedMission(Body):
+    """A mission's next version."""
+
+    text: Text = Field(examples=[_EXAMPLE])
+    files: Files | None = Field(default=None, description="All files that it names; null: as they are.")
+    base_version: int | None = Field(default=None, ge=0, le=LARGEST, description="Instead of If-Match.")
+    note: Note = ""
+
+
+class MissionToCheck(Body):
+    """A mission to be checked, kept nowhere."""
+
+    text: str = Field(examples=[_EXAMPLE])
+    files: Files = Field(default={}, examples=[{}])
+
+
+@router.get("", summary="List missions")
+async def missions(desk: TheDesk) -> list[MissionEntry]:
+    """Those that ship with Muster, and those that were made here."""
+    return list(await desk.missions.list())
+
+
+@router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
+async def create(desk: TheDesk, who: Asker, response: Response, body: NewMission) -> MissionText:
+    """The mission is checked first: one with errors is not kept. Its id is made of its name."""
+    made = await desk.missions.create(who, body.text, body.files, body.name)
+    return _made(response, made)
+
+
+@router.post("/check", summary="Check a mission")
+async def check(desk: TheDesk, body: MissionToCheck) -> Checked:
+    """What is wrong with it, with lines; and the tasks that nobody can ever do. Nothing is kept."""
+    found = await desk.missions.check(body.text, body.files)
+    return Checked(**found)
+
+
+@router.post(
+    "/upload", status_code=201, summary="Upload a mission", responses=with_location(201, "It is kept.", etag=True)
+)
+async def upload(
+    desk: TheDesk,
+    who: Asker,
+    response: Response,
+    file: Annotated[UploadFile, File(description="YAML, CSV, TSPLIB, or .plan.")],
+) -> MissionText:
+    """A file of any kind that Muster reads: it is turned into a mission file."""
+    made = await desk.missions.upload(who, _base_name(file.filename), await file.read())
+    return _made(response, made)
+
+
+@router.get(
+    "/{mission}",
+    summary="Read a mission",
+    responses=_WITH_ETAG,
+)
+async def mission(
+    desk: TheDesk, mission: MissionId, response: Response, version: OptionalVersion = None
+) -> MissionText:
+    """Its text, and what files it names."""
+    found = await desk.missions.get(mission, version)
+    response.headers["ETag"] = _etag(found)
+    return _text(found)
+
+
+@router.put(
+    "/{mission}",
+    summary="Change a mission",
+    responses=_WITH_ETAG | errors(409, 428),
+)
+async def save(
+    desk: TheDesk, who: Asker, mission: MissionId, response: Response, body: ChangedMission, if_match: _IfMatch = None
+) -> MissionText:
+    """Keep a new version.
+
+    Which version it is based on has to be said, by If-Match or `base_version`: where another has saved since, the
+    answer is 409 and nothing is lost.
+    """
+    base = _base(if_match, body.base_version)
+    saved = await desk.missions.save(who, mission, body.text, base, body.files, body.note)
+    response.headers["ETag"] = _etag(saved)
+    return _text(saved)
+
+
+@router.delete("/{mission}", status_code=204, summary="Delete a mission", responses=errors(409))
+async def delete(desk: TheDesk, who: Asker, mission: MissionId) -> None:
+    """It is not listed any more; its plans and runs stay."""
+    await desk.missions.delete(who, mission)
+
+
+@router.get("/{mission}/versions", summary="List the versions of a mission")
+async def versions(desk: TheDesk, mission: MissionId) -> list[MissionText]:
+    """Newest first, without their files."""
+    return [_text(version) for version in await desk.missions.versions(mission)]
+
+
+@router.get("/{mission}/versions/{number}", summary="Read a version of a mission")
+async def version(desk: TheDesk, mission: MissionId, number: VersionNumber) -> MissionText:
+    """As it was then."""
+    return _text(await desk.missions.get(mission, number))
+
+
+@router.get(
+    "/{mission}/files/{name}",
+    summary="Read a file of a mission",
+    response_class=Response,
+    responses=a_file("application/octet-stream", what="The file."),
+)
+async def file(desk: TheDesk, mission: MissionId, name: FileName, version: OptionalVersion = None) -> Response:
+    """A floor plan, a table: what the mission names."""
+    found = await desk.missions.get(mission, version)
+    if name not in found.files:
+        raise NotFoundError(f"no file {name} in mission {mission}; expected one of {', '.join(found.files) or 'none'}")
+    return file_answer(found.files[name], name, "application/octet-stream")
+
+
+@router.put(
+    "/{mission}/files/{name}",
+    summary="Change a file of a mission",
+    responses=errors(409, 428),
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {"application/octet-stream": {"schema": {"contentMediaType": "application/octet-stream"}}},
+        }
+    },
+)
+async def put_file(
+    desk: TheDesk,
+    who: Asker,
+    mission: MissionId,
+    name: FileName,
+    request: Request,
+    response: Response,
+    if_match: _IfMatch = None,
+    base_version: _BasedOn = None,
+) -> MissionText:
+    """The body is the file. This makes a new version of the mission."""
+    base, data = _base(if_match, base_version), await request.body()
+    found = await desk.missions.get(mission, base)
+    saved = await desk.missions.save(who, mission, found.text, base, {**found.files, name: data}, f"file {name}")
+    response.headers["ETag"] = _etag(saved)
+    return _text(saved)
+
+
+def _base(if_match: str | None, base_version: int | None) -> int:
+    if if_match is not None:
+        return int(if_match.strip('"'))
+    if base_version is None:
+        raise HTTPException(428, "neither If-Match nor base_version; expected the version that it is based on")
+    return base_version
+
+
+def _made(response: Response, made: MissionVersion) -> MissionText:
+    response.headers["Location"] = f"/api/v1/missions/{made.mission}"
+    response.headers["ETag"] = _etag(made)
+    return _text(made)
+
+
+def _text(version: MissionVersion) -> MissionText:
+    """Without the files' bytes."""
+    given = asdict(replace(version, files={}))
+    return MissionText(**given | {"files": {name: len(data) for name, data in version.files.items()}})
+
+
+def _etag(version: MissionVersion) -> str:
+    return f'"{version.version}"'
+
+
+def _base_name(name: str | None) -> str:
+    """The name of an uploaded file without folders and control characters."""
+    plain = re.sub(r"[\x00-\x1f\x7f]", "_", (name or "").replace("\\", "/").rpartition("/")[2])
+    return plain.encode("utf-8", "replace").decode()[-200:] or "mission.yaml"

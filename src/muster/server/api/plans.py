@@ -1,0 +1,153 @@
+"""Plans: asked for, uploaded, judged, explained, exported, drawn."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Response
+from pydantic import Field
+
+from muster.server.api.answers import a_file, errors, file_answer, parcel, with_location
+from muster.server.api.asking import Asker, TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import (
+    LARGEST,
+    Body,
+    Count,
+    MissionId,
+    MissionQuery,
+    Name,
+    PlanId,
+    Seconds,
+    Seed,
+    TaskQuery,
+)
+from muster.server.words import Job, PlanEntry
+
+router = APIRouter(tags=["plans"], route_class=BoundedRoute)
+
+Objective = Literal["total+max", "total", "max", "average", "makespan"]
+Ignorable = Literal["prerequisites", "suitability", "skills", "capacity"]
+ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
+_PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
+_PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
+
+
+class Wanted(Body):
+    """How a mission is to be planned; what is left out is as `muster solve` has it."""
+
+    allocator: Name | None = Field(default=None, examples=["search"])
+    objective: Objective | None = Field(default=None, description="Instead of the mission's own.")
+    time_limit: Seconds | None = Field(default=None, description="Seconds.", examples=[1.0])
+    iterations: Count | None = Field(default=None, description="Stop after so many; then a seed gives one plan.")
+    seed: Seed = 0
+    ignore: list[Ignorable] = Field(default=[], max_length=4, description="Rules that do not hold.")
+    bound: Literal["quick", "exact"] | None = Field(default=None, description="Prove how good the plan is.")
+    start: int | None = Field(default=None, ge=1, le=LARGEST, description="The id of a plan to go on from.")
+    parameters: dict[Name, bool | int | float | Name] = Field(
+        default={}, max_length=50, description="Of the allocator; GET /allocators says which."
+    )
+    version: int | None = Field(default=None, ge=1, le=LARGEST, description="Of the mission; null: the newest.")
+
+
+@router.post(
+    "/missions/{mission}/plans",
+    status_code=202,
+    summary="Plan a mission",
+    responses=with_location(202, "It is under way; the job says how far it is.") | errors(409),
+)
+async def ask(desk: TheDesk, who: Asker, mission: MissionId, response: Response, body: Wanted) -> Job:
+    """Long work: the answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
+    given = body.model_dump(exclude={"version"}, exclude_none=True, exclude_defaults=True)
+    job = await desk.jobs.ask_plan(who, mission, body.version, **given)
+    response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+    return job
+
+
+@router.post(
+    "/missions/{mission}/plans/upload",
+    status_code=201,
+    summary="Upload a plan",
+    responses=with_location(201, "It is kept.") | errors(409),
+)
+async def upload(
+    desk: TheDesk,
+    who: Asker,
+    mission: MissionId,
+    response: Response,
+    plan: Annotated[dict[str, Any], Field(examples=[_PLAN])],
+) -> PlanEntry:
+    """The body is a plan file (`muster-plan/1`), also one of another program."""
+    entry = await desk.plans.upload(who, mission, plan)
+    response.headers["Location"] = f"/api/v1/plans/{entry.id}"
+    return entry
+
+
+@router.get("/plans", summary="List plans")
+async def plans(desk: TheDesk, mission: MissionQuery = None) -> list[PlanEntry]:
+    """Without their routes, histories and books; those of one mission, or of all."""
+    return list(await desk.plans.list(mission))
+
+
+@router.get("/plans/{plan}", summary="Read a plan")
+async def plan(desk: TheDesk, plan: PlanId) -> PlanEntry:
+    """Its `plan` is a plan file."""
+    return await desk.plans.get(plan)
+
+
+@router.get("/plans/{plan}/verdict", summary="Judge a plan")
+async def verdict(desk: TheDesk, plan: PlanId) -> dict[str, Any]:
+    """Whether it is admissible, all figures, who is where when: from scratch, by code that no allocator uses."""
+    return dict(await desk.plans.verdict(plan))
+
+
+@router.get("/plans/{plan}/explain", summary="Say why")
+async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None) -> dict[str, Any]:
+    """Why tasks are left out; of one task, why this robot does it and not another."""
+    return dict(await desk.plans.explain(plan, task))
+
+
+@router.get(
+    "/plans/{plan}/export",
+    summary="Write a plan for other tools",
+    response_class=Response,
+    responses=a_file(
+        "application/octet-stream", "application/zip", what="The file; of qgc a ZIP with a file for each robot."
+    ),
+)
+async def export(
+    desk: TheDesk,
+    plan: PlanId,
+    to: ExportTo,
+    altitude: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: at least so many metres up.")] = None,
+    clearance: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: warn of bodies that near, in m.")] = None,
+    tolerance: Annotated[float | None, Query(ge=0, le=1e3, description="qgc: bends thinned out, in m.")] = None,
+    firmware: Annotated[Literal["px4", "ardupilot"] | None, Query(description="qgc.")] = None,
+) -> Response:
+    """As `muster export` writes it."""
+    options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
+    files = await desk.plans.export(plan, to, {name: value for name, value in options.items() if value is not None})
+    return parcel(files, f"plan-{plan}")
+
+
+@router.get(
+    "/plans/{plan}/picture",
+    summary="Draw a plan",
+    response_class=Response,
+    responses=a_file(*_PICTURES.values(), what="The picture."),
+)
+async def picture(
+    desk: TheDesk,
+    plan: PlanId,
+    what: Annotated[Literal["routes", "gantt"], Query(description="On the map, or in time.")] = "routes",
+    form: Annotated[Literal["png", "svg"], Query(alias="format")] = "svg",
+) -> Response:
+    """Routes on the map, or the time chart."""
+    data = await desk.plans.picture(plan, what, form)
+    return file_answer(data, f"plan-{plan}-{what}.{form}", _PICTURES[form], shown_in_place=True)
+
+
+@router.get("/plans/{plan}/compare/{other}", summary="Compare two plans")
+async def compare(desk: TheDesk, plan: PlanId, other: PlanId) -> dict[str, Any]:
+    """What differs: figures, and who does which task."""
+    return dict(await desk.plans.compare(plan, other))

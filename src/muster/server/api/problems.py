@@ -1,0 +1,137 @@
+"""Every failure as problem JSON: `{"error": one line, "findings": [{file, line, field, value, expected}]}`."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import compile_path
+
+from muster.mission.errors import Finding, MissingExtraError, MusterError
+from muster.mission.kinds import shown
+from muster.server.words import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
+
+MEDIA_TYPE = "application/problem+json"
+RETRY_S = 2
+_STATUS: tuple[tuple[type[MusterError], int], ...] = (
+    (NotFoundError, 404),
+    (ConflictError, 409),
+    (ForbiddenError, 403),
+    (BusyError, 429),
+    (StoreError, 503),
+    (MissingExtraError, 501),
+)
+"""Everything else that Muster says on purpose is about what was sent: 400."""
+_SAID: Mapping[str, str] = {
+    "missing": "this field",
+    "extra_forbidden": "no such field",
+    "model_attributes_type": "a JSON object (Content-Type: application/json)",
+}
+
+log = logging.getLogger("muster.api")
+
+
+class FoundWrong(BaseModel):
+    """One thing that is wrong, and where."""
+
+    file: str
+    line: int | None = Field(description="From 1; null where there are no lines.")
+    field: str
+    value: str
+    expected: str
+
+
+class Problem(BaseModel):
+    """Why it was not done."""
+
+    error: str = Field(description="For a person; one line, or one for each finding.")
+    findings: list[FoundWrong]
+
+
+def problem(
+    status: int, error: str, findings: Sequence[Finding] = (), headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    """The answer that says it."""
+    content = {"error": error, "findings": [finding.as_dict() for finding in findings]}
+    return JSONResponse(content, status, dict(headers or {}), media_type=MEDIA_TYPE)
+
+
+def status_of(error: MusterError) -> int:
+    """Of HTTP."""
+    return next((status for kind, status in _STATUS if isinstance(error, kind)), 400)
+
+
+def problem_of(error: MusterError) -> JSONResponse:
+    """The answer to what Muster raised."""
+    status = status_of(error)
+    headers = {"Retry-After": str(RETRY_S)} if status in (429, 503) else {}
+    return problem(status, str(error), getattr(error, "findings", ()), headers)
+
+
+def add_handlers(app: FastAPI) -> None:
+    """Let every failure of an app answer in this way."""
+    app.add_exception_handler(MusterError, _muster)
+    app.add_exception_handler(HTTPException, _http)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(Exception, _unexpected)
+
+
+async def _muster(_: Request, error: Exception) -> Response:
+    assert isinstance(error, MusterError)
+    return problem_of(error)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    said = error.detail
+    if error.status_code == 404 and said == "Not Found":
+        said = f"{shown(request.url.path)}; expected a path of the API (openapi.json lists them)"
+    elif error.status_code == 405:
+        allowed = ", ".join(_methods(request))
+        return problem(405, f"{shown(request.method)}; expected {allowed}", headers={"Allow": allowed})
+    return problem(error.status_code, said, headers=error.headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """What the path of a request may be asked with: several routes may be of one path."""
+    here = request.scope["path"].removeprefix(request.scope.get("root_path", ""))
+    paths = request.app.openapi()["paths"]
+    matching = [here] if here in paths else [path for path in paths if compile_path(path)[0].match(here)]
+    return sorted({method.upper() for path in matching for method in paths[path]} or {"GET"})
+
+
+async def _invalid(_: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    findings = [_finding(each) for each in error.errors()]
+    return problem(422, "\n".join(map(str, findings)), findings)
+
+
+def _finding(error: Mapping[str, Any]) -> Finding:
+    """What pydantic found, as Muster says it."""
+    where, *field = error["loc"]
+    message = str(error["msg"]).removeprefix("Input should be ")
+    expected = _SAID.get(error["type"], message[:1].lower() + message[1:])
+    value = "missing" if error["type"] == "missing" else _printable(error.get("input"))
+    return Finding(str(where), None, _printable_name(".".join(map(str, field))), value, expected)
+
+
+def _printable(value: object) -> str:
+    if isinstance(value, bytes):
+        value = value[:60].decode("utf-8", "backslashreplace")
+    return _printable_name(shown(value))
+
+
+def _printable_name(text: str) -> str:
+    return text[:200].encode("utf-8", "backslashreplace").decode()
+
+
+async def _unexpected(request: Request, error: Exception) -> Response:
+    log.error("%s %s failed: %s", request.method, request.url.path, type(error).__name__, exc_info=error)
+    return problem(500, f"internal error: {type(error).__name__}; the server's log says more")

@@ -1,0 +1,64 @@
+"""Records: runs that are over, to be looked at, taken away, compared with what was planned."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from fastapi import APIRouter, Response
+
+from muster.server.api.answers import a_file, errors, file_answer, parcel
+from muster.server.api.asking import TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import Limit, RunId
+from muster.server.words import Run
+
+router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
+
+ExportTo = Literal["csv", "geojson", "gpx", "kml", "json"]
+
+
+@router.get("", summary="List records")
+async def records(desk: TheDesk, limit: Limit = 200) -> list[Run]:
+    """Runs that are over, newest first."""
+    return list(await desk.records.list(limit))
+
+
+@router.get(
+    "/{run}/page.html",
+    summary="Replay a record",
+    response_class=Response,
+    responses=a_file("text/html", what="A page that needs nothing but itself.") | errors(409),
+)
+async def page(desk: TheDesk, run: RunId) -> Response:
+    """The page that `muster replay --html` writes."""
+    html = await desk.records.page(run)
+    return file_answer(html.encode(), f"run-{run}.html", "text/html; charset=utf-8", shown_in_place=True)
+
+
+@router.get(
+    "/{run}/record.mcap",
+    summary="Take a record away",
+    response_class=Response,
+    responses=a_file("application/octet-stream", what="An MCAP file, for `muster replay` and Foxglove.") | errors(409),
+)
+async def mcap(desk: TheDesk, run: RunId) -> Response:
+    """What happened, as docs/records.md describes it."""
+    return file_answer(await desk.records.mcap(run), f"run-{run}.mcap", "application/octet-stream")
+
+
+@router.get("/{run}/flown", summary="Compare what was planned and flown", responses=errors(409))
+async def flown(desk: TheDesk, run: RunId) -> dict[str, Any]:
+    """Of the whole, of each robot, of each task."""
+    return dict(await desk.records.flown(run))
+
+
+@router.get(
+    "/{run}/export",
+    summary="Write a record for other tools",
+    response_class=Response,
+    responses=a_file("application/octet-stream", "application/zip", what="The file, or a ZIP of several.")
+    | errors(409),
+)
+async def export(desk: TheDesk, run: RunId, to: ExportTo) -> Response:
+    """Tracks and events for spreadsheets and maps."""
+    return parcel(await desk.records.export(run, to), f"run-{run}")

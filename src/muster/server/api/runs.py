@@ -1,0 +1,114 @@
+"""Runs: plans that are carried out; started, watched, and acted upon."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Response, WebSocket
+from pydantic import Field
+
+from muster.mission.errors import ParameterError
+from muster.server.api.answers import errors, with_location
+from muster.server.api.asking import Asker, TheDesk
+from muster.server.api.bodies import BoundedRoute
+from muster.server.api.checked import LARGEST, After, Body, Limit, Name, RunId
+from muster.server.api.sockets import message, tell
+from muster.server.desk.runs import Runs
+from muster.server.runs.lines import line_of
+from muster.server.words import OVER, Action, ConflictError, Entry, Run, World
+
+router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
+
+_NO_SETTINGS = frozenset({"self", "who", "plan", "world", "speed"})
+Speed = Annotated[float, Field(gt=0, le=1e6)]
+
+
+class NewRun(Body):
+    """A plan to be carried out."""
+
+    plan: int = Field(ge=1, le=LARGEST, description="Its id.", examples=[1])
+    world: World = "kinematic"
+    speed: Speed | None = Field(default=1.0, description="Times real time; null: as fast as it goes.")
+    settings: dict[Name, Any] = Field(
+        default={}, max_length=50, description="`seed`, `dt_s`, `avoidance`, `noise`; of a bridge what it needs."
+    )
+
+
+class Wish(Body):
+    """What is to be done to a run."""
+
+    verb: Literal["pause", "resume", "speed", "cancel", "event"]
+    data: dict[Name, Any] = Field(
+        default={},
+        max_length=50,
+        description='Of speed `{"speed": 2.0}`; of event one of a mission file without `at_s`.',
+        examples=[{"robot_fails": "r_0"}],
+    )
+
+
+@router.post("", status_code=201, summary="Start a run", responses=with_location(201, "It has begun.") | errors(409))
+async def start(desk: TheDesk, who: Asker, response: Response, body: NewRun) -> Run:
+    """A process of its own carries the plan out, and goes on after a crash of the server."""
+    if taken := sorted(body.settings.keys() & _NO_SETTINGS):
+        raise ParameterError(f"settings: {taken[0]}; expected it beside settings, if at all")
+    run = await desk.runs.start(who, body.plan, world=body.world, speed=body.speed, **body.settings)
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return run
+
+
+@router.get("", summary="List runs")
+async def runs(desk: TheDesk, limit: Limit = 200) -> list[Run]:
+    """Newest first."""
+    return list(await desk.runs.list(limit))
+
+
+@router.get("/{run}", summary="See how a run is")
+async def run(desk: TheDesk, run: RunId) -> Run:
+    """Its state, and its report when it is over."""
+    return await desk.runs.get(run)
+
+
+@router.post("/{run}/actions", status_code=202, summary="Act upon a run", responses=errors(409))
+async def act(desk: TheDesk, who: Asker, run: RunId, body: Wish) -> Action:
+    """Pause, go on, change the speed, cancel; or let an event happen: a new task, a robot that fails or is recalled.
+
+    Its `outcome` is told by the stream, and by GET /actions.
+    """
+    return await desk.runs.act(who, run, body.verb, body.data)
+
+
+@router.get("/{run}/events", summary="Read the log of a run")
+async def events(desk: TheDesk, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
+    """In order; ask again with `after` the last `seq` for more."""
+    return list(await desk.runs.entries(run, after, limit))
+
+
+@router.get("/{run}/report", summary="Read the report of a run", responses=errors(409))
+async def report(desk: TheDesk, run: RunId) -> dict[str, Any]:
+    """What it took: as `muster simulate --format json` prints it; 409 as long as it goes on."""
+    found = await desk.runs.get(run)
+    if found.report is None:
+        why = "has no report" if found.state in OVER else f"is {found.state}"
+        raise ConflictError(f"run {run} {why}; expected one that has ended")
+    return dict(found.report)
+
+
+@router.websocket("/{run}/stream")
+async def stream(
+    socket: WebSocket, desk: TheDesk, who: Asker, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
+) -> None:
+    """What happens, as it happens: docs/mission-control-api.md describes the messages."""
+    feed = desk.runs.feed(run)
+    await tell(socket, _past(desk.runs, run, after) if feed is None else feed.watch(after))
+
+
+async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
+    """What a run that goes on no more has to tell: its log, and how it ended."""
+    found = await runs.get(run)
+    yield message("hello", {"run": found, "mission": None, "seq": after})
+    for entry in await runs.entries(run, after):
+        told = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
+        yield message("entry", {**told, "line": line_of(entry.kind, entry.data)})
+    ended = {"state": found.state, "speed": found.speed, "time_s": found.time_s, "remark": found.remark}
+    yield message("run", ended)

@@ -1,0 +1,73 @@
+"""`/healthz`: whether the database answers and work goes on; for load balancers, containers and people.
+
+Whoever is not known is told `ok` or `not ok` only; reasons name files and hosts.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from muster.server.desk.desk import Desk
+from muster.server.security.asking import who_of
+from muster.server.store.store import Store
+from muster.server.words import StoreError
+
+_PATIENCE_S = 2.0
+"""Less than who asks waits: a container's check ends after 5 s."""
+_HOLDS_S = 1.0  # so that nobody can keep the database busy with this
+
+
+def health_route(desk_of: Callable[[], Desk | None], warning: Callable[[], str] = str) -> Route:
+    """200 or 503; a `warning` is told with either, to those who are known."""
+    checked_at, found = float("-inf"), ["not checked yet"]
+    check = _Check()
+    turn = asyncio.Lock()
+
+    async def healthz(request: Request) -> Response:
+        nonlocal checked_at, found
+        async with turn:
+            if time.monotonic() > checked_at + _HOLDS_S:
+                found = await _reasons(desk_of(), check)
+                checked_at = time.monotonic()
+        content: dict[str, object] = {"status": "not ok" if found else "ok"}
+        if found and who_of(request).name:
+            content["reasons"] = found
+        said = warning()
+        if said and who_of(request).name:
+            content["warning"] = said
+        return JSONResponse(content, 503 if found else 200)
+
+    return Route("/healthz", healthz, methods=["GET"], include_in_schema=False)
+
+
+class _Check:
+    """Of the database, one at a time: one that takes long is not joined by others in the threads that wait for it."""
+
+    _under_way: asyncio.Task[None] | None = None
+
+    async def why_not(self, store: Store) -> str:
+        """What is wrong with the database, the empty text: nothing."""
+        if self._under_way is None:
+            self._under_way = asyncio.create_task(asyncio.to_thread(store.check))
+        done, _ = await asyncio.wait({self._under_way}, timeout=_PATIENCE_S)
+        if not done:
+            return f"database: no answer within {_PATIENCE_S:g} s"
+        check, self._under_way = self._under_way, None
+        try:
+            check.result()
+        except StoreError as error:
+            return f"database: {error}"
+        return ""
+
+
+async def _reasons(desk: Desk | None, check: _Check) -> list[str]:
+    """Why it is not well; empty: it is."""
+    if desk is None:
+        return ["starting or ending"]
+    return [why for why in (await check.why_not(desk.store), *desk.runs.troubles) if why]

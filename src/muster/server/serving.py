@@ -1,0 +1,203 @@
+"""The HTTP server: its socket, its patience, its end."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import signal
+import socket
+import ssl
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.interrupts import TO_END
+from muster.server.settings import Settings
+
+_HEADERS_S = 20.0
+_HEADERS_BYTES = 64 * 1024
+_ENDING_S = 3
+_CONNECTIONS = 4000
+_MESSAGE_BYTES = 4 * 2**20
+
+
+class PatientProtocol(HttpToolsProtocol):
+    """HTTP of which the headers must come within a while, and be few: nobody keeps connections or memory busy so."""
+
+    _late: asyncio.TimerHandle | None = None
+    _unread = 0
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        self._await_headers()
+
+    def on_message_begin(self) -> None:
+        super().on_message_begin()
+        self._await_headers()
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        if self._late is not None:  # the headers are not whole yet
+            self._unread += len(data)
+            if self._unread > _HEADERS_BYTES:
+                self.transport.abort()
+
+    def on_headers_complete(self) -> None:
+        self._stop_waiting()
+        super().on_headers_complete()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._stop_waiting()
+        super().connection_lost(exc)
+
+    def _await_headers(self) -> None:
+        self._stop_waiting()
+        self._unread = 0
+        self._late = self.loop.call_later(_HEADERS_S, self.transport.abort)
+
+    def _stop_waiting(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
+
+
+class _Server(uvicorn.Server):
+    """Its signals are taken before the application starts."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+def listening(host: str, port: int) -> socket.socket:
+    """A socket that listens; taken before anything else is done, as it may fail.
+
+    Raises
+    ------
+    NetworkError
+        if the port is taken, or not for everybody, or the host is not of this machine.
+    """
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+    except OSError as error:
+        raise NetworkError(f"--host {host}: {error.strerror}; expected a name or address of this machine") from None
+    found = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        found.bind(address)
+        found.listen(1024)
+    except OSError as error:
+        found.close()
+        raise NetworkError(f"{host} port {port}: {error.strerror}; expected {_instead(error)}") from None
+    return found
+
+
+def _instead(error: OSError) -> str:
+    if error.errno == errno.EADDRINUSE:
+        return "a free one (--port; 0: any)"
+    if error.errno == errno.EACCES:
+        return "one from 1024 on (--port), or a reverse proxy on this one"
+    return "an address of this machine (--host)"
+
+
+def require_certificate(certificate: Path, key: Path) -> None:
+    """Find out before anything else that TLS cannot be had of two files.
+
+    Raises
+    ------
+    ParameterError, OSError
+        if one of them cannot be read, or is not what it should be.
+    """
+    for file in (certificate, key):
+        with file.open("rb"):
+            pass
+
+    def ask() -> str:
+        raise ParameterError(
+            f"--tls-key {key}: the key has a pass phrase; expected one without (openssl pkey -in {key} -out FILE)"
+        )
+
+    try:
+        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(certificate, key, ask)
+    except ssl.SSLError as error:
+        why = error.reason or "no certificate and key"
+        raise ParameterError(
+            f"--tls-cert {certificate} --tls-key {key}: {why}; expected PEM files that belong together"
+        ) from None
+
+
+def serve(app: FastAPI, settings: Settings, at: socket.socket, on_ready: Callable[[], Awaitable[None]]) -> None:
+    """Serve until SIGTERM, SIGHUP or Ctrl-C, none of which is a failure.
+
+    Parameters
+    ----------
+    on_ready
+        is called when the first page can be asked for; the server ends where it raises.
+
+    Raises
+    ------
+    MusterError
+        if the application does not start, or another server takes its database.
+    """
+    config = uvicorn.Config(
+        app,
+        lifespan="off",  # it is entered here, so that a database that refuses is an exception, not a log
+        http=PatientProtocol,
+        ws="websockets-sansio",
+        ws_max_size=_MESSAGE_BYTES,
+        ws_per_message_deflate=False,
+        log_config=None,
+        access_log=False,  # the guard's own says who asked, too
+        proxy_headers=False,  # the guard believes the proxies that it was told of
+        server_header=False,
+        limit_concurrency=_CONNECTIONS,
+        timeout_graceful_shutdown=_ENDING_S,
+        ssl_certfile=settings.certificate,
+        ssl_keyfile=settings.key,
+    )
+    with asyncio.Runner(loop_factory=config.get_loop_factory()) as runner:
+        runner.run(_serve(app, config, at, on_ready))
+
+
+@contextlib.asynccontextmanager
+async def _ended_by_signals(server: uvicorn.Server) -> AsyncIterator[None]:
+    """Meanwhile signals to end are the server's, and afterwards what they were."""
+    loop = asyncio.get_running_loop()
+    before = {each: signal.getsignal(each) for each in TO_END}
+    for each in TO_END:
+        loop.add_signal_handler(each, server.handle_exit, each, None)
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            loop.remove_signal_handler(each)
+            signal.signal(each, handler)
+
+
+async def _serve(
+    app: FastAPI, config: uvicorn.Config, at: socket.socket, on_ready: Callable[[], Awaitable[None]]
+) -> None:
+    config.load()
+    server = _Server(config)
+    async with _ended_by_signals(server), app.router.lifespan_context(app):
+        serving = asyncio.create_task(server.serve(sockets=[at]))
+        taken = app.state.desk.taken
+        try:
+            while not server.started and not serving.done():
+                await asyncio.sleep(0.005)
+            if server.started:
+                await on_ready()
+            await asyncio.wait({serving, taken}, return_when=asyncio.FIRST_COMPLETED)
+            if taken.done():
+                taken.result()
+        except BaseException:
+            server.should_exit = True
+            raise
+        finally:
+            await serving

@@ -1,0 +1,185 @@
+"""What every route answers, with the real desk."""
+
+import io
+import re
+import zipfile
+from base64 import b64encode
+
+import pytest
+from tests.cli.yard import MISSION
+from tests.server.serving import plan_of
+
+ON_EARTH = MISSION.replace("name: yard", "name: on earth\norigin_wgs84: {lat_deg: 47.0, lon_deg: 8.0}")
+TRAVEL = ",look,open\n"
+
+
+def test_missions_are_listed_made_changed_and_deleted(http):
+    made = http.post("/missions", json={"text": MISSION, "name": "short lived"})
+    assert made.status_code == 201
+    where = made.headers["location"].removeprefix("/api/v1")
+    assert made.headers["etag"] == '"1"'
+    assert http.get(where).json()["text"] == MISSION
+    changed = http.put(where, json={"text": MISSION + "# more\n", "base_version": 1, "note": "a comment"})
+    assert (changed.status_code, changed.json()["version"], changed.headers["etag"]) == (200, 2, '"2"')
+    assert http.get(f"{where}/versions/1").json()["text"] == MISSION
+    assert [version["version"] for version in http.get(f"{where}/versions").json()] == [2, 1]
+    assert made.json()["mission"] in [entry["id"] for entry in http.get("/missions").json()]
+    assert http.delete(where).status_code == 204
+    assert made.json()["mission"] not in [entry["id"] for entry in http.get("/missions").json()]
+
+
+def test_who_saves_onto_a_changed_mission_is_told(http):
+    made = http.post("/missions", json={"text": MISSION, "name": "contended"}).json()
+    where = f"/missions/{made['mission']}"
+    first = http.put(where, json={"text": MISSION + "# a\n"}, headers={"if-match": '"1"'})
+    second = http.put(where, json={"text": MISSION + "# b\n"}, headers={"if-match": '"1"'})
+    assert (first.status_code, second.status_code) == (200, 409)
+    assert http.put(where, json={"text": MISSION}).status_code == 428
+    assert http.get(where).json()["text"] == MISSION + "# a\n"
+
+
+def test_files_of_a_mission(http):
+    made = http.post("/missions", json={"text": MISSION, "name": "filed", "files": {"a.csv": b64encode(b"1").decode()}})
+    where = f"/missions/{made.json()['mission']}"
+    assert made.json()["files"] == {"a.csv": 1}
+    put = http.put(f"{where}/files/b.bin", content=b"\x00\xff", headers={"if-match": '"1"'})
+    assert put.json()["files"] == {"a.csv": 1, "b.bin": 2}
+    got = http.get(f"{where}/files/b.bin")
+    assert got.content == b"\x00\xff"
+    assert got.headers["content-disposition"].startswith('attachment; filename="b.bin"')
+    assert got.headers["x-content-type-options"] == "nosniff"
+    assert http.get(f"{where}/files/none").status_code == 404
+
+
+def test_a_mission_is_checked_with_lines(http):
+    found = http.post("/missions/check", json={"text": MISSION.replace("[4, 0]", "[4, far]")}).json()
+    assert [(error["line"], error["value"]) for error in found["errors"]] == [(10, '"far"')]
+    found = http.post("/missions/check", json={"text": MISSION}).json()
+    assert (found["errors"], [item["task"] for item in found["impossible"]]) == ([], ["lift"])
+    assert found["summary"] == {"name": "yard", "robots": 2, "tasks": 4, "dimensions": 2}
+
+
+def test_a_mission_is_uploaded(http):
+    made = http.post("/missions/upload", files={"file": ("folder/some yard.yaml", MISSION.encode())})
+    assert (made.status_code, made.json()["text"]) == (201, MISSION)
+
+
+def test_a_plan_is_made_judged_explained_and_drawn(http, yard, plan):
+    entry = http.get(f"/plans/{plan}").json()
+    assert entry["plan"]["schema"] == "muster-plan/1"
+    assert plan in [listed["id"] for listed in http.get("/plans", params={"mission": yard}).json()]
+    verdict = http.get(f"/plans/{plan}/verdict").json()
+    assert (verdict["valid"], verdict["tasks_completed"]) == (True, 3)
+    assert [item["task"] for item in http.get(f"/plans/{plan}/explain").json()["unassigned"]] == ["lift"]
+    assert http.get(f"/plans/{plan}/explain", params={"task": "look"}).json()["robot"] == "r_0"
+    drawn = http.get(f"/plans/{plan}/picture", params={"what": "gantt", "format": "png"})
+    assert (drawn.headers["content-type"], drawn.content[:4]) == ("image/png", b"\x89PNG")
+    assert http.get(f"/plans/{plan}/compare/{plan}").status_code == 200
+
+
+def test_a_plan_is_written_for_other_tools(http):
+    mission = http.post("/missions", json={"text": ON_EARTH}).json()["mission"]
+    number = plan_of(http, mission)
+    one = http.get(f"/plans/{number}/export", params={"to": "gpx"})
+    assert b"<gpx" in one.content
+    assert one.headers["content-disposition"].startswith("attachment")
+    several = http.get(f"/plans/{number}/export", params={"to": "qgc"})
+    with zipfile.ZipFile(io.BytesIO(several.content)) as archive:
+        assert {"r_0.plan", "r_1.plan"} <= set(archive.namelist())
+
+
+def test_a_plan_from_elsewhere(http, yard):
+    given = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["open"]}]}
+    made = http.post(f"/missions/{yard}/plans/upload", json=given)
+    assert (made.status_code, made.json()["origin"]) == (201, "uploaded")
+    assert http.get(made.headers["location"].removeprefix("/api/v1")).json()["plan"]["routes"][0]["tasks"] == ["open"]
+
+
+def test_a_job_is_stopped_with_its_plan(http, yard):
+    job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()["id"]
+    while http.get(f"/jobs/{job}").json()["state"] == "queued":
+        pass
+    assert http.post(f"/jobs/{job}/stop").status_code == 202
+    while (seen := http.get(f"/jobs/{job}").json())["state"] == "running":
+        pass
+    assert seen["state"] == "done"
+    assert http.get(f"/plans/{seen['result']['plan']}").status_code == 200
+    assert http.post(f"/jobs/{job}/stop").status_code == 409
+
+
+def test_a_job_is_followed_and_cancelled(http, yard):
+    job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()
+    assert job["state"] in ("queued", "running")
+    assert job["id"] in [listed["id"] for listed in http.get("/jobs").json()]
+    assert http.delete(f"/jobs/{job['id']}").json()["state"] == "cancelled"
+    assert http.delete(f"/jobs/{job['id']}").status_code == 409
+    assert [listed["id"] for listed in http.get("/jobs", params={"state": "running"}).json()] == []
+
+
+@pytest.fixture(scope="module")
+def run(http, plan):
+    """The id of a run that is over."""
+    begun = http.post("/runs", json={"plan": plan, "speed": None, "settings": {"seed": 1}})
+    assert begun.status_code == 201, begun.text
+    where = begun.headers["location"].removeprefix("/api/v1")
+    while http.get(where).json()["state"] in ("starting", "running"):
+        pass
+    assert http.get(where).json()["state"] == "ended"
+    return begun.json()["id"]
+
+
+def test_a_run_has_a_log_and_a_report(http, run):
+    entries = http.get(f"/runs/{run}/events").json()
+    assert [entry["seq"] for entry in entries] == list(range(1, len(entries) + 1))
+    assert http.get(f"/runs/{run}/events", params={"after": 3, "limit": 2}).json() == entries[3:5]
+    report = http.get(f"/runs/{run}/report").json()
+    assert sorted(report["tasks_done"]) == ["enter", "look", "open"]
+    assert [lost["task"] for lost in report["tasks_lost"]] == ["lift"]
+    assert run in [listed["id"] for listed in http.get("/runs").json()]
+
+
+def test_a_run_is_acted_upon(http, plan):
+    run = http.post("/runs", json={"plan": plan, "speed": 1.0}).json()["id"]
+    assert http.get(f"/runs/{run}/report").status_code == 409
+    for wish in ({"verb": "speed", "data": {"speed": 2.0}}, {"verb": "event", "data": {"robot_fails": "r_1"}}):
+        asked = http.post(f"/runs/{run}/actions", json=wish)
+        assert (asked.status_code, asked.json()["verb"]) == (202, f"run.{wish['verb']}")
+    assert http.post(f"/runs/{run}/actions", json={"verb": "cancel"}).status_code == 202
+    while http.get(f"/runs/{run}").json()["state"] != "cancelled":
+        pass
+    assert http.post(f"/runs/{run}/actions", json={"verb": "pause"}).status_code == 409
+    verbs = [action["verb"] for action in http.get("/actions", params={"run": run}).json()]
+    assert {"run.start", "run.speed", "run.event", "run.cancel"} <= set(verbs)
+
+
+def test_settings_of_a_run_name_no_parameters(http, plan):
+    refused = http.post("/runs", json={"plan": plan, "settings": {"who": "me"}})
+    assert (refused.status_code, refused.json()["error"][:13]) == (400, "settings: who")
+
+
+def test_a_record_is_looked_at_and_taken_away(http, run):
+    assert run in [listed["id"] for listed in http.get("/records").json()]
+    page = http.get(f"/records/{run}/page.html")
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    assert "sandbox" in page.headers["content-security-policy"]
+    assert b"yard" in page.content
+    assert http.get(f"/records/{run}/record.mcap").content.startswith(b"\x89MCAP")
+    assert http.get(f"/records/{run}/flown").status_code == 200
+    assert http.get(f"/records/{run}/export", params={"to": "csv"}).content
+
+
+def test_what_the_server_is(http):
+    about = http.get("/about").json()
+    assert (about["api"], about["worlds"]) == (1, ["kinematic", "physics"])
+    assert http.get("/me").json() == {"name": "local", "role": "command", "address": "127.0.0.1"}
+    assert "search" in [allocator["name"] for allocator in http.get("/allocators").json()]
+
+
+def test_the_description_lists_every_route_and_needs_nothing_from_elsewhere(http):
+    described = http.get("/openapi.json").json()
+    assert described["openapi"].startswith("3.1")
+    operations = [told for methods in described["paths"].values() for told in methods.values()]
+    assert all(told["summary"] and told["description"] and told["tags"] for told in operations)
+    page = http.get("/docs").text
+    assert all(path in page for path in described["paths"])
+    assert not re.findall(r"""(?:src|href)=["']?(?:https?:)?//""", page)

@@ -1,0 +1,45 @@
+"""A real server in a thread of the test's process: on loopback, with a database of its own."""
+
+import asyncio
+import threading
+from contextlib import contextmanager
+
+import uvicorn
+
+from muster.server.app import make_app
+from muster.server.serving import listening
+from muster.server.settings import Settings
+
+
+@contextmanager
+def served(folder, **others):
+    """Its URL; `folder` holds its database, `others` are Settings."""
+    database = f"sqlite:///{folder / 'muster.db'}"
+    given = {"workers": 1, "requests_per_s": 1e6, "port": 0, "database": database}
+    settings = Settings(**given | others)
+    app = make_app(settings)
+    socket = listening("127.0.0.1", 0)
+    config = uvicorn.Config(app, log_config=None, lifespan="on", timeout_graceful_shutdown=3, ws="websockets-sansio")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=asyncio.run, args=(server.serve(sockets=[socket]),))
+    thread.start()
+    try:
+        while not server.started:
+            assert thread.is_alive(), "the server did not start"
+            thread.join(0.01)
+        yield f"http://127.0.0.1:{socket.getsockname()[1]}"
+    finally:
+        server.should_exit = True
+        thread.join()
+        socket.close()
+
+
+def plan_of(http, mission, **how):
+    """Have a mission planned; the id of the plan."""
+    job = http.post(f"/missions/{mission}/plans", json={"iterations": 20, **how})
+    assert job.status_code == 202, job.text
+    where = job.headers["location"].removeprefix("/api/v1")
+    while (seen := http.get(where).json())["state"] in ("queued", "running"):
+        pass
+    assert seen["state"] == "done", seen["error"]
+    return seen["result"]["plan"]
