@@ -1,8 +1,8 @@
 #!/bin/sh
 # Looks for what tests need of the system besides what building needs, and as root on Debian installs what is absent:
 # a browser, in which the page of a record is opened (MUSTER_BROWSER names one that is elsewhere), a library that
-# draws without a screen, for pictures of the physics world, and ROS 1: its master, for the bridge to it, and `rosbag`,
-# which reads bags that Muster has written.
+# draws without a screen, for pictures of the physics world, ROS 1: its master, for the bridge to it, and `rosbag`,
+# which reads bags that Muster has written, and PostgreSQL, of which the tests start a server of their own.
 set -u
 python=${PYTHON:-python3}
 packages=""
@@ -21,6 +21,13 @@ draws || packages="$packages libegl1 libegl-mesa0"
 command -v rosmaster >/dev/null ||
     packages="$packages python3-rosmaster python3-rospy python3-nav-msgs python3-std-srvs python3-tf2-msgs"
 command -v rosbag >/dev/null || packages="$packages python3-rosbag"
+has_postgresql() { # whose programs Debian keeps off the path
+    for program in "$(command -v initdb)" /usr/lib/postgresql/*/bin/initdb; do
+        [ -x "$program" ] && return 0
+    done
+    return 1
+}
+has_postgresql || packages="$packages postgresql"
 [ -z "$packages" ] && exit 0
 if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
     echo "Installing for the tests:$packages ..."

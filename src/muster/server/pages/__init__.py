@@ -1,0 +1,74 @@
+"""The web page of mission control: views of what the desk can do, by NiceGUI. Nothing of it comes from elsewhere.
+
+| part | what it does |
+|---|---|
+| `frame` | what every view has: header, navigation, keyboard help, theme |
+| `asking` | who looks at a page, and at which desk |
+| `sockets` | whose page it is: nobody presses the buttons of another's |
+| `notices` | errors of the desk, and news, for a person |
+| `map` | the map, an element with its own scripts |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fastapi import FastAPI
+from starlette.requests import HTTPConnection
+
+from muster.mission.errors import MissingExtraError
+from muster.server.pages.asking import Asked, WithDesk
+from muster.server.pages.sockets import OwnUploads, guard_sockets
+from muster.server.words import Who
+
+if TYPE_CHECKING:
+    from muster.server.desk.desk import Desk
+
+_VIEWS = ("missions", "plan", "live", "records")
+_ICON = Path(__file__).parent / "assets" / "icon.svg"
+
+
+def mount(app: FastAPI, desk: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] | None = None) -> None:
+    """Put the pages under `app`, after its other routes.
+
+    Parameters
+    ----------
+    desk
+        gives the desk, when the application has started.
+    who_of
+        says who asks; without it `security.who_of`.
+
+    Raises
+    ------
+    MissingExtraError
+        without the extra `web`.
+    """
+    try:
+        from nicegui import app as pages
+        from nicegui import ui
+    except ModuleNotFoundError:
+        raise MissingExtraError("web", "mission control") from None
+    if who_of is None:
+        who_of = import_module("muster.server.security").who_of
+        assert who_of is not None
+    for view in _VIEWS:
+        if find_spec(f"{__name__}.{view}"):
+            import_module(f"{__name__}.{view}")
+    pages.middleware_stack = None  # so that a second server in one process (a test) may add its own
+    guard_sockets()
+    app.add_middleware(OwnUploads)
+    app.add_middleware(WithDesk, asked=Asked(desk, who_of))
+    ui.run_with(
+        app,
+        title="Muster",
+        favicon=_ICON,
+        dark=None,
+        tailwind=False,
+        reconnect_timeout=20.0,
+        binding_refresh_interval=None,
+        show_welcome_message=False,
+    )

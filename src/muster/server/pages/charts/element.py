@@ -1,0 +1,37 @@
+"""Charts as elements of NiceGUI; their data are plain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from nicegui.element import Element
+
+
+class Curve(Element, component="curve.js"):
+    """The objective of the best plan so far, over time, and its lower bound."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.props["history"] = []
+        self.props["bound"] = None
+        self.props["until"] = 0.0
+
+    def show(self, history: Sequence[Sequence[float]], bound: float | None, until: float) -> None:
+        """Show [seconds, objective] of each improvement, the bound if there is one, up to a time in seconds."""
+        self.props["history"] = [list(point) for point in history]
+        self.props["bound"] = bound
+        self.props["until"] = until
+
+
+class Gantt(Element, component="gantt.js"):
+    """What each robot does when: travel, waiting, work. Emits `choose` with a task's id."""
+
+    def __init__(self, rows: Sequence[Mapping[str, Any]] = ()) -> None:
+        """Show rows `{robot, visits: [{task, arrives_s, starts_s, ends_s}], leaves_s, back_s}`, in mission order."""
+        super().__init__()
+        self.props["rows"] = [dict(row) for row in rows]
+
+    def show(self, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Show other rows."""
+        self.props["rows"] = [dict(row) for row in rows]

@@ -1,0 +1,151 @@
+"""A mission that is being edited on one page: its text with undo, the version behind it, what is wrong with it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from time import monotonic
+from typing import Any
+
+from muster.server.pages.editing.history import History
+from muster.server.words import MissionVersion, Who
+
+_QUIET_S = 0.35  # without a change, before a text is checked
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data or None."""
+
+    errors: Sequence[Mapping[str, Any]] = ()
+    impossible: Sequence[Mapping[str, Any]] = ()
+    mission: Mapping[str, Any] | None = None
+
+
+@dataclass
+class Draft:
+    """The text that a page shows, and what was saved of it.
+
+    Parameters
+    ----------
+    missions
+        the desk's missions.
+    base
+        the version that the text came from.
+    on_change, on_check
+        called when there is another text (with what made it: `typed`, `edit`, `undo`, `load`, `save`), and when one was
+        checked.
+    """
+
+    missions: Any
+    base: MissionVersion
+    on_change: list[Callable[[str], None]] = field(default_factory=list)
+    on_check: list[Callable[[], None]] = field(default_factory=list)
+    checked: Checked = field(default_factory=Checked)
+    _history: History = field(init=False)
+    _changed_at: float | None = None
+    _checking: bool = False
+    _editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+    def __post_init__(self) -> None:
+        self._history = History(self.base.text)
+        self._changed_at = -_QUIET_S
+
+    @property
+    def id(self) -> str:
+        """The mission's id."""
+        return self.base.mission
+
+    @property
+    def text(self) -> str:
+        """The text as it is now."""
+        return self._history.text
+
+    @property
+    def is_saved(self) -> bool:
+        """Whether the text is that of the version."""
+        return self.text == self.base.text
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether what is known of the text is of the text as it is now."""
+        return self._changed_at is None and not self._checking
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a step to undo."""
+        return self._history.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is an undone step."""
+        return self._history.can_redo
+
+    def typed(self, text: str) -> None:
+        """Take what somebody typed into the text."""
+        self._take(text, "typed")
+
+    async def edit(self, change: str, *arguments: object) -> None:
+        """Take what a change makes of the text; raises what the desk's `edit` raises, and is then as before."""
+        async with self._editing:  # one after the other, as each begins with what the last one made
+            before, made = None, ""
+            while before != self.text:  # again, if somebody typed meanwhile
+                before = self.text
+                made = await self.missions.edit(before, change, *arguments)
+            self._take(made, "edit")
+
+    async def look(self, *keys: str) -> Mapping[str, Any]:
+        """What stands at some keys of the text; raises what the desk's `look` raises."""
+        found: Mapping[str, Any] = await self.missions.look(self.text, *keys)
+        return found
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        if self.can_undo:
+            self._history.undo()
+            self._tell("undo")
+
+    def redo(self) -> None:
+        """Do the step again that was undone."""
+        if self.can_redo:
+            self._history.redo()
+            self._tell("undo")
+
+    def load(self, version: MissionVersion, text: str | None = None) -> None:
+        """Go on from another version; with a `text`, that is kept as changes to it."""
+        self.base = version
+        self._history.change(version.text if text is None else text)
+        self._tell("load")
+
+    async def save(self, who: Who, note: str = "") -> None:
+        """Save the text as a version; raises ConflictError where another one has been saved since."""
+        if not self.is_saved:
+            self.base = await self.missions.save(who, self.id, self.text, self.base.version, note=note)
+            self._tell("save")
+
+    async def tick(self) -> None:
+        """Check the text when nobody has changed it for a moment; called again and again."""
+        if self._changed_at is None or self._checking or monotonic() - self._changed_at < _QUIET_S:
+            return
+        self._changed_at = None
+        self._checking = True
+        try:
+            found = await self.missions.check(self.text, dict(self.base.files))
+        finally:
+            self._checking = False
+        known = found.get("mission") or self.checked.mission
+        self.checked = Checked(found["errors"], found["impossible"], known)
+        for listener in self.on_check:
+            listener()
+
+    def _take(self, text: str, kind: str) -> None:
+        if text != self.text:
+            self._history.change(text, kind if kind == "typed" else "", monotonic())
+            self._tell(kind)
+
+    def _tell(self, kind: str) -> None:
+        if kind != "save":
+            self._changed_at = monotonic() if kind == "typed" else monotonic() - _QUIET_S
+        for listener in self.on_change:
+            listener(kind)

@@ -1,0 +1,101 @@
+"""The pages `/live` and `/live/{run}`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+
+from muster.server.pages.asking import on_the_wall, the_asker, the_desk
+from muster.server.pages.frame import frame
+from muster.server.pages.live.element import RunView
+from muster.server.pages.notices import told, words_of
+from muster.server.pages.plan.ground import TILES, floor_plan
+from muster.server.pages.tables import table
+from muster.server.words import OVER, NotFoundError, Run
+
+KEYS = {
+    "space": "pause, go on",
+    "+ and -": "faster, slower (with the map in focus: nearer, farther)",
+    "1 to 9": "choose a robot",
+    "up, down": "choose the robot before, after (with the map in focus: move it)",
+    "n": "add a task by a click on the map",
+    ". and ,": "with the map in focus: the next robot or task, the one before",
+    "v": "seen in space, and from above",
+    "Ctrl+Z": "take the last command back",
+    "Escape": "choose nothing, leave it",
+}
+_HEADS = ("run", "mission", "state", "clock", "speed", "world", "started by", "at")
+_REFRESH_S = 2.0
+_ENDED = 10  # runs that are over and still listed
+
+
+@ui.page("/live")
+async def runs_page() -> None:
+    """The runs under way, and those that have just ended."""
+    with frame("Live"):
+
+        @ui.refreshable
+        async def listed() -> None:
+            with told():
+                runs = await the_desk().runs.list()
+                _under_way([run for run in runs if run.state not in OVER])
+                _over([run for run in runs if run.state in OVER][:_ENDED])
+
+        await listed()
+        ui.timer(_REFRESH_S, listed.refresh)
+
+
+def _under_way(runs: list[Run]) -> None:
+    _heading("Under way")
+    if runs:
+        table(_HEADS, [((f"Run {run.id}", f"/live/{run.id}"), *_facts(run)) for run in runs], label="Runs under way")
+    else:
+        ui.label("Nothing is being carried out. Open a mission in Plan, plan it, and start it from there.").classes(
+            "quiet"
+        )
+
+
+def _over(runs: list[Run]) -> None:
+    if not runs:
+        return
+    _heading("Ended")
+    table(_HEADS, [((f"Run {run.id}", f"/records/{run.id}"), *_facts(run)) for run in runs], label="Runs that are over")
+
+
+def _heading(words: str) -> None:
+    ui.html(f"<h2>{words}</h2>", sanitize=False)
+
+
+def _facts(run: Run) -> tuple[str, ...]:
+    speed = "as fast as it goes" if run.speed is None else f"{run.speed:g} times"
+    state = f"{run.state}: {run.remark}" if run.remark else run.state
+    return run.mission, state, f"{run.time_s:.0f} s", speed, run.world, run.author, f"{run.at:%Y-%m-%d %H:%M} UTC"
+
+
+@ui.page("/live/{run}")
+async def run_page(run: int) -> None:
+    """One run as it is carried out."""
+    desk, who, wall = the_desk(), the_asker(), on_the_wall()
+    try:
+        entry = await desk.runs.get(run)
+    except NotFoundError as error:
+        with frame("Live"), ui.element("p"):
+            ui.label(words_of(error))
+        return
+    if entry.state in OVER and not wall:
+        ui.navigate.to(f"/records/{run}")
+        return
+    with frame("Live", title=f"{entry.mission}, run {run}", keys=KEYS) as content:
+        content.classes("live-view")
+        RunView(desk.runs, run, who, wall=wall, **await _ground(entry))
+
+
+async def _ground(run: Run) -> dict[str, Any]:
+    """The floor plan and the map tiles of a run's mission; without either there is a plain grid."""
+    desk = the_desk()
+    version = await desk.missions.get(run.mission, run.mission_version)
+    mission = await desk.missions.look(version.text, "origin_wgs84", "map")
+    earth = mission.get("origin_wgs84")
+    tiles = {"url": TILES, "origin": [earth["lat_deg"], earth["lon_deg"]]} if desk.settings.tiles and earth else None
+    return {"image": floor_plan(mission.get("map") or {}, run.mission, version.files, version.version), "tiles": tiles}

@@ -1,0 +1,5 @@
+"""The view *Plan*: a mission on the map, as a form and as text, its plans, and why they are as they are."""
+
+from muster.server.pages.plan import compare, view
+
+__all__ = ["compare", "view"]

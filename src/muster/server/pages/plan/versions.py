@@ -1,0 +1,73 @@
+"""The versions of a mission: what changed from one to another, and going back to one."""
+
+from __future__ import annotations
+
+import asyncio
+import difflib
+from collections.abc import Awaitable, Callable
+
+from nicegui import ui
+
+from muster.server.pages.asking import the_desk
+from muster.server.pages.editing.draft import Draft
+from muster.server.pages.missions.view import ago
+from muster.server.pages.notices import told
+
+_MOST_LINES = 20_000  # of two texts that are compared
+_CLASSES = {"+": "added", "-": "removed", "@": "quiet"}
+
+
+async def open_versions(draft: Draft, save: Callable[[str], Awaitable[bool]]) -> None:
+    """List all versions; one can be compared with the text as it is, and restored as a new version."""
+    with told():
+        versions = sorted(await the_desk().missions.versions(draft.id), key=lambda v: v.version, reverse=True)
+        with ui.dialog() as dialog, ui.card().classes("making versions"):
+            ui.label(f"Versions of {draft.id}").classes("dialog-title")
+
+            async def restore(number: int) -> None:
+                with told():
+                    old = await the_desk().missions.get(draft.id, number)
+                    dialog.close()
+                    draft.load(draft.base, old.text)
+                    await save(f"version {number} again")
+
+            async def compare(number: int) -> None:
+                with told():
+                    await open_differences((await the_desk().missions.get(draft.id, number)).text, draft.text)
+
+            with ui.element("div").classes("scrolling full"), ui.element("table").classes("plain"):
+                for version in versions:
+                    with ui.element("tr"):
+                        for text in (f"version {version.version}", version.author, version.note):
+                            with ui.element("td"):
+                                ui.label(text)
+                        with ui.element("td").classes("quiet"):
+                            ui.label(ago(version.at) if version.at else "")
+                        with ui.element("td").classes("acts"):
+                            number = version.version
+                            ui.button("Compare", on_click=lambda n=number: compare(n)).props("flat dense")
+                            ui.button("Restore", on_click=lambda n=number: restore(n)).props("flat dense")
+            with ui.element("div").classes("dialog-buttons"):
+                ui.button("Close", on_click=dialog.close).props("flat")
+        dialog.open()
+
+
+async def open_differences(old: str, new: str) -> None:
+    """Show which lines a new text has that an old one has not, and the other way about."""
+    lines = await asyncio.to_thread(differences, old, new)
+    with ui.dialog() as dialog, ui.card().classes("making wide-dialog"):
+        ui.label("Old (-) and new (+)").classes("dialog-title")
+        with ui.element("pre").classes("differences full"):
+            for line in lines or ["No line is different."]:
+                ui.label(line).classes(_CLASSES.get(line[:1], ""))
+        with ui.element("div").classes("dialog-buttons"):
+            ui.button("Close", on_click=dialog.close).props("flat")
+    dialog.open()
+
+
+def differences(old: str, new: str) -> list[str]:
+    """Lines of the two texts that differ, with a few around them; of huge texts that they differ."""
+    before, after = old.splitlines(), new.splitlines()
+    if len(before) + len(after) > _MOST_LINES:
+        return [] if old == new else ["The texts differ, and are too long to be compared here."]
+    return list(difflib.unified_diff(before, after, "old", "new", lineterm="", n=2))[2:]

@@ -1,0 +1,94 @@
+"""The page of one mission."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from nicegui import ui
+
+from muster.server.pages.asking import may_command, on_the_wall, the_desk
+from muster.server.pages.editing.draft import Draft
+from muster.server.pages.frame import frame
+from muster.server.pages.notices import told
+from muster.server.pages.plan.answer import Answer
+from muster.server.pages.plan.ordering import Ordering
+from muster.server.pages.plan.title import Title
+from muster.server.pages.plan.workshop import Workshop
+
+_TICK_S = 0.2
+_KEYS = {
+    "Ctrl+Z, Ctrl+Y": "undo, redo",
+    "Ctrl+S": "save a version",
+    "arrows, + - 0": "on the map: move, zoom, see all of it",
+    "n, p": "next and previous robot or task",
+    "Alt+arrows": "move what is chosen (Shift: farther)",
+    "Delete": "take out what is chosen",
+    "r": "what comes before what",
+    "Enter": "why is this task done by this robot",
+}
+
+
+@ui.page("/plan")
+async def choose() -> None:
+    """Without a mission: those that were planned last, or the way to the list."""
+    with frame("Plan"), told():
+        recent = list(dict.fromkeys(entry.mission for entry in await the_desk().plans.list()))[:8]
+        with ui.element("div").classes("panel narrow"):
+            ui.label("Which mission?").classes("dialog-title")
+            ui.label(
+                "A plan says which robot does which tasks, in which order. Open a mission to edit it on the map, "
+                "have it planned, and carry the plan out."
+            ).classes("quiet")
+            if recent:
+                ui.label("Planned last").classes("small quiet")
+            for mission in recent:
+                with ui.element("p"):
+                    ui.link(mission, f"/plan/{mission}").classes("mission-link")
+            with ui.element("p"):
+                ui.link("All missions, and new ones", "/")
+
+
+@ui.page("/plan/{mission}")
+async def view(mission: str, plan: int | None = None) -> None:
+    """A mission and its plans; `?plan=` chooses one."""
+    with frame("Plan", mission, _KEYS) as content:
+        with told():
+            await _build(mission, plan)
+            return
+        with content:
+            ui.link("All missions", "/")
+
+
+async def _build(mission: str, plan: int | None) -> None:
+    draft = Draft(the_desk().missions, await the_desk().missions.get(mission))
+    answer: Answer
+
+    def choose(one: Mapping[str, Any] | None) -> None:
+        answer.choose(one)
+
+    async def ask(one: Mapping[str, Any]) -> None:
+        if one["what"] == "task":
+            await answer.why.ask(one["id"])
+
+    title = Title(draft)
+    with ui.element("div").classes("plan-page"):
+        with ui.element("section").classes("left").props('aria-label="Mission"'):
+            workshop = Workshop(draft, choose, ask)
+        with ui.element("section").classes("right").props('aria-label="Plans"'):
+            ordering = Ordering(draft) if may_command() and not on_the_wall() else None
+            answer = Answer(draft, workshop.map)
+        with ui.element("section").classes("below").props('aria-label="Schedule"'):
+            answer.build_gantt()
+    if ordering is not None:
+        ordering.on_done = answer.show_newest
+        ordering.before = title.save
+    await answer.begin(plan)
+
+    async def tick() -> None:
+        with told():
+            await draft.tick()
+
+    ui.timer(_TICK_S, tick)
+    if ordering is not None:
+        ui.timer(0, ordering.go_on, once=True)

@@ -1,0 +1,85 @@
+"""Whose page it is: what comes over a socket or as an upload counts only from whoever opened the page.
+
+NiceGUI knows a page by its id alone: whoever has that id could press its buttons, and a browser whose login has changed
+connects its old pages again. So the asker of the socket, or of the upload, must be the one of the page, who must still
+hold the same role.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Awaitable, Callable
+from functools import cache
+from inspect import isawaitable
+from typing import Any
+from urllib.parse import parse_qs
+
+from nicegui import Client, core
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from muster.server.pages.asking import who_in
+from muster.server.security.refusal import RefusalError
+
+_SAID = ("handshake", "event", "javascript_response", "ack")
+_OF_A_PAGE = re.compile(r"/_nicegui/client/([^/]+)/")
+
+
+@cache
+def guard_sockets() -> None:
+    """Put the question before everything that NiceGUI hears over its socket; once a process.
+
+    What a browser would write into the server's log is not heard at all: it could fill it.
+    """
+    theirs = dict(core.sio.handlers["/"])
+
+    async def connect(sid: str, environ: dict[str, Any], auth: Any = None) -> Any:
+        page = parse_qs(environ.get("QUERY_STRING", "")).get("client_id", [""])[0]
+        if page in Client.instances and not is_own(page, environ["asgi.scope"]):
+            return False
+        return await theirs["connect"](sid, environ, auth)
+
+    def asked(name: str) -> Callable[[str, Any], Awaitable[Any]]:
+        async def said(sid: str, message: Any) -> Any:
+            page = message.get("client_id") if isinstance(message, dict) else None
+            if not isinstance(page, str) or not is_own(page, core.sio.get_environ(sid)["asgi.scope"]):
+                return False
+            try:
+                answer = theirs[name](sid, message)
+                return await answer if isawaitable(answer) else answer
+            except (
+                KeyError,
+                TypeError,
+                ValueError,
+            ):  # no message of NiceGUI's own scripts; what it runs is not in here
+                return False
+
+        return said
+
+    async def unheard(sid: str, message: Any) -> None: ...
+
+    core.sio.on("connect", connect)
+    core.sio.on("log", unheard)
+    for name in _SAID:
+        core.sio.on(name, asked(name))
+
+
+class OwnUploads:
+    """Middleware before NiceGUI's routes of single pages, to which files are sent."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        page = _OF_A_PAGE.match(scope["path"]) if scope["type"] == "http" else None
+        if page is not None and not is_own(page[1], scope):
+            raise RefusalError(404, "there is no such page of yours; expected one that is open")
+        await self._app(scope, receive, send)
+
+
+def is_own(page: str, scope: Scope) -> bool:
+    """Whether the page is there, and was opened by whoever asks now, in the role that they have now."""
+    client = Client.instances.get(page)
+    if client is None:
+        return False
+    opened, now = who_in(client.request.scope), who_in(scope)
+    return (opened.name, opened.role) == (now.name, now.role)

@@ -1,0 +1,205 @@
+"""Missions and Plan as somebody sees them who makes, edits, plans and compares."""
+
+import json
+import re
+
+import pytest
+
+pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
+
+SLOW_MS = 90_000
+
+
+@pytest.fixture
+def page(watched):
+    yield watched.page
+    watched.require_clean()
+
+
+def plan_view(watched, mission):
+    """Open a mission and wait until it is on the map and may be planned."""
+    watched.open(f"/plan/{mission}")
+    watched.page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SLOW_MS)
+    watched.page.wait_for_function("document.querySelector('#plan:not([disabled])')")
+
+
+def task_place(page, task):
+    """Where a task is on the screen, as the map's own scripts know it, and in metres as its table says."""
+    return page.evaluate(
+        """task => {
+          const map = document.querySelector('.muster-map');
+          const { stage } = getElement(map);
+          const { x, y } = stage.places.tasks.get(task);
+          const box = map.getBoundingClientRect();
+          return { px: box.left + stage.view.x(x), py: box.top + stage.view.y(y), x, y };
+        }""",
+        task,
+    )
+
+
+def text_of(page):
+    page.get_by_role("button", name="Text", exact=True).click()
+    page.wait_for_selector(".cm-content")
+    return page.evaluate("[...document.querySelectorAll('.cm-line')].map(line => line.textContent).join('\\n')")
+
+
+def test_missions_are_found_made_deleted_and_taken_back(watched, page):
+    watched.open("/")
+    page.wait_for_selector("#missions")
+    page.fill("#search", "31t 6r50")
+    shown = page.locator("#missions tr[data-name]:visible")
+    assert shown.count() == 3
+    page.fill("#search", "no such")
+    assert page.locator(".none-found").is_visible()
+    page.fill("#search", "")
+    page.get_by_role("button", name="Duplicate 6T-2R", exact=True).click()
+    row = page.locator("tr[data-name='6t-2r copy 6t-2r-copy']")
+    row.wait_for()
+    page.get_by_role("button", name="Delete 6T-2R copy").click()
+    row.wait_for(state="detached")
+    page.get_by_role("button", name="Undo").click()
+    row.wait_for()
+
+
+def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):
+    watched.open("/")
+    page.click("#new")
+    page.get_by_label("Name", exact=True).fill("yard test")
+    page.get_by_role("button", name="Make it").click()
+    page.wait_for_url("**/plan/yard-test")
+    page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SLOW_MS)
+    before = task_place(page, "1")
+    page.mouse.move(before["px"], before["py"])
+    page.mouse.down()
+    page.mouse.move(before["px"] + 60, before["py"] + 30, steps=5)
+    page.mouse.up()
+    page.get_by_text("version 1, changed").wait_for()
+    after = task_place(page, "1")
+    assert after["x"] > before["x"]
+    assert after["y"] < before["y"]
+    assert f"position: [{after['x']:g}, {after['y']:g}]" in text_of(page)
+    page.get_by_role("button", name="Map", exact=True).click()
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press("Control+z")
+    page.get_by_text(re.compile(r"^version 1$")).wait_for()
+    assert "position: [5, 8]" in text_of(page)
+
+
+def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page):
+    plan_view(watched, "yard-test")
+    page.get_by_role("combobox", name="What a click on the map does").click()
+    page.get_by_role("option", name="Draw zones").click()
+    page.get_by_text("Click the corners of the zone").wait_for()
+    box = page.locator(".muster-map-host").bounding_box()
+    before = task_place(page, "1")
+    for x, y in ((0.3, 0.3), (0.5, 0.3), (0.5, 0.6)):
+        page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+    page.keyboard.press("Enter")
+    page.get_by_label("ceiling_m").fill("3")
+    page.get_by_role("button", name="Add the zone").click()
+    page.get_by_text("version 1, changed").wait_for()
+    page.wait_for_function("getElement(document.querySelector('.muster-map')).stage.scene.zones.length === 1")
+    assert task_place(page, "1") == before
+    polygon = re.search(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))[1]
+    corners = re.findall(r"\[([^\[\]]*), ([^\[\]]*)\]", polygon)
+    assert len(corners) == 3
+    assert all(len(number.partition(".")[2]) <= 2 for corner in corners for number in corner)
+    page.click("#undo")
+    page.get_by_text("version 1", exact=True).wait_for()
+
+
+def test_what_is_wrong_is_said_with_its_line_while_one_types(watched, page):
+    plan_view(watched, "yard-test")
+    page.get_by_role("button", name="Text", exact=True).click()
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("taskss: []")
+    page.get_by_text("did you mean 'tasks'").first.wait_for()
+    page.wait_for_selector(".wrong-line")
+    page.keyboard.press("Control+z")
+    page.wait_for_selector(".findings", state="hidden")
+
+
+def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
+    plan_view(watched, "floor")
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("speed_mps of carrier").fill("0.75")
+    page.keyboard.press("Tab")
+    text = text_of(page)
+    assert "# Source: Muster's own." in text
+    assert "{id: carrier, position: [15.5, 9.5], heading_deg: 90, radius_m: 0.3, kinematics: differential-drive" in text
+    assert "speed_mps: 0.75" in text
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("speed_mps of carrier").fill("fast")
+    page.keyboard.press("Tab")
+    page.get_by_text("'fast'; expected a number").wait_for()
+    assert page.get_by_label("speed_mps of carrier").input_value() == "0.75"
+    page.click("#undo")
+
+
+def test_planning_shows_the_answer_says_why_and_exports(watched, page):
+    plan_view(watched, "31T-6R50")
+    page.get_by_label("Time limit, s").fill("1")
+    page.click("#plan")
+    page.wait_for_selector("table.robots", timeout=SLOW_MS)
+    assert page.locator("dl.figures").inner_text().count("31 of 31") == 1
+    assert page.locator(".gantt rect.work").count() == 31
+    page.locator(".chip", has_text=re.compile("^30$")).click()
+    page.click("#why")
+    page.get_by_text(re.compile("^Task 30 is done by")).wait_for(timeout=SLOW_MS)
+    page.click("#export")
+    with page.expect_download() as kept:
+        page.get_by_text("Plan file (JSON)").click()
+    assert json.loads(kept.value.path().read_text())["schema"] == "muster-plan/1"
+    page.click("#export")
+    greyed = page.locator(".q-item.disabled", has_text="GeoJSON")
+    assert "needs origin_wgs84" in greyed.inner_text()
+    page.keyboard.press("Escape")
+    watched.shoot("plan")
+
+
+def test_two_plans_are_compared_side_by_side(watched, page):
+    plan_view(watched, "31T-6R50")
+    page.get_by_label("Allocator").click()
+    page.get_by_role("option", name="greedy", exact=True).click()
+    page.click("#plan")
+    page.get_by_text("Left out (4)").wait_for(timeout=SLOW_MS)
+    page.get_by_role("button", name="Compare").click()
+    page.get_by_text(re.compile("tasks are done by another robot")).wait_for(timeout=SLOW_MS)
+    assert page.locator(".muster-map").count() == 2
+    watched.shoot("compare")
+
+
+def test_who_saves_second_is_told_and_asked(watched, page, chromium):
+    plan_view(watched, "yard-test")
+    other = chromium.new_page()
+    other.goto(f"{watched.origin}/plan/yard-test")
+    other.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SLOW_MS)
+    for one, speed in ((other, "2"), (page, "3")):
+        one.get_by_role("button", name="Form", exact=True).click()
+        one.get_by_label("speed_mps of r_0").fill(speed)
+        one.keyboard.press("Tab")
+        one.keyboard.press("Control+s")
+    other.get_by_text("version 2", exact=True).wait_for()
+    page.get_by_text("Somebody else has saved this mission").wait_for()
+    page.get_by_role("button", name="Save mine on top").click()
+    page.get_by_text("version 3", exact=True).wait_for()
+    other.close()
+    page.get_by_role("button", name="History").click()
+    page.get_by_role("row", name=re.compile("version 1 ")).get_by_role("button", name="Restore").click()
+    page.get_by_text("version 4", exact=True).wait_for()
+    assert "speed_mps: 1}" in text_of(page)
+
+
+def test_the_keyboard_alone_chooses_and_moves_a_task(watched, page):
+    plan_view(watched, "yard-test")
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press("p")
+    page.get_by_text("task 1; at 5, 8 m").wait_for(state="attached")
+    page.keyboard.press("Alt+ArrowRight")
+    page.get_by_text(re.compile("version 4, changed")).wait_for()
+    page.keyboard.press("?")
+    assert page.get_by_role("dialog", name="Keyboard").is_visible()
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+z")
+    page.get_by_text("version 4", exact=True).wait_for()

@@ -1,0 +1,240 @@
+"""The whole story in a real browser: open, plan, ask why, carry out, change, see what follows, replay, take away.
+
+Its parts are tests that follow one another on one page. Pictures of every view are kept (`MUSTER_SCREENSHOTS` says
+where, by default `build/screenshots`).
+"""
+
+import json
+import re
+
+import pytest
+from tests.server.browser.conftest import SHOTS
+
+from muster.server.client import Client
+
+pytestmark = pytest.mark.xdist_group("browser")
+
+MISSION = "31T-6R50"
+OUT = "r_1"
+
+
+@pytest.fixture
+def page(watched):
+    yield watched.page
+    watched.page.screenshot(path=SHOTS / "last.png")  # where a part fails, this shows how far it came
+    watched.require_clean()
+
+
+def on_the_map(page, x, y):
+    """Where on the screen a place of the map is, as shares of its size."""
+    box = page.locator(".muster-map-host").bounding_box()
+    return box["x"] + x * box["width"], box["y"] + y * box["height"]
+
+
+def clock(page):
+    return float(page.locator(".clock").get_attribute("data-seconds"))
+
+
+def test_a_mission_is_found_and_planned(watched, page):
+    watched.open("/")
+    page.get_by_role("link", name=MISSION, exact=True).wait_for()
+    watched.shoot("missions")
+    page.get_by_role("link", name=MISSION, exact=True).click()
+    page.get_by_label("Time limit, s").fill("1")
+    page.locator("#plan").click()
+    page.locator("#carry-out").wait_for()
+    watched.shoot("plan")
+
+
+def test_why_a_task_is_done_so(watched, page):
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press("p")  # the last task
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name=re.compile(r"^Task 30$")).wait_for()
+    assert page.locator(".why p").first.inner_text()
+    watched.shoot("why")
+
+
+def test_it_is_carried_out(watched, page):
+    page.locator("#carry-out").click()
+    page.locator("#start").click()
+    page.wait_for_url("**/live/1")
+    page.get_by_text("running", exact=False).first.wait_for()
+    page.get_by_label("Speed", exact=True).select_option("4")  # ten times
+    page.get_by_text("Speed 10").wait_for()
+    page.wait_for_function("Number(document.querySelector('.clock').dataset.seconds) > 15")
+    page.keyboard.press(" ")
+    page.locator(".run-state[data-state=paused]").wait_for()
+    watched.shoot("live")
+
+
+def test_a_robot_that_fails_has_its_tasks_done_by_others(watched, page):
+    page.locator(f"tr[data-robot={OUT}]").click()
+    page.get_by_role("button", name="Take out").click()
+    page.locator(f"tr[data-robot={OUT}].out").wait_for()
+    page.get_by_role("button", name="Go on").click()
+    replanned = page.locator("li[data-kind=replanned]").first
+    replanned.wait_for()
+    assert re.search(rf"from {OUT} to r_\d", replanned.inner_text())
+    page.get_by_label("Speed", exact=True).select_option(
+        "1"
+    )  # as the clock on the wall: all that follows finds it going
+    watched.shoot("live-reallocated")
+
+
+def test_a_task_is_added_by_a_click_and_taken_back(watched, page):
+    page.keyboard.press("n")
+    page.mouse.click(*on_the_map(page, 0.62, 0.82))
+    form = page.get_by_role("dialog", name="A new task")
+    form.get_by_label("type").select_option("D")
+    watched.shoot("live-new-task")
+    form.get_by_role("button", name="Add the task").click()
+    page.locator("li[data-kind=new_task]").wait_for()
+    assert "of 32 tasks done" in page.locator(".counts").inner_text()
+    page.keyboard.press("Control+z")
+    page.locator("li[data-kind=cancel_task]").wait_for()
+    page.get_by_text("1 cancelled").wait_for()
+
+
+def test_a_task_is_moved_and_moved_back(watched, page):
+    page.keyboard.press("Escape")
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press(",")  # the last, which was cancelled
+    page.keyboard.press(",")
+    page.get_by_role("heading", name="Task 30").wait_for()
+    page.get_by_role("button", name="Move").click()
+    page.mouse.click(*on_the_map(page, 0.45, 0.3))
+    moved = page.locator("li[data-kind=move_task]")
+    moved.first.wait_for()
+    page.locator(".notices .done", has_text="Move 30").first.wait_for()
+    page.keyboard.press("Control+z")
+    page.locator(".notices .done", has_text="Move 30 back").wait_for()
+    moved.nth(1).wait_for()
+    page.locator(".chosen dd", has_text="-5.50, 5.50").wait_for()
+
+
+def test_what_cannot_be_is_refused_in_words_and_may_be_changed(watched, page):
+    page.get_by_role("button", name="+ Task").click()
+    page.mouse.click(*on_the_map(page, 0.5, 0.9))
+    form = page.get_by_role("dialog", name="A new task")
+    form.get_by_label("id").fill("30")
+    form.get_by_role("button", name="Add the task").click()
+    wrong = form.get_by_label("id").evaluate("field => field.validationMessage")
+    assert wrong == "There is a task 30 already."
+    form.locator("form").evaluate("form => { form.noValidate = true; }")  # as if it came to be meanwhile
+    form.get_by_label("duration").fill("7")
+    form.get_by_role("button", name="Add the task").click()
+    refused = page.locator(".notices .refused")
+    refused.wait_for()
+    assert "30" in refused.locator(".state").inner_text()
+    refused.get_by_role("button", name="Change it").click()
+    assert form.get_by_label("duration").input_value() == "7"
+    form.get_by_role("button", name="Leave it").click()
+
+
+def test_what_nobody_can_do_is_seen_at_once(watched, page):
+    page.keyboard.press("Escape")
+    with Client(watched.origin) as client:
+        wanted = {"id": "for-nobody", "position": [0, 1], "type": "D", "only_robots": [OUT]}
+        client.run(1).act("event", new_task=wanted)
+    page.get_by_text("1 cannot be done").wait_for()
+    told = page.locator("li[data-kind=replanned].alarm", has_text="nobody can do: for-nobody (lock: only r_1")
+    told.first.wait_for()
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press(",")
+    page.locator(".chosen dd", has_text="nobody: lock: only r_1").wait_for()
+    watched.shoot("live-for-nobody")
+    page.get_by_role("button", name="Cancel …").click()
+    asked = page.get_by_role("dialog", name="Cancel task for-nobody?")
+    asked.get_by_role("button", name="Leave it").click()
+    page.get_by_role("button", name="Cancel …").click()
+    asked.get_by_role("button", name="Cancel the task").click()
+    page.get_by_text("cannot be done").wait_for(state="hidden")
+    page.get_by_text("2 cancelled").wait_for()
+
+
+def test_who_comes_back_misses_nothing(watched, page):
+    """The stream breaks off: the page says so, goes on by itself, and tells each event once."""
+    page.keyboard.press(" ")
+    page.locator(".run-state[data-state=paused]").wait_for()
+    told = page.locator("ol.events li")
+    page.locator("li[data-kind=command]", has_text="pause").first.wait_for()
+    before = told.all_inner_texts()
+    sockets = []
+    page.route_web_socket(re.compile("/stream"), lambda socket: sockets.append((socket, socket.connect_to_server())))
+    page.reload()
+    page.wait_for_function("count => document.querySelectorAll('ol.events li').length === count", arg=len(before))
+    sockets[0][0].close(code=1012, reason="restarts")
+    page.locator(".connection", has_text="connection lost").wait_for()
+    page.locator(".connection").wait_for(state="hidden")
+    page.keyboard.press(" ")
+    page.locator(".run-state[data-state=running]").wait_for()
+    page.keyboard.press(" ")
+    page.locator(".run-state[data-state=paused]").wait_for()
+    assert len(sockets) == 2
+    assert not sockets[1][0].url.endswith("after=0")
+    assert told.all_inner_texts()[-len(before) :] == before
+
+
+def test_on_a_wall_there_is_nothing_to_press(watched, page):
+    page.goto(page.url + "?wall=1")
+    page.locator(".clock").wait_for()
+    page.wait_for_timeout(500)
+    watched.shoot("live-wall")
+    assert not page.locator(".pause").is_visible()
+
+
+def test_it_ends(watched, page):
+    watched.open("/live")
+    page.get_by_role("link", name="Run 1").wait_for()
+    watched.shoot("live-list")
+    page.get_by_role("link", name="Run 1").click()
+    page.get_by_role("button", name="Go on").click()
+    page.get_by_label("Speed", exact=True).select_option(label="as fast as it goes")
+    page.get_by_text("The run is over (ended)").wait_for(timeout=90_000)
+    watched.shoot("live-ended")
+
+
+def test_its_record_is_replayed_by_the_slider(watched, page):
+    page.get_by_role("link", name="Look at its record").click()
+    replay = page.frame_locator("iframe")
+    replay.locator("#slider").wait_for(timeout=60_000)
+    end = float(replay.locator("#slider").get_attribute("max"))
+    replay.locator("#slider").fill(str(round(end / 2, 1)))
+    assert float(replay.locator("#clock").inner_text().split()[0]) == pytest.approx(end / 2, abs=0.2)
+    watched.shoot("record", settles_ms=800)
+    assert page.get_by_role("table", name="Robots, planned against flown").locator("tr").count() == 7
+    page.get_by_text("What users did").click()
+    assert f"takes {OUT} out" in page.get_by_role("table", name="What users did").inner_text()
+    watched.open("/records")
+    page.get_by_role("link", name="Run 1").wait_for()
+    watched.shoot("records")
+
+
+def test_it_is_taken_away(watched, page, tmp_path):
+    watched.open("/records/1")
+    for name, check in (("Log (JSON)", json.loads), ("Spreadsheets (CSV", None), ("MCAP", None)):
+        with page.expect_download() as taken:
+            page.get_by_role("link", name=name).click()
+        file = tmp_path / taken.value.suggested_filename
+        taken.value.save_as(file)
+        assert file.stat().st_size > 1000
+        if check is not None:
+            check(file.read_text())
+
+
+def test_drones_are_seen_in_space_and_a_run_is_ended(watched, page):
+    with Client(watched.origin) as client:
+        run = client.start(client.plan("auction-1", allocator="greedy").wait(), speed=0.5).id
+    watched.open(f"/live/{run}")
+    page.locator("ol.events li[data-kind=plan]").wait_for()
+    page.keyboard.press("v")
+    page.locator(".space-host canvas").wait_for()
+    page.locator(".in-space.robot").first.wait_for()
+    watched.shoot("live-space", settles_ms=1000)
+    page.keyboard.press("v")
+    page.get_by_role("button", name="End the run").click()
+    page.get_by_role("button", name="End it").click()
+    page.get_by_text("The run is over (cancelled)").wait_for()
+    watched.open(f"/records/{run}")
+    page.get_by_text("not done when the run was cancelled").first.wait_for()

@@ -1,0 +1,94 @@
+"""A draft is checked when nobody has typed for a moment, and saved on the version that it came from."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from muster.server.pages.editing.draft import Draft
+from muster.server.words import ConflictError, MissionVersion, Who
+
+WHO = Who("anna", "command")
+FIRST = MissionVersion(mission="yard", version=1, text="name: a\n", author="anna", at=None)
+
+
+class Missions:
+    """As the desk's, with one mission."""
+
+    def __init__(self) -> None:
+        self.newest = FIRST
+        self.checked: list[str] = []
+
+    async def check(self, text: str, files: object) -> dict[str, Any]:
+        self.checked.append(text)
+        return {"errors": [], "impossible": [], "mission": {"name": text}}
+
+    async def edit(self, text: str, change: str, *arguments: str) -> str:
+        await asyncio.sleep(0)
+        if change == "fail":
+            raise ValueError(text)
+        return text.replace(*arguments) if change == "replace" else text + arguments[0]
+
+    async def save(self, who: Who, mission: str, text: str, base: int, files: object = None, note: str = "") -> Any:
+        if base != self.newest.version:
+            raise ConflictError("another one was saved")
+        self.newest = replace(self.newest, version=base + 1, text=text, author=who.name)
+        return self.newest
+
+
+def test_a_text_is_checked_once_it_is_quiet() -> None:
+    missions = Missions()
+    draft = Draft(missions, FIRST)
+    asyncio.run(draft.tick())
+    assert missions.checked == ["name: a\n"]
+    draft.typed("name: b\n")
+    asyncio.run(draft.tick())
+    assert len(missions.checked) == 1  # somebody types
+    asyncio.run(draft.edit("replace", "b", "c"))
+    asyncio.run(draft.tick())
+    assert missions.checked[1:] == ["name: c\n"]
+    assert draft.checked.mission == {"name": "name: c\n"}
+    asyncio.run(draft.tick())
+    assert len(missions.checked) == 2
+
+
+def test_saving_knows_of_others_and_loses_nothing() -> None:
+    missions = Missions()
+    mine, theirs = Draft(missions, FIRST), Draft(missions, FIRST)
+    asyncio.run(theirs.edit("append", "# theirs\n"))
+    asyncio.run(theirs.save(WHO))
+    asyncio.run(mine.edit("append", "# mine\n"))
+    with pytest.raises(ConflictError):
+        asyncio.run(mine.save(WHO))
+    assert not mine.is_saved
+    mine.load(missions.newest, mine.text)
+    asyncio.run(mine.save(WHO))
+    assert (missions.newest.version, missions.newest.text) == (3, "name: a\n# mine\n")
+    assert mine.is_saved
+    mine.undo()
+    assert mine.text == "name: a\n"
+    assert not mine.is_saved
+
+
+def test_an_edit_that_fails_changes_nothing() -> None:
+    draft, kinds = Draft(Missions(), FIRST), []
+    draft.on_change.append(kinds.append)
+    with pytest.raises(ValueError, match="name"):
+        asyncio.run(draft.edit("fail"))
+    assert (draft.text, draft.can_undo, kinds) == ("name: a\n", False, [])
+
+
+def test_edits_come_one_after_the_other_and_on_top_of_what_is_typed_meanwhile() -> None:
+    draft = Draft(Missions(), FIRST)
+
+    async def edited() -> None:
+        under_way = [asyncio.create_task(draft.edit("append", word)) for word in ("b", "c")]
+        await asyncio.sleep(0)
+        draft.typed("typed ")
+        await asyncio.gather(*under_way)
+
+    asyncio.run(edited())
+    assert draft.text == "typed bc"
