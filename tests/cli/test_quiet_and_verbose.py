@@ -21,9 +21,12 @@ CALLS = [
 ]
 
 
-@pytest.mark.parametrize("verb", VERBS)
+DB = ("info", "backup", "restore", "prune")
+
+
+@pytest.mark.parametrize("verb", [*((verb,) for verb in VERBS if verb != "db"), *(("db", what) for what in DB)])
 def test_every_verb_has_them(verb, muster):
-    _, out, _ = muster(verb, "--help")
+    _, out, _ = muster(*verb, "--help")
     assert "-q, --quiet" in out
     assert "-v, --verbose" in out
 

@@ -6,6 +6,7 @@ task is left out or impossible; 130 interrupted.
 
 from __future__ import annotations
 
+import errno
 import importlib
 import os
 import sys
@@ -30,6 +31,8 @@ VERBS = (
     "ros",
     "ros2",
     "fly",
+    "serve",
+    "db",
     "replay",
     "export",
     "study",
@@ -86,6 +89,8 @@ _SUMMARIES = {
     "ros": "Carry a plan out with real robots on ROS 1.",
     "ros2": "Carry a plan out with real robots on ROS 2.",
     "fly": "Carry a plan out with drones, over MAVLink.",
+    "serve": "Open mission control: plan, watch and steer in the browser.",
+    "db": "Look after the database of mission control: copies, and what is thrown away.",
     "replay": "Show a record of a mission that was carried out.",
     "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
     "study": "Repeat a published experiment beside its published numbers.",
@@ -142,6 +147,9 @@ def run(arguments: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except OSError as error:
+        if error.filename is None and error.errno in (errno.ENOSPC, errno.EDQUOT):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # which would fail again at the end
+            return _fail(f"{error.strerror}; expected room for what is written, and printed")
         if error.filename is None:
             return _internal(error)
         return _fail(f"{error.filename}: {error.strerror}; expected a file that can be read or written")

@@ -5,11 +5,13 @@ from __future__ import annotations
 import click
 
 from muster.cli.options import format_option, quiet_option
+from muster.cli.remote.option import server_option
 
 
 @click.command()
 @format_option
 @quiet_option
+@server_option
 def command(form: str, quiet: bool, verbose: bool) -> None:
     """List the missions that come with Muster.
 

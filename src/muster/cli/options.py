@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from muster.mission.errors import Finding, ParameterError, PlanError
+from muster.mission.errors import Finding, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
@@ -100,16 +100,9 @@ def require_admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
     PlanError
         if it does.
     """
-    from muster.verification import verify
+    from muster.verification.required import require_admissible as required
 
-    verdict = verify(mission, plan)
-    if not verdict.valid:
-        first, *others = verdict.violations
-        more = f" and {len(others)} more" if others else ""
-        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
-        expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
-        raise PlanError([Finding(str(file), None, first.kind, f"{told}{more}", expected)])
-    return verdict
+    return required(mission, plan, str(file))
 
 
 def format_option(verb: Verb) -> Verb:

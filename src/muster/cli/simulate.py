@@ -26,6 +26,7 @@ from muster.cli.options import (
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
+from muster.cli.remote.option import server_option
 from muster.cli.report_tables import print_report
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -83,6 +84,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @require_complete_option
 @format_option
 @quiet_option
+@server_option
 def command(
     mission: str,
     robots: Path | None,
@@ -131,7 +133,7 @@ def command(
     require_writable(None, (record, html, plot, gantt, film, still, found), (mission, robots, suitability), (plan,))
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
-    noise = _noise(noises)
+    noise = noise_of(noises)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
@@ -213,7 +215,8 @@ def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, ite
     return solve(mission, seed=seed, time_limit=None if iterations is not None else time_limit, iterations=iterations)
 
 
-def _noise(noises: tuple[str, ...]) -> Noise:
+def noise_of(noises: tuple[str, ...]) -> Noise:
+    """What `--noise KIND=AMOUNT` gives."""
     from muster.simulation import Noise
 
     kinds = [field.name for field in fields(Noise)]

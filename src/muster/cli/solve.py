@@ -25,6 +25,7 @@ from muster.cli.options import (
     settings_of,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_writable
+from muster.cli.remote.option import server_option
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
@@ -91,6 +92,7 @@ _FILE = click.Path(path_type=Path)
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the routes (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw the time chart (.png, .svg, .pdf).")
 @quiet_option
+@server_option
 def command(
     mission: str,
     robots: Path | None,

@@ -8,6 +8,7 @@ import click
 
 from muster.cli.exits import DONE, REJECTED
 from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
+from muster.cli.remote.option import server_option
 from muster.mission.plan import json_text, read_plan
 
 
@@ -16,6 +17,7 @@ from muster.mission.plan import json_text, read_plan
 @click.argument("plan", type=click.Path(path_type=Path))
 @format_option
 @quiet_option
+@server_option
 def command(
     mission: str,
     plan: Path,

@@ -1,0 +1,136 @@
+"""`muster db`: the database of mission control: what is in it, copies of it, and what is thrown away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.options import Finite, format_option, quiet_option
+
+Verb = TypeVar("Verb", bound=Callable[..., Any])
+_FILE = click.Path(path_type=Path, dir_okay=False)
+
+
+def _database(_: click.Context, __: click.Parameter, value: str | None) -> str:
+    from muster.server.settings import usual_database
+
+    return value or usual_database()
+
+
+def _db_option(verb: Verb) -> Verb:
+    return click.option(
+        "--db",
+        "url",
+        envvar="MUSTER_DB",
+        callback=_database,
+        metavar="URL",
+        help="sqlite:///FILE or postgresql://USER@HOST/NAME; also MUSTER_DB.  [default: a file of yours]",
+    )(verb)
+
+
+@click.group()
+def command() -> None:
+    """Look after the database of mission control: copy it, empty it of old things.
+
+    Each may be done while a server is at work.
+    """
+
+
+@command.command("info")
+@_db_option
+@format_option
+@quiet_option
+def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
+    """Say what is in the database."""
+    from muster.server.store.contents import contents
+
+    found = contents(url)
+    if form == "json":
+        import json
+
+        click.echo(json.dumps(asdict(found), indent=1))
+        return DONE
+    from muster.cli.tables import print_table
+
+    rows = [(name.replace("_", " "), str(count)) for name, count in found.rows.items()]
+    click.echo(f"{found.database}: tables {found.tables}, {found.bytes / 2**20:.1f} MiB")
+    print_table(("what", "how many"), rows, right=("how many",))
+    return DONE
+
+
+@command.command("backup")
+@click.argument("file", type=_FILE)
+@_db_option
+@quiet_option
+def backup(file: Path, url: str, quiet: bool, verbose: bool) -> int:
+    """Copy the database into a new FILE.
+
+    The copy is a database of SQLite, of PostgreSQL, too, and `muster db restore` puts it into either. It is of one
+    moment, also while a server writes.
+    """
+    from muster.server.store.backup import backup as copy
+
+    copy(url, file)
+    if not quiet:
+        click.echo(f"wrote {file}: {file.stat().st_size} bytes", err=True)
+    return DONE
+
+
+@command.command("restore")
+@click.argument("file", type=_FILE)
+@_db_option
+@quiet_option
+def restore(file: Path, url: str, quiet: bool, verbose: bool) -> int:
+    """Put a backup into an empty database.
+
+    A database that is not there yet is made; of PostgreSQL that is done with createdb.
+    """
+    from muster.server.store.backup import restore as put_back
+    from muster.server.store.contents import contents
+
+    put_back(file, url)
+    if not quiet:
+        found = contents(url)
+        amounts = f"{found.rows['missions']} missions, {found.rows['plans']} plans, {found.rows['runs']} runs"
+        click.echo(f"restored {found.database}: {amounts}", err=True)
+    return DONE
+
+
+@command.command("prune")
+@click.option(
+    "--older-than",
+    "days",
+    type=Finite(0, 36500),
+    required=True,
+    metavar="DAYS",
+    help="What ended, or was made, longer ago than that.",
+)
+@click.option("--dry-run", is_flag=True, help="Only say what would go.")
+@_db_option
+@format_option
+@quiet_option
+def prune(days: float, dry_run: bool, url: str, form: str, quiet: bool, verbose: bool) -> int:
+    """Delete old runs that are over, with all that belongs to them.
+
+    These go: runs that are over with their log, tracks and actions; jobs; then plans and versions of missions to which
+    nothing refers. The newest plan and version of a mission stay.
+    """
+    from muster.server.store.prune import prune as delete
+
+    pruned = asdict(delete(url, days, dry_run=dry_run))
+    if form == "json":
+        import json
+
+        click.echo(json.dumps(pruned, indent=1))
+        return DONE
+    from muster.cli.tables import print_table
+
+    rows = [(name.replace("_", " "), str(count)) for name, count in pruned.items()]
+    head = "would go" if dry_run else "gone"
+    print_table(("what", head), rows, right=(head,))
+    return DONE

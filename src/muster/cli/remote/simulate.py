@@ -1,0 +1,117 @@
+"""`muster simulate --server`: carried out there, told and reported here."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.keeping import kept_record
+from muster.cli.options import load_mission, say_of_plan
+from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.remote.sending import kept, kept_plan
+from muster.cli.remote.waiting import planned
+from muster.cli.report_tables import print_report
+from muster.cli.simulate import noise_of
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.plan import json_text, read_plan
+
+if TYPE_CHECKING:
+    from muster.server.client import Client, RunningRun
+    from muster.server.words import World
+
+
+def run(
+    control: Client,
+    *,
+    mission: str,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    plan: Path | None,
+    world: World,
+    seed: int,
+    time_limit: float,
+    iterations: int | None,
+    avoidance: str,
+    dt: float,
+    speed: float | None,
+    noises: tuple[str, ...],
+    record: Path | None,
+    html: Path | None,
+    plot: Path | None,
+    gantt: Path | None,
+    require_complete: bool,
+    form: str,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Send the mission, have it planned unless there is a plan, follow the run, and report."""
+    require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
+    require_drawable(plot, gantt)
+    settings: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance}
+    if noises:
+        settings["noise"] = {kind: amount for kind, amount in asdict(noise_of(noises)).items() if amount}
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    number = _plan(control, loaded, plan, seed, time_limit, iterations, quiet=quiet, verbose=verbose)
+    carried = control.start(number, world=world, speed=speed, **settings)
+    interrupted = _followed(carried, telling=speed is not None and not quiet)
+    if carried.seen.report is None:
+        raise MusterError(carried.seen.remark or f"run {carried.id} {carried.seen.state}, without a report")
+    with kept_record(record, html, plot, gantt) as file:
+        if file is not None:
+            file.write_bytes(control.records.mcap(carried.id))
+    if form == "json":
+        click.echo(json_text(carried.seen.report), nl=False)
+    else:
+        print_report(carried.seen.report, loaded, with_tasks=verbose)
+    if interrupted:
+        click.echo(f"interrupted at {carried.seen.time_s:.1f} s of the mission", err=True)
+        return INTERRUPTED
+    return INCOMPLETE if require_complete and carried.seen.report["tasks_lost"] else DONE
+
+
+def _plan(
+    control: Client,
+    mission: Mission,
+    file: Path | None,
+    seed: int,
+    time_limit: float,
+    iterations: int | None,
+    *,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """The id of the plan that is carried out."""
+    if file is not None:
+        given = read_plan(file)
+        say_of_plan(given, file, mission, quiet=quiet, verbose=verbose)
+        return kept_plan(control, mission, given, verbose=verbose).id
+    limit = None if iterations is not None else time_limit
+    there = kept(control, mission, verbose=verbose)
+    ask = partial(control.plan, there, seed=seed, time_limit=limit, iterations=iterations)
+    entry, interrupted = planned(ask, mission, quiet=quiet, time_limit=limit, iterations=iterations)
+    if interrupted:
+        click.echo(f"interrupted: plan {entry.id} is kept at the server; nothing was started", err=True)
+        raise KeyboardInterrupt
+    return entry.id
+
+
+def _followed(carried: RunningRun, *, telling: bool) -> bool:
+    """Tell what happens until it is over; whether Ctrl-C ended it, which cancels it there."""
+    interrupted = False
+    try:
+        for message in carried.stream():
+            if telling and message["type"] == "entry" and message["line"]:
+                click.echo(f"{message['time_s']:9.1f} s  {message['line']}", err=True)
+    except KeyboardInterrupt:
+        interrupted = True
+        carried.cancel()
+    carried.wait()
+    return interrupted

@@ -1,0 +1,63 @@
+"""`muster verify --server`: judged there, shown here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE, REJECTED
+from muster.cli.options import load_mission, say_of_plan
+from muster.cli.plan_tables import print_verdict
+from muster.cli.remote.sending import kept_plan
+from muster.mission.plan import json_text, read_plan
+from muster.verification import Verdict
+from muster.verification.verdict import RouteFigures, Violation, Visit
+
+if TYPE_CHECKING:
+    from muster.server.client import Client
+
+_NOT_OF_VERDICTS = ("valid", "objective", "waiting_s", "lines", "violations", "routes")
+_NOT_PRINTED = ("waiting_s", "lines", "routes")
+
+
+def run(
+    control: Client,
+    *,
+    mission: str,
+    plan: Path,
+    robots: Path | None,
+    suitability: Path | None,
+    salesmen: int | None,
+    depot: str | None,
+    form: str,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Send the mission and the plan, and show what the judge there says."""
+    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    given = read_plan(plan)
+    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    said = control.plans.verdict(kept_plan(control, loaded, given, verbose=verbose).id)
+    if form == "json":
+        click.echo(json_text({key: value for key, value in said.items() if key not in _NOT_PRINTED}), nl=False)
+    else:
+        print_verdict(given, _verdict(said))
+    return DONE if said["valid"] else REJECTED
+
+
+def _verdict(said: Mapping[str, Any]) -> Verdict:
+    """A verdict from plain data."""
+    figures = {key: value for key, value in said.items() if key not in _NOT_OF_VERDICTS}
+    return Verdict(
+        violations=tuple(Violation(**violation) for violation in said["violations"]),
+        routes=tuple(_route(route) for route in said["routes"]),
+        **figures,
+    )
+
+
+def _route(said: Mapping[str, Any]) -> RouteFigures:
+    visits = tuple(Visit(**visit) for visit in said["visits"])
+    return RouteFigures(**{**said, "tasks": tuple(said["tasks"]), "visits": visits})

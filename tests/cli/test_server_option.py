@@ -1,0 +1,237 @@
+"""Verbs that a server does: the same results, errors in a line, Ctrl-C that reaches the server."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from tests.cli.yard import MUSTER, comparable
+from tests.server.serving import served
+
+from muster import load
+from muster.cli.remote.sending import parcel
+from muster.cli.remote.waiting import planned
+from muster.server.client import Client
+from muster.server.security.tokens import line_of, new_token
+from muster.server.words import Job
+
+VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory):
+    with served(tmp_path_factory.mktemp("server")) as url:
+        yield url
+
+
+def test_a_plan_is_as_here(folder, muster, url):
+    here = muster("solve", "yard.yaml", "--iterations", 20, "-o", "here.json")
+    there = muster("solve", "yard.yaml", "--iterations", 20, "-o", "there.json", "--server", url)
+    assert there == here
+    assert comparable("there.json") == comparable("here.json")
+
+
+def test_a_mission_is_kept_once_and_a_changed_one_as_its_next_version(folder, muster, url):
+    def said():
+        code, _, err = muster("solve", "yard.yaml", "--iterations", 1, "-v", "--server", url)
+        assert code == 0
+        return next(line for line in err.splitlines() if line.startswith("the server has it"))
+
+    text = Path("yard.yaml").read_text(encoding="utf-8").replace("name: yard", "name: kept")
+    Path("yard.yaml").write_text(text, encoding="utf-8")
+    assert said() == said() == "the server has it as mission kept, version 1"
+    Path("yard.yaml").write_text(text + "# changed\n", encoding="utf-8")
+    assert said() == "the server has it as mission kept, version 2"
+
+
+def test_a_shipped_mission_is_planned_as_it_is(muster, url):
+    assert muster("solve", "6T-2R", "--iterations", 1, "--server", url) == muster("solve", "6T-2R", "--iterations", 1)
+    with Client(url) as control:
+        assert [entry.shipped for entry in control.missions.list() if entry.name == "6T-2R"] == [True]
+
+
+def test_a_plan_is_judged_and_explained_as_here(plan, muster, url):
+    for verb in ("verify", "explain"):
+        here, there = (muster(verb, "yard.yaml", plan, "--format", "json", *more) for more in ((), ("--server", url)))
+        assert there == here
+    assert muster("verify", "yard.yaml", plan, "--server", url) == muster("verify", "yard.yaml", plan)
+    code, out, _ = muster("explain", "yard.yaml", plan, "--task", "lift", "--server", url)
+    assert (code, "lift" in out) == (0, True)
+
+
+def test_a_rejected_plan_is_rejected(plan, muster, url):
+    data = json.loads(plan.read_text(encoding="utf-8"))
+    data["routes"][0]["tasks"] = ["lift"]
+    plan.write_text(json.dumps(data), encoding="utf-8")
+    assert muster("verify", "yard.yaml", plan, "--server", url) == muster("verify", "yard.yaml", plan)
+    assert muster("verify", "yard.yaml", plan, "--server", url)[0] == 1
+
+
+def test_a_mission_is_checked(folder, muster, url):
+    code, out, err = muster("check", "yard.yaml", "--server", url)
+    assert (code, "lift" in out, "not looked into" in err) == (0, True, True)
+    assert muster("check", "yard.yaml", "--require-complete", "--server", url)[0] == 3
+
+
+def test_a_simulation_is_as_here(plan, muster, url):
+    arguments = ("simulate", "yard.yaml", "--plan", plan, "--seed", 3, "--format", "json")
+    assert muster(*arguments, "--server", url)[:2] == muster(*arguments)[:2]
+
+
+def test_a_record_comes_back(plan, muster, url):
+    code, _, err = muster("simulate", "yard.yaml", "--plan", plan, "--record", "r.mcap", "--server", url)
+    assert (code, err) == (0, "")
+    assert Path("r.mcap").read_bytes().startswith(b"\x89MCAP")
+
+
+def test_an_export_is_as_here(folder, muster, url):
+    origin = "name: far\norigin_wgs84: {lat_deg: 47.0, lon_deg: 8.0}"
+    Path("yard.yaml").write_text(Path("yard.yaml").read_text(encoding="utf-8").replace("name: yard", origin))
+    muster("solve", "yard.yaml", "--iterations", 20, "-o", "plan.json")
+    arguments = ("export", "yard.yaml", "plan.json", "--to")
+    assert muster(*arguments, "geojson", "--server", url) == muster(*arguments, "geojson")
+    here = muster(*arguments, "qgc", "-o", "here")
+    assert muster(*arguments, "qgc", "-o", "there", "--server", url) == here
+    files = {file.name: file.read_bytes() for file in Path("here").iterdir()}
+    assert {file.name: file.read_bytes() for file in Path("there").iterdir()} == files
+
+
+def test_missions_of_the_server_are_listed(muster, url):
+    code, out, _ = muster("missions", "--format", "json", "--server", url)
+    assert code == 0
+    assert "31T-6R50" in [entry["id"] for entry in json.loads(out)]
+    assert "31T-6R50" in muster("missions", "--server", url)[1]
+
+
+def test_files_are_sent_with_a_mission(muster, url):
+    text, files = parcel(load("floor"))
+    assert sorted(files) == ["floor-plan.png", "floor-plan.yaml"]
+    assert "../" not in text
+    assert muster("solve", "floor", "--iterations", 5, "-q", "--server", url)[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--ray", "x"), "--ray given; expected it without --server"),
+        (("--rewire",), "--rewire given; expected it without --server"),
+        (("--fixed", "p.json"), "--fixed given; expected it without --server"),
+        (("--set", "nothing=1"), "nothing"),
+        (("-a", "serach"), "serach"),
+    ],
+)
+def test_what_makes_no_sense_there_is_refused(folder, muster, url, arguments, said):
+    code, out, err = muster("solve", "yard.yaml", *arguments, "--server", url)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert said in err
+
+
+@pytest.mark.parametrize(
+    ("server", "said"),
+    [
+        ("http://127.0.0.1:9", "http://127.0.0.1:9: cannot be reached"),
+        ("127.0.0.1:8117", "server: 127.0.0.1:8117; expected http://HOST:PORT"),
+        ("ftp://127.0.0.1", "expected http://HOST:PORT"),
+        ("http://127.0.0.1:99999", "expected http://HOST:PORT"),
+    ],
+)
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_server_that_is_not_there(verb, server, said, plan, muster):
+    arguments = {"missions": (), "check": ("yard.yaml",), "solve": ("yard.yaml",), "simulate": ("yard.yaml",)}
+    given = arguments.get(verb, ("yard.yaml", plan)) + (("--to", "csv") if verb == "export" else ())
+    code, out, err = muster(verb, *given, "--server", server)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert said in err
+
+
+def test_tokens(folder, muster, tmp_path, monkeypatch):
+    tokens = {role: new_token() for role in ("watch", "command")}
+    lines = [line_of(role, role, token) for role, token in tokens.items()]
+    (tmp_path / "tokens").write_text("\n".join(lines), encoding="utf-8")
+    with served(tmp_path, tokens=tmp_path / "tokens") as url:
+        call = ("solve", "yard.yaml", "--iterations", 1, "-q", "--server", url)
+        code, _, err = muster(*call)
+        assert (code, len(err.splitlines()), "expected" in err) == (2, 1, True)
+        monkeypatch.setenv("MUSTER_TOKEN", "wrong")
+        assert (muster(*call)[0], "token" in muster(*call)[2]) == (2, True)
+        monkeypatch.setenv("MUSTER_TOKEN", tokens["watch"])
+        assert (muster(*call)[0], "may only watch" in muster(*call)[2]) == (2, True)
+        Path("token").write_text(tokens["command"] + "\n", encoding="utf-8")
+        assert muster(*call, "--token-file", "token")[0] == 0
+        Path("token").write_text("", encoding="utf-8")
+        assert muster(*call, "--token-file", "token")[2] == "token: no token; expected one line that holds it\n"
+
+
+def test_a_token_needs_a_server(folder, muster):
+    said = "--token-file given; expected it together with --server\n"
+    assert muster("solve", "yard.yaml", "--token-file", "t") == (2, "", said)
+
+
+def test_ctrl_c_keeps_the_best_plan_as_here(folder, url):
+    environment = {name: value for name, value in os.environ.items() if name != "MUSTER_TOKEN"}
+    with Client(url) as control:
+        before = {job.id for job in control.jobs()}
+        command = [MUSTER, "solve", "yard.yaml", "--time-limit", "600", "-o", "best.json", "--server", url]
+        with subprocess.Popen(command, stdout=-1, stderr=-1, text=True, env=environment) as process:
+            while not (new := [job for job in control.jobs() if job.id not in before and job.progress]):
+                time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate()
+        assert process.returncode == 130
+        assert "objective" in out
+        assert err.endswith("interrupted: this is the best plan so far\n")
+        job = control.job(new[0].id).seen
+        assert (job.state, control.plans.get(job.result["plan"]).plan) == (
+            "done",
+            json.loads(Path("best.json").read_text(encoding="utf-8")),
+        )
+
+
+class Interrupted:
+    """A job at a server; each time that somebody waits for it there is a Ctrl-C."""
+
+    id = 7
+
+    def __init__(self, begun):
+        self.begun = begun
+        asked = {"kind": "plan", "mission": "yard", "mission_version": 1, "arguments": {}, "author": "local"}
+        self.seen = Job(id=self.id, state="running" if begun else "queued", asked_at=datetime.now(UTC), **asked)
+        self.told = []
+
+    def wait(self, on_progress):
+        raise KeyboardInterrupt
+
+    def stop(self):
+        self.told.append("stop")
+        self.seen = replace(self.seen, state="running" if self.begun else "cancelled")
+        return self.seen
+
+    def cancel(self):
+        self.told.append("cancel")
+
+
+@pytest.mark.parametrize(
+    ("begun", "told", "said"),
+    [
+        (True, ["stop", "cancel"], "job 7 is cancelled at the server, which keeps no plan of it\n"),
+        (False, ["stop"], "job 7 is cancelled at the server: it had not begun\n"),
+    ],
+)
+def test_a_second_ctrl_c_or_one_while_it_waits_cancels_the_job_there(capsys, begun, told, said):
+    job = Interrupted(begun)
+    with pytest.raises(KeyboardInterrupt):
+        planned(lambda: job, load("6T-2R"), quiet=True, time_limit=1.0, iterations=None)
+    assert (job.told, capsys.readouterr().err) == (told, said)
+
+
+def test_the_client_imports_no_part_of_the_server_nor_its_libraries():
+    heavy = ("fastapi", "nicegui", "sqlalchemy", "scipy", "shapely", "matplotlib", "muster.server.api")
+    code = f"import sys, muster.server.client; print([m for m in {heavy} if m in sys.modules])"
+    import sys
+
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
