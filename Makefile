@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test campaign campaign-auction network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test campaign campaign-auction campaign-server network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -27,6 +27,9 @@ campaign: $(VENV)/developed
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)
 
+campaign-server: $(VENV)/developed
+	$(BIN)/python -m tests.server.runs.campaign $(CAMPAIGN_FLAGS)
+
 network-figures: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.real_figures $(NETWORK_FLAGS)
 
@@ -38,6 +41,7 @@ help:
 	@echo "make test       run all tests"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
+	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"
 	@echo "make disturbances  carry out 10,000 random missions in which robots fail and tasks change"
 	@echo "make check      formatters, linters, types, import contract"

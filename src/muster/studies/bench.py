@@ -25,6 +25,7 @@ from muster.studies.bench_motion import MOTION_BENCHES
 from muster.studies.bench_perception import PERCEPTION_BENCHES
 from muster.studies.bench_physics import PHYSICS_BENCHES
 from muster.studies.bench_ros1 import ROS1_BENCHES
+from muster.studies.bench_server import SERVER_BENCHES
 from muster.studies.bench_simulation import SIMULATION_BENCHES
 from muster.studies.measurement import Measurement
 from muster.studies.search_quality import CASES, Quality, quality
@@ -199,4 +200,5 @@ BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
     **EXECUTION_BENCHES,
     **AUCTION_BENCHES,
     **ROS1_BENCHES,
+    **SERVER_BENCHES,
 }
