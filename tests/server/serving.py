@@ -7,7 +7,7 @@ from contextlib import contextmanager
 import uvicorn
 
 from muster.server.app import make_app
-from muster.server.serving import listening
+from muster.server.serving import PatientProtocol, listening
 from muster.server.settings import Settings
 
 
@@ -19,7 +19,14 @@ def served(folder, **others):
     settings = Settings(**given | others)
     app = make_app(settings)
     socket = listening("127.0.0.1", 0)
-    config = uvicorn.Config(app, log_config=None, lifespan="on", timeout_graceful_shutdown=3, ws="websockets-sansio")
+    config = uvicorn.Config(
+        app,
+        http=PatientProtocol,
+        ws="websockets-sansio",
+        lifespan="on",
+        log_config=None,
+        timeout_graceful_shutdown=3,
+    )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=asyncio.run, args=(server.serve(sockets=[socket]),))
     thread.start()

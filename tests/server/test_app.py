@@ -24,6 +24,7 @@ from muster.server.app import make_app
 from muster.server.settings import Settings
 
 _OPEN = {"/healthz", "/login"}
+_PEER = "10.0.0.9"
 _METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
 
 
@@ -34,15 +35,26 @@ def app(tmp_path_factory):
     (folder / "tiles" / "1" / "0").mkdir(parents=True)
     (folder / "tiles" / "1" / "0" / "1.png").write_bytes(b"a tile")
     settings = settings_in(
-        folder, tiles=folder / "tiles", tokens=TOKENS, host="0.0.0.0", insecure_http=True, requests_per_s=1e6
+        folder,
+        tiles=folder / "tiles",
+        tokens=TOKENS,
+        host="0.0.0.0",
+        insecure_http=True,
+        requests_per_s=1e6,
+        trusted_proxies=(_PEER,),
     )
     return make_app(settings)
 
 
 @pytest.fixture(scope="module")
 def client(app):
-    with Client(app, base_url="http://10.0.0.5:8117", client=("10.0.0.9", 5), follow_redirects=False) as found:
+    with Client(app, base_url="http://10.0.0.5:8117", client=(_PEER, 5), follow_redirects=False) as found:
         yield found
+
+
+def _from(address):
+    """Headers as if a proxy had passed a request on: of one address few refusals are noted."""
+    return {"x-forwarded-for": address}
 
 
 def _paths(routes, prefix=""):
@@ -159,10 +171,11 @@ def test_health_without_a_database(app, client, monkeypatch):
 def test_logins_and_refusals_are_in_the_audit_log(app, client):
     client.post("/login", data={"token": COMMANDER}, headers={"origin": "http://10.0.0.5:8117"})
     client.cookies.clear()
+    assert client.get("/api/v1/me", headers=bearer(WATCHER) | FOREIGN | _from("10.0.1.1")).status_code == 403
     client.portal.call(app.state.shield.audit.settle)
     actions = client.get("/api/v1/actions", headers=bearer(WATCHER)).json()
     assert ("anna", "login") in {(action["who"], action["verb"]) for action in actions}
-    assert "refused" in {action["verb"] for action in actions}
+    assert ("10.0.1.1", "refused") in {(action["address"], action["verb"]) for action in actions}
     assert COMMANDER not in str(actions)
 
 
@@ -193,7 +206,8 @@ def test_the_server_is_made_without_what_makes_it_large():
 
 def test_who_tries_to_command_without_the_role_is_in_the_audit_log(app, client):
     text = "robots: [{id: r, position: [0, 0]}]"
-    assert client.post("/api/v1/missions", json={"text": text}, headers=bearer(WATCHER)).status_code == 403
+    refused = client.post("/api/v1/missions", json={"text": text}, headers=bearer(WATCHER) | _from("10.0.2.1"))
+    assert refused.status_code == 403
     client.portal.call(app.state.shield.audit.settle)
     noted = client.get("/api/v1/actions", headers=bearer(COMMANDER)).json()
     assert [a["data"]["path"] for a in noted if (a["who"], a["verb"]) == ("wall", "refused")] == ["/api/v1/missions"]

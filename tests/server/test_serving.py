@@ -68,6 +68,22 @@ def test_headers_in_pieces_and_again():
     assert asyncio.run(told()).count(b"200 OK") == 2
 
 
+@pytest.mark.parametrize(("rest", "answers"), [(50_000, 2), (500_000, 1)])
+def test_the_rest_of_a_body_that_was_answered_before_is_thrown_away_while_it_is_little(monkeypatch, rest, answers):
+    monkeypatch.setattr(serving, "_REST_BYTES", 100_000)
+    begin = b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % rest
+    answer, _ = asyncio.run(asyncio.wait_for(_told(begin, b"x" * rest, _WHOLE), 30))
+    assert answer.count(b"200 OK") == answers
+
+
+def test_the_rest_of_a_body_that_does_not_come(monkeypatch):
+    monkeypatch.setattr(serving, "_REST_S", 0.05)
+    begin = b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n"
+    answer, ended = asyncio.run(asyncio.wait_for(_told(begin, b"x"), 30))
+    assert ended
+    assert answer.count(b"200 OK") == 1
+
+
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="no openssl here to make a key with")
 def test_a_key_with_a_pass_phrase_is_refused_without_asking_for_it(tmp_path):
     certificate, key = tmp_path / "cert.pem", tmp_path / "key.pem"

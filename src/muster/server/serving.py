@@ -22,16 +22,23 @@ from muster.server.settings import Settings
 
 _HEADERS_S = 20.0
 _HEADERS_BYTES = 64 * 1024
+_REST_S = 5.0
+_REST_BYTES = 32 * 2**20
 _ENDING_S = 3
 _CONNECTIONS = 4000
 _MESSAGE_BYTES = 4 * 2**20
 
 
 class PatientProtocol(HttpToolsProtocol):
-    """HTTP of which the headers must come within a while, and be few: nobody keeps connections or memory busy so."""
+    """HTTP of which the headers must come within a while, and be few: nobody keeps connections or memory busy so.
+
+    The rest of a body that was answered before it was whole is read and thrown away, for as long as that is little: a
+    connection that is closed with something unread is reset, and the answer lost with it (RFC 9112, 9.6).
+    """
 
     _late: asyncio.TimerHandle | None = None
     _unread = 0
+    _most = _HEADERS_BYTES
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
@@ -43,23 +50,36 @@ class PatientProtocol(HttpToolsProtocol):
 
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
-        if self._late is not None:  # the headers are not whole yet
+        if self._late is not None:  # the headers, or a body that nobody wants, are not whole yet
             self._unread += len(data)
-            if self._unread > _HEADERS_BYTES:
+            if self._unread > self._most:
                 self.transport.abort()
 
     def on_headers_complete(self) -> None:
         self._stop_waiting()
         super().on_headers_complete()
 
+    def on_response_complete(self) -> None:
+        super().on_response_complete()
+        if self.cycle.response_complete and self.cycle.more_body and not self.transport.is_closing():
+            self._await(_REST_S, _REST_BYTES)
+
+    def on_message_complete(self) -> None:
+        super().on_message_complete()
+        if self._late is not None:  # the rest of a body is through; more may follow it
+            self._await_headers()
+
     def connection_lost(self, exc: Exception | None) -> None:
         self._stop_waiting()
         super().connection_lost(exc)
 
     def _await_headers(self) -> None:
+        self._await(_HEADERS_S, _HEADERS_BYTES)
+
+    def _await(self, within_s: float, most_bytes: int) -> None:
         self._stop_waiting()
-        self._unread = 0
-        self._late = self.loop.call_later(_HEADERS_S, self.transport.abort)
+        self._unread, self._most = 0, most_bytes
+        self._late = self.loop.call_later(within_s, self.transport.abort)
 
     def _stop_waiting(self) -> None:
         if self._late is not None:

@@ -177,8 +177,7 @@ def test_large_bodies(tmp_path):
     app = Shielded(settings_in(tmp_path, upload_bytes=1000))
     with app.client() as client:
         assert client.post("/api/body", content=b"x" * 1000).json() == 1000
-        announced = client.post("/api/body", content=b"x" * 1001)
-        assert (announced.status_code, announced.headers["connection"]) == (413, "close")
+        assert client.post("/api/body", content=b"x" * 1001).status_code == 413
         streamed = client.post("/api/body", content=(b"x" * 100 for _ in range(11)))
         assert streamed.status_code == 413
         assert streamed.json()["error"] == "the body is too large; expected at most 1000 bytes"

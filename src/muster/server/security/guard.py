@@ -311,8 +311,8 @@ class _Answer:
         status, headers, content = refusal.status_code, dict(refusal.headers or {}), refusal.as_problem()
         if status == 401:
             headers["www-authenticate"] = "Bearer"
-        if status in (408, 413):
-            headers["connection"] = "close"  # what is left of the body is not read
+        if status == 408:
+            headers["connection"] = "close"  # what is left of the body does not come
         if status == 401 and _is_page(request):
             status, headers["location"] = 303, f"/login?next={quote(request.scope['path'])}"
         await self._respond(status, headers, content)
