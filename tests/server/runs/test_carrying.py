@@ -105,6 +105,23 @@ def test_who_asked_before_a_crash_is_obeyed_before_who_asks_after_it(store, run,
     carried(store, story)
 
 
+def test_a_run_that_is_resumed_begins_where_watchers_have_seen_it(store, run, monkeypatch):
+    begins = []
+
+    async def seen(child, begin):
+        begins.append(begin)
+        yield {"type": "mission", "mission": {}}
+        if not begin["log"]:
+            yield PLAN
+            yield {"type": "states", "time_s": 5.5}
+            return
+        yield entry(2, "report", **REPORT)
+
+    play(monkeypatch, seen)
+    carried(store, lambda runs: gone(runs, run))
+    assert [begin["until_s"] for begin in begins] == [0.0, 5.5]
+
+
 def test_who_asks_while_it_ends_is_told_so(store, run, monkeypatch):
     monkeypatch.setattr("muster.server.desk.runs.PATIENCE_S", 30.0)  # the database is to be waited for
     started = play(monkeypatch, stays)

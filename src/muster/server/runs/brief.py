@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.server.runs.memory import Memory
@@ -53,18 +53,18 @@ class Brief:
         """All entries."""
         return list(self._memory.entries())
 
-    def begin(self, log: Sequence[Entry], speed: float | None) -> Mapping[str, Any]:
-        """The message."""
+    def begin(self, run: Run) -> Mapping[str, Any]:
+        """The message; the run is as it is now: what watchers have seen of it is not to happen once more."""
         assert self._work is not None
-        until_s = max([self._tracked_s, *(entry.time_s for entry in log)]) if log else 0.0
+        log = self.log()
         return {
             **self._work,
-            "run": self._run.id,
-            "world": self._run.world,
-            "settings": dict(self._run.settings),
-            "speed": speed,
+            "run": run.id,
+            "world": run.world,
+            "settings": dict(run.settings),
+            "speed": run.speed,
             "log": [{"seq": e.seq, "time_s": e.time_s, "kind": e.kind, "data": dict(e.data)} for e in log],
-            "until_s": until_s,
+            "until_s": max(self._tracked_s, run.time_s) if log else 0.0,
             "tracked_s": self._tracked_s,
             "lock": self._lock,
         }

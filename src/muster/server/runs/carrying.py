@@ -152,7 +152,7 @@ class Carrying:
             await self._brief.read()
             self._recall(self._brief.log(), unsettled)
         self._texts.clear()
-        return None if self._reported else self._brief.begin(self._brief.log(), self.run.speed)
+        return None if self._reported else self._brief.begin(self.run)
 
     def _recall(self, log: Sequence[Entry], unsettled: Sequence[Action]) -> None:
         """After a crash of the server the log counts; what users asked for is settled by it, or still to be done."""
