@@ -22,12 +22,11 @@ _OUT = ("robot_fails", "robot_stuck")
 
 @dataclass(frozen=True)
 class Aftermath:
-    """The mission with tasks added and moved, the plan that was in force, what was done, and until when."""
+    """The mission with tasks added and moved, the plan that was in force, and what was done."""
 
     mission: Mission
     plan: Plan
     past: Past
-    until_s: float
 
 
 def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Aftermath:
@@ -78,8 +77,7 @@ def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) ->
     names = tuple(robot.id for robot in mission.robots)
     tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
     whole = mission.at_once(tasks=tasks)
-    until_s = float(log[-1]["time_s"]) if log else 0.0
-    return Aftermath(whole, plan if routes is None else _of_those(routes, names), past, until_s)
+    return Aftermath(whole, plan if routes is None else _of_those(routes, names), past)
 
 
 def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:

@@ -26,6 +26,8 @@ class RealCourse:
     ----------
     log
         what was logged before a crash; empty for a run that begins.
+    begin_s
+        when it begins, or goes on.
     at_end
         what else robots are told when all is done.
     """
@@ -41,6 +43,7 @@ class RealCourse:
         *,
         seed: int = 0,
         log: Sequence[Mapping[str, Any]] = (),
+        begin_s: float = 0.0,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
@@ -55,7 +58,7 @@ class RealCourse:
             seed=seed,
             recorder=gauged,
             past=found.past if log else None,
-            begin_s=found.until_s,
+            begin_s=begin_s,
         )
         gauged.live = self._live
         if log:

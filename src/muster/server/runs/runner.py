@@ -104,7 +104,16 @@ def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scri
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
-        return RealCourse(mission, plan, fleet, scribe, seed=settings.get("seed", 0), log=log, at_end=at_end)
+        return RealCourse(
+            mission,
+            plan,
+            fleet,
+            scribe,
+            seed=settings.get("seed", 0),
+            log=log,
+            begin_s=begin["until_s"],
+            at_end=at_end,
+        )
     except BaseException:
         fleet.close()
         raise
