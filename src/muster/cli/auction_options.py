@@ -10,7 +10,6 @@ import click
 
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options import Finite, settings_of
-from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
     from muster.negotiation.methods import Method
@@ -101,8 +100,5 @@ def terms_of(method: Method, others: Mapping[str, Any], settings: tuple[str, ...
     """The parameters of a method from the options of `terms_options`."""
     from muster.allocation.allocator import make_parameters
 
-    words = {name: others[name] for name in ("bid", "placement", "winner") if others[name] is not None}
-    weights = settings_of(settings)
-    for name in words.keys() & weights.keys():
-        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
-    return make_parameters(method.allocator, words | weights)
+    words = {name: others[name] for name in ("bid", "placement", "winner")}
+    return make_parameters(method.allocator, settings_of(settings, words))

@@ -11,14 +11,13 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, load_mission, mission_argument, quiet_option, require_admissible, say_of_plan
+from muster.cli.options import Finite, load_mission, load_plan, mission_argument, quiet_option, require_admissible
 from muster.cli.outputs import require_folder, require_writable
 from muster.cli.remote.option import server_option
 from muster.exchange.wishes import FORMATS, Wishes
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission
-from muster.mission.plan import read_plan
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -92,8 +91,7 @@ def command(
         _require_none_of_qgc(form)
         require_writable(None, (output,), (mission, robots, suitability), (plan,))
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    given = read_plan(plan)
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     verdict = require_admissible(loaded, given, plan)
     if form == "qgc":
         assert output is not None

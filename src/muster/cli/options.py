@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,7 +12,7 @@ from muster.mission.errors import Finding, ParameterError
 from muster.mission.hints import did_you_mean
 from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -77,6 +77,13 @@ def load_mission(
         amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
         click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
     return loaded
+
+
+def load_plan(file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> Plan:
+    """The plan of a file, and what `say_of_plan` says of it."""
+    plan = read_plan(file)
+    say_of_plan(plan, file, mission, quiet=quiet, verbose=verbose)
+    return plan
 
 
 def say_of_plan(plan: Plan, file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> None:
@@ -156,17 +163,26 @@ def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[
     return names
 
 
-def settings_of(settings: tuple[str, ...]) -> dict[str, Any]:
-    """What `--set NAME=VALUE` gives, by name."""
+def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[str, Any]:
+    """What `--set NAME=VALUE` gives, by name, together with options of their own, which are None where not given.
+
+    Raises
+    ------
+    ParameterError
+        if one is given twice, or a setting is none.
+    """
+    given = {name: value for name, value in options.items() if value is not None}
     values: dict[str, Any] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
         if name.strip() in values:
             raise ParameterError(f"--set: {name.strip()} given twice; expected it once")
+        if name.strip() in given:
+            raise ParameterError(f"--set: {name.strip()} given twice; expected it once, as --{name.strip()}")
         if not equals or not name.strip() or not text.strip():
             raise ParameterError(f"--set: {setting}; expected NAME=VALUE")
         try:
             values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
         except ValueError:
             values[name.strip()] = text.strip()
-    return values
+    return given | values

@@ -18,16 +18,16 @@ from muster.cli.options import (
     Finite,
     Verb,
     format_option,
+    load_plan,
     quiet_option,
     require_admissible,
     require_complete_option,
-    say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.report_tables import print_report
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, json_text, read_plan
+from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
     from muster.bridges.fleet import Fleet
@@ -130,8 +130,7 @@ def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
     """
     if wishes.plan is None:
         return None
-    plan = read_plan(wishes.plan)
-    say_of_plan(plan, wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
+    plan = load_plan(wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
     require_admissible(mission, plan, wishes.plan)
     return plan
 

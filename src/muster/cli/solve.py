@@ -145,10 +145,7 @@ def command(
     if book is not None and not chosen.auctions:
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
     terms = _given(chosen, threads=threads, ray=ray, bid=bid, placement=placement, winner=winner)
-    others = settings_of(settings)
-    for name in terms.keys() & others.keys():
-        raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
-    params = make_parameters(chosen, terms | others)
+    params = make_parameters(chosen, settings_of(settings, terms))
     loaded = load_mission(mission, robots, suitability, salesmen, depot)
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore)

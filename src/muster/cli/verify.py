@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
+from muster.cli.options import format_option, load_mission, load_plan, mission_argument, quiet_option
 from muster.cli.remote.option import server_option
-from muster.mission.plan import json_text, read_plan
+from muster.mission.plan import json_text
 
 
 @click.command()
@@ -37,8 +37,7 @@ def command(
     from muster.verification import verify
 
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    given = read_plan(plan)
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     verdict = verify(loaded, given)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from muster.mission.errors import NetworkError
 from muster.server.pages.editing.draft import Draft
 from muster.server.words import ConflictError, MissionVersion, Who
 
@@ -53,6 +54,22 @@ def test_a_text_is_checked_once_it_is_quiet() -> None:
     assert draft.checked.mission == {"name": "name: c\n"}
     asyncio.run(draft.tick())
     assert len(missions.checked) == 2
+
+
+def test_a_text_whose_check_failed_is_checked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    missions = Missions()
+    draft, check = Draft(missions, FIRST), missions.check
+
+    async def fails(*arguments: Any) -> Any:
+        raise NetworkError("the worker died; expected it to be asked again")
+
+    monkeypatch.setattr(missions, "check", fails)
+    with pytest.raises(NetworkError):
+        asyncio.run(draft.tick())
+    monkeypatch.setattr(missions, "check", check)
+    monkeypatch.setattr("muster.server.pages.editing.draft._QUIET_S", -1.0)
+    asyncio.run(draft.tick())
+    assert missions.checked == ["name: a\n"]
 
 
 def test_saving_knows_of_others_and_loses_nothing() -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.options import load_mission, say_of_plan
+from muster.cli.options import load_mission, load_plan
 from muster.cli.remote.sending import kept_plan
-from muster.mission.plan import json_text, read_plan
+from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
     from muster.server.client import Client
@@ -31,8 +31,7 @@ def run(
 ) -> None:
     """Send the mission and the plan; print the same JSON, or for people the server's sentences in place of tables."""
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    given = read_plan(plan)
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     found = control.plans.explain(kept_plan(control, loaded, given, verbose=verbose).id, task)
     sentences = found.pop("words")
     if form == "json":

@@ -11,11 +11,10 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import load_mission, say_of_plan
+from muster.cli.options import load_mission, load_plan
 from muster.cli.outputs import require_folder, require_writable
 from muster.cli.remote.sending import kept_plan
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.plan import read_plan
 
 if TYPE_CHECKING:
     from muster.server.client import Client
@@ -49,8 +48,7 @@ def run(
     else:
         require_writable(None, (output,), (mission, robots, suitability), (plan,))
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    given = read_plan(plan)
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     wishes = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
     asked = {name: value for name, value in wishes.items() if _is_given(name)}
     if asked and form != "qgc":

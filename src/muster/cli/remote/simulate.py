@@ -11,7 +11,7 @@ import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.keeping import kept_record
-from muster.cli.options import load_mission, say_of_plan
+from muster.cli.options import load_mission, load_plan
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.remote.sending import kept, kept_plan
 from muster.cli.remote.waiting import planned
@@ -19,7 +19,7 @@ from muster.cli.report_tables import print_report
 from muster.cli.simulate import noise_of
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import json_text, read_plan
+from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
     from muster.server.client import Client, RunningRun
@@ -90,8 +90,7 @@ def _plan(
 ) -> int:
     """The id of the plan that is carried out."""
     if file is not None:
-        given = read_plan(file)
-        say_of_plan(given, file, mission, quiet=quiet, verbose=verbose)
+        given = load_plan(file, mission, quiet=quiet, verbose=verbose)
         return kept_plan(control, mission, given, verbose=verbose).id
     limit = None if iterations is not None else time_limit
     there = kept(control, mission, verbose=verbose)

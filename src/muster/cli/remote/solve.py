@@ -14,7 +14,6 @@ from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.remote.sending import kept
 from muster.cli.remote.waiting import planned
 from muster.cli.results import show_plan, write_book
-from muster.mission.errors import ParameterError
 from muster.mission.plan import plan_from, read_plan
 
 if TYPE_CHECKING:
@@ -55,11 +54,8 @@ def run(
     require_writable(output, (book, plot, gantt), (mission, robots, suitability), (start,))
     require_csv(book)
     require_drawable(plot, gantt)
-    parameters = settings_of(settings)
-    for name, value in (("threads", threads), ("bid", bid), ("placement", placement), ("winner", winner)):
-        if value is not None and name in parameters:
-            raise ParameterError(f"--set: {name} given twice; expected it once, as --{name}")
-        parameters |= {} if value is None else {name: value}
+    words = {"threads": threads, "bid": bid, "placement": placement, "winner": winner}
+    parameters = settings_of(settings, words)
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     first = None if start is None else read_plan(start)
     there = kept(control, loaded, verbose=verbose)

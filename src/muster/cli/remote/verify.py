@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import load_mission, say_of_plan
+from muster.cli.options import load_mission, load_plan
 from muster.cli.plan_tables import print_verdict
 from muster.cli.remote.sending import kept_plan
-from muster.mission.plan import json_text, read_plan
+from muster.mission.plan import json_text
 from muster.verification import Verdict
 from muster.verification.verdict import RouteFigures, Violation, Visit
 
@@ -38,8 +38,7 @@ def run(
 ) -> int:
     """Send the mission and the plan, and show what the judge there says."""
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-    given = read_plan(plan)
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     said = control.plans.verdict(kept_plan(control, loaded, given, verbose=verbose).id)
     if form == "json":
         click.echo(json_text({key: value for key, value in said.items() if key not in _NOT_PRINTED}), nl=False)

@@ -68,11 +68,6 @@ class Draft:
         return self.text == self.base.text
 
     @property
-    def is_checked(self) -> bool:
-        """Whether what is known of the text is of the text as it is now."""
-        return self._changed_at is None and not self._checking
-
-    @property
     def can_undo(self) -> bool:
         """Whether there is a step to undo."""
         return self._history.can_undo
@@ -125,13 +120,16 @@ class Draft:
             self._tell("save")
 
     async def tick(self) -> None:
-        """Check the text when nobody has changed it for a moment; called again and again."""
+        """Check the text when nobody has changed it for a moment; called again and again, also after it has failed."""
         if self._changed_at is None or self._checking or monotonic() - self._changed_at < _QUIET_S:
             return
         self._changed_at = None
         self._checking = True
         try:
             found = await self.missions.check(self.text, dict(self.base.files))
+        except BaseException:
+            self._changed_at = self._changed_at or monotonic()  # it is still not known: asked again
+            raise
         finally:
             self._checking = False
         known = found.get("mission") or self.checked.mission
