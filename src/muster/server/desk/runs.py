@@ -6,7 +6,8 @@ import asyncio
 import hashlib
 import logging
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -50,6 +51,7 @@ class Runs:
         """End all runners; the runs go on when a server is there again. Real robots are told to stand."""
         await asyncio.gather(*(carrying.close() for carrying in self._live.values()))
         await asyncio.gather(*self._tasks.values())
+        await asyncio.gather(*self._slow, return_exceptions=True)
 
     async def start(
         self, who: Who, plan: int, world: str = "kinematic", speed: float | None = 1.0, **settings: Any
@@ -111,8 +113,7 @@ class Runs:
             raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
         action = await self._added(unkept(who, f"run.{verb}", said, run, self._moment()), who, carrying)
         if not carrying.ask(action):
-            if action.id > 0:
-                await asyncio.to_thread(self._store.actions.settle, action.id, TOO_LATE)
+            await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
             raise ConflictError(f"run {run} is over: {carrying.run.state}; expected one that is under way")
         return action
 
@@ -204,22 +205,25 @@ class Runs:
         if carrying.journal.trouble or self._slow:  # it would do so again
             return action
         what = (who, action.verb, action.data, action.run, action.at)
-        adding = asyncio.create_task(asyncio.to_thread(self._store.actions.add, *what))
-        done, _ = await asyncio.wait([adding], timeout=PATIENCE_S)
-        if not done:
-            self._slow.add(adding)
-            adding.add_done_callback(self._answered)
-            return action
-        try:
-            return adding.result()
-        except StoreError:
-            return action
+        return await self._patiently(self._store.actions.add, *what) or action
 
-    def _answered(self, adding: asyncio.Task[Action]) -> None:
-        """The database has taken an action late, or refused it; it was obeyed, and is written down with its outcome."""
-        self._slow.discard(adding)
-        if not adding.cancelled() and (error := adding.exception()) is not None:
-            _log.warning("an action was not taken: %s", error)
+    async def _patiently(self, write: Callable[..., Action], *what: Any) -> Action | None:
+        """Have an action written down; None where the database refuses that, or takes its time and goes on with it."""
+        writing = asyncio.create_task(asyncio.to_thread(write, *what))
+        writing.add_done_callback(self._written)
+        done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
+        if not done:
+            self._slow.add(writing)
+            return None
+        try:
+            return writing.result()
+        except StoreError:
+            return None
+
+    def _written(self, writing: asyncio.Task[Action]) -> None:
+        self._slow.discard(writing)
+        if not writing.cancelled() and (error := writing.exception()) is not None:
+            _log.warning("an action was not written down: %s", error)
 
     def _moment(self) -> datetime:
         """Now, and later than the last time."""
