@@ -45,7 +45,7 @@ _LOCAL = "local"
     default=2048,
     show_default=True,
     metavar="MB",
-    help="Of each worker.",
+    help="Of each worker, and of each simulated run.",
 )
 @click.option(
     "--runs", type=click.IntRange(1, 1000), default=8, show_default=True, metavar="N", help="Carried out at once."

@@ -30,7 +30,8 @@ class Settings:
     database
         a URL of SQLAlchemy: `sqlite:///FILE` or `postgresql://USER@HOST/NAME`.
     workers, memory_mb, job_s
-        how many processes plan at once, how much memory each may have, and how long one piece of work may take.
+        how many processes plan at once, how much memory each of them and each simulated run may have, and how long one
+        piece of work may take.
     queue
         how many jobs may wait.
     runs

@@ -26,7 +26,7 @@ def play(monkeypatch, script):
             started.append(self)
 
         @classmethod
-        async def start(cls, name):
+        async def start(cls, name, memory_mb):
             return cls()
 
         def say(self, message):

@@ -124,7 +124,7 @@ def test_a_runner_that_dies_of_itself_again_and_again_fails_the_run(store, monke
 
     found = store.runs.get(asyncio.run(story()))
     assert found.state == "failed"
-    assert "its process ended 3 times at 0.0 s" in found.remark
+    assert "its process ended 3 times in a row, at 0.0 s" in found.remark
 
 
 class Pragma:

@@ -35,7 +35,7 @@ def test_runners_leave_no_folder_and_know_no_secret(tmp_path, monkeypatch):
     monkeypatch.setenv("MUSTER_TOKEN", "muster_secret")
 
     async def story(end):
-        child = await Child.start("run 1")
+        child = await Child.start("run 1", 2048)
         while not list(tmp_path.iterdir()):
             await asyncio.sleep(0.02)
         assert b"muster_secret" not in Path(f"/proc/{child.pid}/environ").read_bytes()

@@ -182,7 +182,7 @@ class Runs:
         )
 
     def _carry(self, run: Run) -> Carrying:
-        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock(run.id)))
+        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock(run.id)), self._settings.memory_mb)
         task = self._tasks[run.id] = asyncio.create_task(carrying.go())
         task.add_done_callback(lambda _: self._forget(run.id))
         return carrying

@@ -8,6 +8,7 @@
 | `performance` | own process | goes on by the wall clock, obeys at once, tells what happens |
 | `pipe`, `pace`, `given` | own process | lines both ways; when time goes on; events as users give them |
 | `child` | server | a runner's process: started, spoken to, ended |
+| `deaths` | server | when runners have died too often |
 | `carrying` | server | one run: its runner, again after a crash; its log; its state |
 | `brief`, `memory` | server | what a runner is told first; the log, packed in memory |
 | `journal` | server | writes a run's log to the database, and keeps it in memory while that refuses |

@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 from muster.server.runs.brief import Brief
 from muster.server.runs.child import Child
+from muster.server.runs.deaths import Deaths
 from muster.server.runs.feed import Feed
 from muster.server.runs.journal import Journal
 from muster.server.runs.lines import line_of
+from muster.server.runs.terms import SIMULATED
 from muster.server.runs.unkept import number_at
 from muster.server.words import OVER, Action, Entry, Run, RunState, StoreError
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store
 
-DEATHS, KILLS = 3, 30
-"""How often in a row a runner may die without getting further before the run fails: by itself, and by SIGKILL."""
 TOO_LATE = "the run was over before"
 """The outcome of what was asked for and not done any more."""
 NOTED_S = 1.0
@@ -45,10 +45,13 @@ class Carrying:
         as the database has it.
     lock
         a file that a runner of real robots locks, so that never two command them.
+    memory_mb
+        what a runner of a simulated world may have.
     """
 
-    def __init__(self, store: Store, run: Run, lock: str) -> None:
+    def __init__(self, store: Store, run: Run, lock: str, memory_mb: int) -> None:
         self._store, self.run, self._brief = store, run, Brief(store, run, lock)
+        self._memory_mb = memory_mb
         self._asked: dict[int, Action] = {}
         self._child: Child | None = None
         self._mission: Mapping[str, Any] | None = None
@@ -104,12 +107,13 @@ class Carrying:
             await self.journal.close()
 
     async def _go(self) -> None:
-        deaths, furthest = 0, (-1.0, -1)
+        deaths = Deaths(real=self.run.world not in SIMULATED)
         while not self._closing:
             begin = await self._begin_when_it_can_be_read()
             if begin is None:
                 return
-            self._child = await Child.start(f"run {self.run.id}")
+            self._child = await Child.start(f"run {self.run.id}", self._memory_mb)
+            deaths.born()
             try:
                 if self._closing:
                     return
@@ -120,10 +124,9 @@ class Carrying:
                 return
             await self.journal.given()
             reached = (self.run.time_s, self.feed.seq - self.run.resumed)  # that it resumed is no progress
-            deaths, furthest = (0 if reached > furthest else deaths) + 1, max(reached, furthest)
-            if deaths >= (KILLS if self._child.killed else DEATHS):
-                words = self._child.last_words or "without a word"
-                self._failed = f"its process ended {deaths} times at {self.run.time_s:.1f} s of the mission: {words}"
+            if deaths.too_often(reached, killed=self._child.killed):
+                words, at_s = self._child.last_words or "without a word", f"{self.run.time_s:.1f} s"
+                self._failed = f"its process ended {deaths.count} times in a row, at {at_s} of the mission: {words}"
                 return
             await asyncio.sleep(_AGAIN_S)
 
@@ -189,7 +192,7 @@ class Carrying:
             self._mission = said["mission"]
             self.feed.ready()
         elif said["type"] == "resuming":
-            self._resuming = f"resuming after a crash ({said['share']:.0%})"
+            self._resuming = f"resuming ({said['share']:.0%})"
             self._tell_run()
         elif said["type"] == "going":
             self._resuming = ""

@@ -32,13 +32,14 @@ class Child:
         self._listener = asyncio.create_task(self._listen())
 
     @classmethod
-    async def start(cls, name: str) -> Child:
+    async def start(cls, name: str, memory_mb: int) -> Child:
         """A new process, which waits for its first line; `name` is for the log of the server."""
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-P",
             "-m",
             "muster.server.runs.runner",
+            str(memory_mb),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,

@@ -118,4 +118,4 @@ def _report(data: Mapping[str, Any]) -> str:
 
 
 def _resumed(data: Mapping[str, Any]) -> str:
-    return f"resumed after a crash: {data.get('how', '')}".rstrip(": ")
+    return f"resumed after a stop: {data.get('how', '')}".rstrip(": ")

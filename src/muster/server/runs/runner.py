@@ -1,8 +1,9 @@
-"""`python -m muster.server.runs.runner`: carries one plan out, for a server at the other end of its pipes.
+"""`python -m muster.server.runs.runner MEMORY_MB`: carries one plan out, for a server at the other end of its pipes.
 
 The first line says what is to be carried out: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`,
 `settings`, `speed`, and of a run that goes on `log`, `until_s`, `tracked_s`. Others are users' actions: `id`, `verb`,
-`data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before.
+`data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before. A simulated
+world may have so much memory; what commands real robots is not ended for that.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from muster.server.runs.performance import Course, Performance
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.scribe import Scribe
 from muster.server.work.folders import OF_RUNS
+from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 
 REAL = ("ros1", "ros2", "mavlink")
@@ -33,12 +35,13 @@ STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
 """Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
 
 
-def main() -> int:
+def main(arguments: list[str]) -> int:
+    (memory_mb,) = (int(word) for word in arguments)
     with TemporaryDirectory(prefix=f"{OF_RUNS}{os.getpid()}-", ignore_cleanup_errors=True) as folder:
-        return _obey(folder)
+        return _obey(folder, memory_mb)
 
 
-def _obey(folder: str) -> int:
+def _obey(folder: str, memory_mb: int) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's affair
     lines, said = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever prints does not disturb the server
@@ -50,10 +53,17 @@ def _obey(folder: str) -> int:
     if begin["world"] in REAL:
         real.set()
         signal.signal(signal.SIGTERM, lambda *_: ended.set())
+    else:
+        limit_memory(memory_mb)
     try:
         _carry_out(begin, folder, inbox, outbox, ended)
     except MusterError as error:
         outbox.say({"type": "failed", "reason": str(error).splitlines()[0]})
+    except (MemoryError, OSError) as error:
+        if real.is_set() or not is_of_memory(error):
+            raise
+        reason = f"it needs more than {memory_mb} MB of memory; expected more (--memory)"
+        outbox.say({"type": "failed", "reason": reason})
     outbox.close()
     return 0
 
@@ -126,4 +136,4 @@ def _shown(mission: Mission) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -6,7 +6,6 @@ killed when the server is gone. What libraries print goes to standard error: the
 
 from __future__ import annotations
 
-import errno
 import importlib
 import json
 import os
@@ -22,6 +21,7 @@ from typing import Any, BinaryIO
 from muster.allocation.stop import Stop
 from muster.mission.errors import InputError, MusterError
 from muster.server.work.errors import MOST_FINDINGS
+from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.requests import requests
 from muster.server.work.tasks import TASKS, Task
 
@@ -36,7 +36,8 @@ def main(arguments: list[str], tasks: Mapping[str, Task] = TASKS) -> None:
     """Work until there is no more input."""
     memory_mb, parent = (int(word) for word in arguments)
     _end_with(parent)
-    _limit(memory_mb * 2**20)
+    limit_memory(memory_mb)
+    os.nice(_NICE)
     send = _sending(_protected_output())
     for line, stop in requests(open(0, "rb", closefd=False)):  # noqa: SIM115 - read until the end of the process
         answer = _answer(json.loads(line), tasks, send, stop)
@@ -53,13 +54,6 @@ def _end_with(parent: int) -> None:
     ctypes.CDLL(None).prctl(_KILL_WITH_PARENT, signal.SIGKILL)
     if os.getppid() != parent:  # it went before that could be asked for
         sys.exit()
-
-
-def _limit(size: int) -> None:
-    """No more memory than that, no core files, and behind everything else in the queue for processors."""
-    resource.setrlimit(resource.RLIMIT_AS, (size, size))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    os.nice(_NICE)
 
 
 def _protected_output() -> BinaryIO:
@@ -107,7 +101,7 @@ def _answer(request: Mapping[str, Any], tasks: Mapping[str, Task], send: Send, s
 
 def _failure(error: Exception) -> dict[str, Any]:
     """A line for a person, with all findings of an input that is wrong."""
-    if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
+    if is_of_memory(error):
         return {"kind": "memory", "error": "", "findings": []}
     if isinstance(error, InputError):
         first, *others = error.findings

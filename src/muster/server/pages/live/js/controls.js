@@ -45,7 +45,7 @@ export class Controls {
     this.state.dataset.state = state;
     setText(this.clock, clockTime(team.time));
     this.clock.dataset.seconds = team.time.toFixed(1);
-    const again = resumed ? `went on ${resumed} × after a crash` : "";
+    const again = resumed ? `went on ${resumed} × after a stop` : "";
     setText(this.remark, [remark, again].filter(Boolean).join("; "));
     setText(this.speedWords, this.may || team.over ? "" : speed === null ? speedWords(speed) : `at ${speedWords(speed)}`);
     this.showCounts(team.counts(), team.hopeless);

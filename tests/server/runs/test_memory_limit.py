@@ -1,0 +1,35 @@
+"""What a run may have of this machine's memory."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+HUNGRY = """
+import sys
+from muster.server.runs import runner
+runner.mission_of = lambda _: bytearray(3 * 2**30)
+runner.alone = lambda _: __import__("contextlib").nullcontext()
+sys.exit(runner.main(["2048"]))
+"""
+
+
+def hungry(world):
+    """What a runner says whose mission takes 3 GB."""
+    begin = {"world": world, "log": [], "mission": {}, "lock": ""}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([sys.executable, "-c", HUNGRY], text=True, **pipes) as runner:
+        runner.stdin.write(json.dumps(begin) + "\n")
+        runner.stdin.flush()
+        return [json.loads(line) for line in runner.stdout]
+
+
+def test_a_simulated_run_may_have_so_much_and_says_what_it_would_need():
+    reason = "it needs more than 2048 MB of memory; expected more (--memory)"
+    assert hungry("kinematic") == [{"type": "failed", "reason": reason}]
+
+
+@pytest.mark.parametrize("world", ["ros1", "mavlink"])
+def test_what_commands_real_robots_is_not_ended_for_that(world):
+    assert hungry(world) == []  # it has its mission, which is none
