@@ -203,3 +203,24 @@ def test_the_keyboard_alone_chooses_and_moves_a_task(watched, page):
     page.keyboard.press("Escape")
     page.keyboard.press("Control+z")
     page.get_by_text("version 4", exact=True).wait_for()
+
+
+def test_the_keyboard_alone_adds_a_task_and_a_zone(watched, page):
+    plan_view(watched, "yard-test")
+    scene = "getElement(document.querySelector('.muster-map')).stage.scene"
+    tasks = page.evaluate(f"{scene}.tasks.length")
+    clicks, ground = page.get_by_role("combobox", name="What a click on the map does"), page.locator(".muster-map-host")
+    clicks.click()
+    page.get_by_role("option", name="Add tasks").click()
+    ground.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    page.get_by_text("version 4, changed").wait_for()
+    page.wait_for_function(f"{scene}.tasks.length === {tasks + 1}")
+    clicks.click()
+    page.get_by_role("option", name="Draw zones").click()
+    ground.focus()
+    for key in (" ", "ArrowRight", " ", "ArrowDown", " ", "Enter"):
+        page.keyboard.press(key)
+    page.get_by_role("button", name="Add the zone").click()
+    page.wait_for_function(f"{scene}.zones.length === 1")

@@ -132,6 +132,20 @@ def test_what_cannot_be_is_refused_in_words_and_may_be_changed(watched, page):
     form.get_by_role("button", name="Leave it").click()
 
 
+def test_the_keyboard_alone_places_a_task(watched, page):
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press("Escape")
+    for key in ("n", "ArrowUp", "Enter"):
+        page.keyboard.press(key)
+    form = page.get_by_role("dialog", name="A new task")
+    form.get_by_label("id").wait_for()
+    page.keyboard.press("Escape")
+    form.wait_for(state="hidden")
+    for key in ("n", "Escape"):
+        page.keyboard.press(key)
+    assert not page.locator(".field .hint").is_visible()
+
+
 def test_what_nobody_can_do_is_seen_at_once(watched, page):
     page.keyboard.press("Escape")
     with Client(watched.origin) as client:

@@ -32,6 +32,9 @@ def play(monkeypatch, script):
         def say(self, message):
             self.told.put_nowait(message)
 
+        def say_line(self, line):
+            self.say(json.loads(line))
+
         async def heard(self):
             async for message in script(self, await self.told.get()):
                 yield json.dumps(message, separators=(",", ":"))

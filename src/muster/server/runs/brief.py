@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import asyncio
 import base64
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from muster.server.runs.child import line_to_say
 from muster.server.runs.memory import Memory
 from muster.server.words import Entry, MissionVersion, Run
 
@@ -53,11 +53,11 @@ class Brief:
         """All entries."""
         return list(self._memory.entries())
 
-    def begin(self, run: Run) -> Mapping[str, Any]:
-        """The message; the run is as it is now: what watchers have seen of it is not to happen once more."""
+    def line(self, run: Run) -> bytes:
+        """What is said; the run is as it is now: what watchers have seen of it is not to happen once more."""
         assert self._work is not None
         log = self.log()
-        return {
+        message = {
             **self._work,
             "run": run.id,
             "world": run.world,
@@ -68,6 +68,7 @@ class Brief:
             "tracked_s": self._tracked_s,
             "lock": self._lock,
         }
+        return line_to_say(message)
 
     def _read(self) -> tuple[Memory, float, dict[str, Any]]:
         run, store, memory = self._run, self._store, Memory()

@@ -130,15 +130,15 @@ class Carrying:
                 return
             await asyncio.sleep(_AGAIN_S)
 
-    async def _led(self, child: Child, begin: Mapping[str, Any]) -> None:
+    async def _led(self, child: Child, begin: bytes) -> None:
         """Tell a runner what to do, and hear it to its end."""
-        child.say(begin)
+        child.say_line(begin)
         for action in self._asked.values():
             child.say(_asked(action))
         async for text in child.heard():
             await self._hear(text)
 
-    async def _begin_when_it_can_be_read(self) -> Mapping[str, Any] | None:
+    async def _begin_when_it_can_be_read(self) -> bytes | None:
         """As `_begin`, however long the database is gone; None also if the server closes meanwhile."""
         while not self._closing:
             try:
@@ -148,14 +148,14 @@ class Carrying:
                 await asyncio.sleep(_AGAIN_S)
         return None
 
-    async def _begin(self) -> Mapping[str, Any] | None:
-        """What the runner is told first; None where the log says that it is over."""
+    async def _begin(self) -> bytes | None:
+        """What the runner is told first, a line; None where the log says that it is over."""
         if not self._brief.known:
             unsettled = await asyncio.to_thread(self._store.actions.unsettled, self.run.id)
             await self._brief.read()
-            self._recall(self._brief.log(), unsettled)
+            self._recall(await asyncio.to_thread(self._brief.log), unsettled)
         self._texts.clear()
-        return None if self._reported else self._brief.begin(self.run)
+        return None if self._reported else await asyncio.to_thread(self._brief.line, self.run)
 
     def _recall(self, log: Sequence[Entry], unsettled: Sequence[Action]) -> None:
         """After a crash of the server the log counts; what users asked for is settled by it, or still to be done."""

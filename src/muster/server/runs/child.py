@@ -65,10 +65,13 @@ class Child:
 
     def say(self, message: Mapping[str, Any]) -> None:
         """Say something, if it still hears."""
-        stdin = self._process.stdin
-        assert stdin is not None
+        self.say_line(line_to_say(message))
+
+    def say_line(self, line: bytes) -> None:
+        """Say a line of `line_to_say`."""
+        assert self._process.stdin is not None
         with suppress(OSError, RuntimeError):
-            stdin.write(json.dumps(message, separators=(",", ":")).encode() + b"\n")
+            self._process.stdin.write(line)
 
     async def heard(self) -> AsyncIterator[str]:
         """The lines that it says, until it ends."""
@@ -104,3 +107,8 @@ class Child:
             if text:
                 self._last_words.append(text)
                 _log.warning("%s: %s", self._name, text)
+
+
+def line_to_say(message: Mapping[str, Any]) -> bytes:
+    """A message as runners hear it; of a long one another thread had better make the line."""
+    return json.dumps(message, separators=(",", ":")).encode() + b"\n"

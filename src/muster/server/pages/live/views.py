@@ -19,7 +19,7 @@ KEYS = {
     "+ and -": "faster, slower (with the map in focus: nearer, farther)",
     "1 to 9": "choose a robot",
     "up, down": "choose the robot before, after (with the map in focus: move it)",
-    "n": "add a task by a click on the map",
+    "n": "add a task by a click on the map, or by Enter in the middle of it",
     ". and ,": "with the map in focus: the next robot or task, the one before",
     "v": "seen in space, and from above",
     "Ctrl+Z": "take the last command back",

@@ -8,16 +8,16 @@ import { Stage } from "muster-map/stage.js";
 import { fillTable, told, withShapes } from "muster-map/words.js";
 
 const NOTES = {
-  task: "Click where the new task is; Escape ends adding.",
-  robot: "Click where the new robot begins; Escape ends adding.",
-  zone: "Click the corners of the zone. Enter, a double-click or the first corner closes it; Backspace takes the last corner back, Escape leaves it.",
+  task: "Click where the new task is (Enter: in the middle of the map); Escape ends adding.",
+  robot: "Click where the new robot begins (Enter: in the middle of the map); Escape ends adding.",
+  zone: "Click the corners of the zone (space: in the middle of the map). Enter, a double-click or the first corner closes it; Backspace takes the last corner back, Escape leaves it.",
 };
 const groups = new Map(); // maps that are looked at together, by the name of their group
 
 export default {
   template: `
     <div class="muster-map" :class="{ editable }">
-      <div ref="host" class="muster-map-host" tabindex="0" role="application" aria-roledescription="map"
+      <div ref="host" class="muster-map-host" :class="{ adding: editable && mode !== 'select' }" tabindex="0" role="application" aria-roledescription="map"
            :aria-label="label" aria-keyshortcuts="ArrowLeft ArrowRight ArrowUp ArrowDown + - 0 n p Enter">
         <canvas ref="ground" aria-hidden="true"></canvas>
         <canvas ref="top" aria-hidden="true"></canvas>
@@ -54,7 +54,7 @@ export default {
     this.stage.onView = (state) => this.share(state);
     const emit = (name, data) => this.heard(name, data);
     listenToPointer(host, this.stage, emit, () => this.mode);
-    listenToKeys(host, this.stage, emit);
+    listenToKeys(host, this.stage, emit, () => this.mode);
     this.sizes = new ResizeObserver(() => this.stage.resize());
     this.sizes.observe(host);
     this.scheme = window.matchMedia("(prefers-color-scheme: dark)");

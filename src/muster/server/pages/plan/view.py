@@ -25,7 +25,7 @@ _KEYS = {
     "Alt+arrows": "move what is chosen (Shift: farther)",
     "Delete": "take out what is chosen",
     "r": "what comes before what",
-    "Enter": "why is this task done by this robot",
+    "Enter": "why is this task done by this robot; where a click adds: add one in the middle of the map",
 }
 
 

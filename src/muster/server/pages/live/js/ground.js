@@ -85,7 +85,7 @@ export class Ground {
     const heard = { choose: onChoose, add: onAdd, move: onMove, hover: (one) => this.point(one), prerequisites: () => this.stage.draw() };
     const emit = (name, data) => heard[name]?.(data);
     listenToPointer(this.host, this.stage, emit, () => this.mode);
-    listenToKeys(this.host, this.stage, emit, { letters: false });
+    listenToKeys(this.host, this.stage, emit, () => this.mode, { letters: false });
     this.sizes = new ResizeObserver(() => this.stage.resize());
     this.sizes.observe(this.host);
     this.scheme = window.matchMedia("(prefers-color-scheme: dark)");
@@ -135,6 +135,8 @@ export class Ground {
   setMode(mode) {
     this.mode = mode;
     this.host.style.cursor = mode === "select" ? "" : "crosshair";
+    this.host.classList.toggle("adding", mode !== "select");
+    if (mode !== "select") this.host.focus({ preventScroll: true });
   }
 
   point(one) {

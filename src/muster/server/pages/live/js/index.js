@@ -151,20 +151,20 @@ export class LiveView {
     if (on && this.space) this.toggleSpace();
     Object.assign(this, { adding: on, moving: null });
     this.controls.add.setAttribute("aria-pressed", String(on));
-    this.showMode(on ? "Click where the new task is (Escape: none)" : "");
+    this.showMode(on ? "Click where the new task is, or move the map by arrows and press Enter for its middle (Escape: none)" : "");
   }
 
   setMoving(task) {
     if (this.space) this.toggleSpace();
     this.setAdding(false);
     this.moving = task;
-    this.showMode(`Click where ${task} is to be, or drag it (Escape: leave it)`);
+    this.showMode(`Click where ${task} is to be, drag it, or press Enter for the middle of the map (Escape: leave it)`);
   }
 
   showMode(words) {
     this.hint.textContent = words;
     this.hint.hidden = !words;
-    this.ground.setMode(words ? "task" : "select");
+    this.ground.setMode(words ? "place" : "select");
   }
 
   async clicked(place) {

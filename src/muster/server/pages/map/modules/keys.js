@@ -1,13 +1,14 @@
-// The map by keyboard: moving the view, going from mark to mark, moving what is chosen.
+// The map by keyboard: moving the view, going from mark to mark, moving what is chosen, adding in the middle of the view.
 
-import { rounded } from "./pointer.js";
+import { adds, rounded } from "./pointer.js";
 import { niceStep } from "./view.js";
 
 const PAN = 60; // pixels
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-// `letters`: n and p too go from mark to mark; a view in which they mean something else has . and , alone.
-export function listenToKeys(element, stage, emit, { letters = true } = {}) {
+// `modeOf`: what a click does now. `letters`: n and p too go from mark to mark; a view in which they mean something else
+// has . and , alone.
+export function listenToKeys(element, stage, emit, modeOf, { letters = true } = {}) {
   const forth = letters ? ["n", ".", "]"] : [".", "]"];
   const back = letters ? ["p", ",", "["] : [",", "["];
   element.addEventListener("keydown", (event) => {
@@ -27,7 +28,10 @@ export function listenToKeys(element, stage, emit, { letters = true } = {}) {
     else if (forth.includes(event.key)) next(1);
     else if (back.includes(event.key)) next(-1);
     else if (event.key === "r") { stage.showPrerequisites = !stage.showPrerequisites; stage.draw(); emit("prerequisites", stage.showPrerequisites); }
+    else if (event.key === "Escape" && modeOf() === "place") return; // the view leaves it
     else if (event.key === "Escape") { emit("choose", null); emit("leave", null); }
+    else if (event.key === "Enter" && adds(modeOf())) emit("add", { what: modeOf(), ...middle() });
+    else if (event.key === " " && modeOf() === "zone") corner();
     else if (event.key === "Enter" && stage.chosen) emit("ask", stage.chosen);
     else if (event.key === "Delete" && stage.chosen && stage.editable) emit("remove", stage.chosen);
     else return;
@@ -49,6 +53,17 @@ export function listenToKeys(element, stage, emit, { letters = true } = {}) {
   function pan([dx, dy]) {
     stage.view.pan(-dx * PAN, dy * PAN);
     stage.moved();
+  }
+
+  function middle() {
+    const { view } = stage;
+    return rounded(stage, view.metresX(view.width / 2), view.metresY(view.height / 2));
+  }
+
+  function corner() {
+    const { x, y } = middle();
+    const corners = stage.sketch.click([x, y]);
+    if (corners) emit("zone", { corners });
   }
 
   function zoom(factor) {

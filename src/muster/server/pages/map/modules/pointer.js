@@ -81,7 +81,7 @@ export function listenToPointer(element, stage, emit, modeOf) {
       closed(stage.sketch.click([place.x, place.y]));
       return;
     }
-    if (modeOf() !== "select" && !one) emit("add", { what: modeOf(), ...place });
+    if (modeOf() === "place" || (adds(modeOf()) && !one)) emit("add", { what: modeOf(), ...place });
     else emit("choose", one && one.what !== "zone" ? one : null);
     if (one?.what === "zone") emit("choose", one);
   }
@@ -103,6 +103,11 @@ export function listenToPointer(element, stage, emit, modeOf) {
     emit("hover", one && { ...one, px: here[0], py: here[1] });
     stage.draw();
   }
+}
+
+// Whether a click adds something: `place` also upon a mark, for it is for one click alone.
+export function adds(mode) {
+  return mode !== "select" && mode !== "zone";
 }
 
 // Places as finely as a pixel tells them, and no finer: at most centimetres.
