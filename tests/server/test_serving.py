@@ -68,7 +68,7 @@ def test_headers_in_pieces_and_again():
     assert asyncio.run(told()).count(b"200 OK") == 2
 
 
-@pytest.mark.parametrize(("rest", "answers"), [(50_000, 2), (500_000, 1)])
+@pytest.mark.parametrize(("rest", "answers"), [(50_000, 2), (99_000, 2), (500_000, 1)])
 def test_the_rest_of_a_body_that_was_answered_before_is_thrown_away_while_it_is_little(monkeypatch, rest, answers):
     monkeypatch.setattr(serving, "_REST_BYTES", 100_000)
     begin = b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % rest

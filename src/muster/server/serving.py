@@ -49,8 +49,9 @@ class PatientProtocol(HttpToolsProtocol):
         self._await_headers()
 
     def data_received(self, data: bytes) -> None:
+        awaited = self._late
         super().data_received(data)
-        if self._late is not None:  # the headers, or a body that nobody wants, are not whole yet
+        if self._late is not None and self._late is awaited:  # headers, or a body that nobody wants, are not whole yet
             self._unread += len(data)
             if self._unread > self._most:
                 self.transport.abort()

@@ -7,7 +7,7 @@ import pytest
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
-SLOW_MS = 90_000
+SLOW_MS = 20_000
 
 
 @pytest.fixture
@@ -212,6 +212,7 @@ def test_the_keyboard_alone_adds_a_task_and_a_zone(watched, page):
     clicks, ground = page.get_by_role("combobox", name="What a click on the map does"), page.locator(".muster-map-host")
     clicks.click()
     page.get_by_role("option", name="Add tasks").click()
+    page.get_by_text("Click where the new task is").wait_for()
     ground.focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
@@ -219,6 +220,7 @@ def test_the_keyboard_alone_adds_a_task_and_a_zone(watched, page):
     page.wait_for_function(f"{scene}.tasks.length === {tasks + 1}")
     clicks.click()
     page.get_by_role("option", name="Draw zones").click()
+    page.get_by_text("Click the corners of the zone").wait_for()
     ground.focus()
     for key in (" ", "ArrowRight", " ", "ArrowDown", " ", "Enter"):
         page.keyboard.press(key)

@@ -90,6 +90,19 @@ def test_saving_knows_of_others_and_loses_nothing() -> None:
     assert not mine.is_saved
 
 
+def test_edits_asked_for_before_are_waited_for() -> None:
+    async def story() -> str:
+        draft = Draft(Missions(), FIRST)
+        edit = asyncio.create_task(draft.edit("append", "# later\n"))
+        await asyncio.sleep(0)
+        assert draft.is_saved
+        await draft.settled()
+        assert edit.done()
+        return draft.text
+
+    assert asyncio.run(story()).endswith("# later\n")
+
+
 def test_an_edit_that_fails_changes_nothing() -> None:
     draft, kinds = Draft(Missions(), FIRST), []
     draft.on_change.append(kinds.append)

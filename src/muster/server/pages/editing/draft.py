@@ -90,6 +90,11 @@ class Draft:
                 made = await self.missions.edit(before, change, *arguments)
             self._take(made, "edit")
 
+    async def settled(self) -> None:
+        """Wait for the edits that were asked for before."""
+        async with self._editing:
+            pass
+
     async def look(self, *keys: str) -> Mapping[str, Any]:
         """What stands at some keys of the text; raises what the desk's `look` raises."""
         found: Mapping[str, Any] = await self.missions.look(self.text, *keys)

@@ -56,12 +56,14 @@ class Title:
         ui.run_javascript(f"window.musterUnsaved = {json.dumps(not self._draft.is_saved)}")
 
     async def _pressed(self) -> None:
+        await self._draft.settled()
         if self._draft.is_saved:
             say("Nothing has changed since the last version.")
         await self.save()
 
     async def save(self, note: str = "") -> bool:
         """Save the text, and say whether it is saved; asks what to do where somebody else has saved since."""
+        await self._draft.settled()
         if self._draft.is_saved:
             return True
         with told():
