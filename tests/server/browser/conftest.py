@@ -62,7 +62,7 @@ class Watched:
     def __init__(self, browser, origin):
         self.origin, self.errors, self.foreign = origin, [], []
         self.page = browser.new_page(viewport=WIDE, accept_downloads=True)
-        self.page.set_default_timeout(20_000)
+        self.page.set_default_timeout(60_000)
         self.page.on("console", self._hear)
         self.page.on("pageerror", lambda error: self.errors.append(f"{error}\n{error.stack}"))
         self.page.on("request", self._see)

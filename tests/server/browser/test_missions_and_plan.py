@@ -7,7 +7,7 @@ import pytest
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
-SLOW_MS = 20_000
+SLOW_MS = 90_000
 
 
 @pytest.fixture
