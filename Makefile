@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test campaign campaign-auction campaign-server network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -30,6 +30,9 @@ campaign-auction: $(VENV)/developed
 campaign-server: $(VENV)/developed
 	$(BIN)/python -m tests.server.runs.campaign $(CAMPAIGN_FLAGS)
 
+campaign-api: $(VENV)/developed
+	MUSTER_SCHEMA_EXAMPLES=60 $(BIN)/python -m pytest tests/server/api/test_schema.py
+
 network-figures: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.real_figures $(NETWORK_FLAGS)
 
@@ -42,6 +45,7 @@ help:
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
+	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"
 	@echo "make disturbances  carry out 10,000 random missions in which robots fail and tasks change"
 	@echo "make check      formatters, linters, types, import contract"

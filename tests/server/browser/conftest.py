@@ -82,6 +82,12 @@ class Watched:
             phone = size is NARROW
             self.page.screenshot(path=SHOTS / f"{name}-{size['width']}x{size['height']}.png", full_page=phone)
 
+    def keep(self, name):
+        """What is seen where a test has failed: a picture, and the page as text."""
+        SHOTS.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=SHOTS / f"failed-{name}.png")
+        (SHOTS / f"failed-{name}.html").write_text(self.page.content())
+
     def require_clean(self):
         assert not self.errors, self.errors
         assert not self.foreign, self.foreign
@@ -97,6 +103,14 @@ class Watched:
         inside = (self.origin, self.origin.replace("http", "ws", 1), "data:", "blob:")
         if not url.startswith(inside):
             self.foreign.append(url)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    report = yield
+    if report.when == "call" and report.failed and "watched" in item.funcargs:
+        item.funcargs["watched"].keep(item.name)
+    return report
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import json
 import re
 
 import pytest
-from tests.server.browser.conftest import SHOTS
 
 from muster.server.client import Client
 
@@ -21,7 +20,6 @@ OUT = "r_1"
 @pytest.fixture
 def page(watched):
     yield watched.page
-    watched.page.screenshot(path=SHOTS / "last.png")  # where a part fails, this shows how far it came
     watched.require_clean()
 
 
@@ -76,9 +74,7 @@ def test_a_robot_that_fails_has_its_tasks_done_by_others(watched, page):
     replanned = page.locator("li[data-kind=replanned]").first
     replanned.wait_for()
     assert re.search(rf"from {OUT} to r_\d", replanned.inner_text())
-    page.get_by_label("Speed", exact=True).select_option(
-        "1"
-    )  # as the clock on the wall: all that follows finds it going
+    page.get_by_label("Speed", exact=True).select_option("1")  # so that all that follows finds it going
     watched.shoot("live-reallocated")
 
 
