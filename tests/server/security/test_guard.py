@@ -74,7 +74,7 @@ def test_a_browser_is_sent_to_the_login(tmp_path):
         assert client.get("/api/v1/me", headers={"accept": "text/html"}).status_code == 401
 
 
-@pytest.mark.parametrize("tokens", [None, TOKENS])
+@pytest.mark.parametrize("tokens", [None, TOKENS], ids=["without-tokens", "with-tokens"])
 def test_other_names_and_origins(tmp_path, tokens):
     app = Shielded(settings_in(tmp_path, tokens=tokens))
     known = bearer(COMMANDER) if tokens else {}

@@ -45,7 +45,7 @@ class Answer:
         self._chart = ui.element("div").classes("panel scrolling").props("hidden")
         with self._chart:
             self._gantt = Gantt()
-            self._gantt.on("choose", lambda event: self._choose_task(event.args))
+            self._gantt.on("choose", lambda event: self._choose_named("task", event.args))
 
     @property
     def entry(self) -> PlanEntry | None:
@@ -106,11 +106,9 @@ class Answer:
         self._body.clear()
         with self._body:
             figures_list(figures_of(entry.plan, verdict))
-            left_out(entry.plan, self._choose_task)
+            left_out(entry.plan, self._choose_named)
             _how_found(entry.plan)
-            robots_table(
-                verdict["routes"], str(entry.plan.get("usage_unit", "")), self._choose_robot, self._choose_task
-            )
+            robots_table(verdict["routes"], str(entry.plan.get("usage_unit", "")), self._choose_named)
         self.taking.show(on_earth=on_earth)
         self.why.clear()
         self.choose(self._chosen)
@@ -125,13 +123,9 @@ class Answer:
         self._chosen = one
         self.why.offer(one["id"] if one and one["what"] == "task" else None)
 
-    def _choose_robot(self, robot: str) -> None:
-        self._map.choose("robot", robot)
-        self.choose({"what": "robot", "id": robot})
-
-    def _choose_task(self, task: str) -> None:
-        self._map.choose("task", task)
-        self.choose({"what": "task", "id": task})
+    def _choose_named(self, what: str, name: str) -> None:
+        self._map.choose(what, name)
+        self.choose({"what": what, "id": name})
 
 
 def _how_found(plan: Mapping[str, Any]) -> None:

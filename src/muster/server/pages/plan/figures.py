@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from html import escape
 from typing import Any
 
 from nicegui import ui
 
+Choose = Callable[[str, str], None]
+"""Told `robot` or `task` and an id, when somebody clicks it."""
+
 _COLORS = 8
+_CLICKED = """(event) => {
+  const one = event.target.closest("[data-id]");
+  if (one) emit(one.dataset.what, one.dataset.id);
+}"""
 
 
 _MEANINGS = {
@@ -69,65 +77,49 @@ def figures_list(rows: Sequence[tuple[str, str]]) -> None:
                     ui.label(text)
 
 
-def robots_table(
-    routes: Sequence[Mapping[str, Any]],
-    unit: str,
-    choose_robot: Callable[[str], None],
-    choose_task: Callable[[str], None],
-) -> None:
+def robots_table(routes: Sequence[Mapping[str, Any]], unit: str, choose: Choose) -> None:
     """Who does what: tasks in order, usage, and how much of the capacity that is."""
-    with ui.element("div").classes("scrolling"), ui.element("table").classes("plain robots"):
-        with ui.element("tr"):
-            for name, classes in (
-                ("Robot", ""),
-                ("Tasks in order", ""),
-                (f"Usage, {unit}" if unit else "Usage", "number"),
-            ):
-                with ui.element("th").classes(classes).props('scope="col"'):
-                    ui.label(name)
-        for k, route in enumerate(routes):
-            _robot_row(k, route, choose_robot, choose_task)
+    usage = f"Usage, {escape(unit)}" if unit else "Usage"
+    head = f'<th scope="col">Robot</th><th scope="col">Tasks in order</th><th scope="col" class="number">{usage}</th>'
+    rows = "".join(_robot_row(k, route) for k, route in enumerate(routes))
+    table = f'<table class="plain robots"><tr>{head}</tr>{rows}</table>'
+    _choosing(ui.html(table, sanitize=False).classes("scrolling"), choose)
 
 
-def left_out(plan: Mapping[str, Any], choose_task: Callable[[str], None]) -> None:
+def left_out(plan: Mapping[str, Any], choose: Choose) -> None:
     """The tasks that a plan leaves out, if there are any."""
     missing = [str(item["task"]) for item in plan.get("unassigned") or ()]
     if missing:
         with ui.element("div").classes("bar"):
             ui.label(f"Left out ({len(missing)})").classes("alarm")
-            _chips(missing, choose_task)
+            _choosing(ui.html(_chips(missing), sanitize=False), choose)
 
 
-def _chips(tasks: Sequence[str], choose_task: Callable[[str], None]) -> None:
-    with ui.element("div").classes("chips"):
-        for task in tasks:
-            chip = ui.element("button").props('type="button"').classes("chip")
-            chip.props["aria-label"] = f"task {task}"
-            with chip:
-                ui.label(task)
-            chip.on("click", lambda task=task: choose_task(task))
+def _choosing(shown: ui.html, choose: Choose) -> None:
+    """Whatever is named in it can be chosen by a click; one listener for all, as there may be 20,000."""
+    shown.on("click", lambda event: choose(*event.args), js_handler=_CLICKED)
 
 
-def _robot_row(
-    k: int, route: Mapping[str, Any], choose_robot: Callable[[str], None], choose_task: Callable[[str], None]
-) -> None:
-    robot = route["robot"]
-    with ui.element("tr"):
-        with ui.element("td"):
-            button = ui.element("button").props('type="button"').classes("bare robot-name")
-            with button:
-                ui.element("i").classes("swatch").style(f"background: var(--c{k % _COLORS})")
-                ui.label(robot)
-            button.on("click", lambda: choose_robot(robot))
-        with ui.element("td"):
-            _chips([str(task) for task in route["tasks"]], choose_task)
-        with ui.element("td").classes("number"):
-            capacity = route.get("capacity")
-            ui.label(f"{route['usage']:.2f}" + (f" of {capacity:g}" if capacity is not None else ""))
-            if capacity:
-                share = min(route["usage"] / capacity, 1.0)
-                with ui.element("div").classes("meter").props('aria-hidden="true"'):
-                    ui.element("div").style(f"width: {share:.0%}; background: var(--c{k % _COLORS})")
+def _named(what: str, name: str, inner: str, classes: str, label: str) -> str:
+    named = f'data-what="{what}" data-id="{escape(name)}" aria-label="{escape(label)}"'
+    return f'<button type="button" class="{classes}" {named}>{inner}</button>'
+
+
+def _chips(tasks: Iterable[str]) -> str:
+    chips = "".join(_named("task", task, escape(task), "chip", f"task {task}") for task in tasks)
+    return f'<div class="chips">{chips}</div>'
+
+
+def _robot_row(k: int, route: Mapping[str, Any]) -> str:
+    robot, capacity, color = str(route["robot"]), route.get("capacity"), f"background: var(--c{k % _COLORS})"
+    swatch = f'<i class="swatch" style="{color}"></i>'
+    name = _named("robot", robot, swatch + escape(robot), "bare robot-name", f"robot {robot}")
+    usage = f"{route['usage']:.2f}" + (f" of {capacity:g}" if capacity is not None else "")
+    if capacity:
+        share = min(route["usage"] / capacity, 1.0)
+        usage += f'<div class="meter" aria-hidden="true"><div style="width: {share:.0%}; {color}"></div></div>'
+    tasks = _chips(str(task) for task in route["tasks"])
+    return f'<tr><td>{name}</td><td>{tasks}</td><td class="number">{usage}</td></tr>'
 
 
 def lines_of(plan: Mapping[str, Any], verdict: Mapping[str, Any]) -> dict[str, Any]:
