@@ -8,6 +8,7 @@ import pytest
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
 SLOW_MS = 90_000
+SCENE = "getElement(document.querySelector('.muster-map')).stage.scene"
 
 
 @pytest.fixture
@@ -35,6 +36,16 @@ def task_place(page, task):
         }""",
         task,
     )
+
+
+def choose_task(page, task):
+    """Go from mark to mark by keyboard until that task is chosen."""
+    page.locator(".muster-map-host").focus()
+    for _ in range(page.evaluate(f"{SCENE}.robots.length + {SCENE}.tasks.length")):
+        page.keyboard.press("n")
+        if page.get_by_text(re.compile(f"^task {task}[ ;]")).count():
+            return
+    raise AssertionError(f"no task {task}")
 
 
 def text_of(page):
@@ -226,3 +237,14 @@ def test_the_keyboard_alone_adds_a_task_and_a_zone(watched, page):
         page.keyboard.press(key)
     page.get_by_role("button", name="Add the zone").click()
     page.wait_for_function(f"{scene}.zones.length === 1")
+
+
+def test_undo_right_after_a_nudge_takes_it_back(watched, page):
+    plan_view(watched, "yard-test")
+    before = task_place(page, "1")
+    choose_task(page, "1")
+    page.keyboard.press("Alt+ArrowRight")
+    page.keyboard.press("Control+z")
+    page.wait_for_selector("#redo[aria-disabled=false]")
+    page.get_by_text("version 4", exact=True).wait_for()
+    page.wait_for_function(f"{SCENE}.tasks.find(({{ id }}) => id === '1').x === {before['x']}")

@@ -85,7 +85,7 @@ def test_saving_knows_of_others_and_loses_nothing() -> None:
     asyncio.run(mine.save(WHO))
     assert (missions.newest.version, missions.newest.text) == (3, "name: a\n# mine\n")
     assert mine.is_saved
-    mine.undo()
+    asyncio.run(mine.undo())
     assert mine.text == "name: a\n"
     assert not mine.is_saved
 
@@ -101,6 +101,30 @@ def test_edits_asked_for_before_are_waited_for() -> None:
         return draft.text
 
     assert asyncio.run(story()).endswith("# later\n")
+
+
+def test_undo_right_after_an_edit_takes_back_that_edit_and_keeps_it_for_redo() -> None:
+    async def story() -> None:
+        draft = Draft(Missions(), FIRST)
+        draft.typed("name: b\n")
+        edit = asyncio.create_task(draft.edit("append", "# later\n"))
+        await asyncio.sleep(0)
+        assert draft.is_editing
+        await draft.undo()
+        assert edit.done()
+        assert (draft.text, draft.can_redo) == ("name: b\n", True)
+        await draft.redo()
+        assert draft.text == "name: b\n# later\n"
+
+    asyncio.run(story())
+
+
+def test_a_draft_says_when_an_edit_begins_and_ends_and_can_be_undone_meanwhile() -> None:
+    draft, seen = Draft(Missions(), FIRST), []
+    draft.on_wait.append(lambda: seen.append((draft.is_editing, draft.can_undo)))
+    with pytest.raises(ValueError, match="name"):
+        asyncio.run(draft.edit("fail"))
+    assert seen == [(True, True), (False, False)]
 
 
 def test_an_edit_that_fails_changes_nothing() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from time import monotonic
 from typing import Any
@@ -33,20 +34,22 @@ class Draft:
         the desk's missions.
     base
         the version that the text came from.
-    on_change, on_check
-        called when there is another text (with what made it: `typed`, `edit`, `undo`, `load`, `save`), and when one was
-        checked.
+    on_change, on_check, on_wait
+        called when there is another text (with what made it: `typed`, `edit`, `undo`, `load`, `save`), when one was
+        checked, and when an edit begins or ends, whatever becomes of it.
     """
 
     missions: Any
     base: MissionVersion
     on_change: list[Callable[[str], None]] = field(default_factory=list)
     on_check: list[Callable[[], None]] = field(default_factory=list)
+    on_wait: list[Callable[[], None]] = field(default_factory=list)
     checked: Checked = field(default_factory=Checked)
     _history: History = field(init=False)
     _changed_at: float | None = None
     _checking: bool = False
     _editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    _edits: int = 0  # that were asked for and are not there yet
 
     def __post_init__(self) -> None:
         self._history = History(self.base.text)
@@ -68,9 +71,14 @@ class Draft:
         return self.text == self.base.text
 
     @property
+    def is_editing(self) -> bool:
+        """Whether an edit is under way."""
+        return self._edits > 0
+
+    @property
     def can_undo(self) -> bool:
-        """Whether there is a step to undo."""
-        return self._history.can_undo
+        """Whether there is a step to undo, or will be one."""
+        return self._history.can_undo or self.is_editing
 
     @property
     def can_redo(self) -> bool:
@@ -83,12 +91,13 @@ class Draft:
 
     async def edit(self, change: str, *arguments: object) -> None:
         """Take what a change makes of the text; raises what the desk's `edit` raises, and is then as before."""
-        async with self._editing:  # one after the other, as each begins with what the last one made
-            before, made = None, ""
-            while before != self.text:  # again, if somebody typed meanwhile
-                before = self.text
-                made = await self.missions.edit(before, change, *arguments)
-            self._take(made, "edit")
+        with self._waiting():
+            async with self._editing:  # one after the other, as each begins with what the last one made
+                before, made = None, ""
+                while before != self.text:  # again, if somebody typed meanwhile
+                    before = self.text
+                    made = await self.missions.edit(before, change, *arguments)
+                self._take(made, "edit")
 
     async def settled(self) -> None:
         """Wait for the edits that were asked for before."""
@@ -100,17 +109,19 @@ class Draft:
         found: Mapping[str, Any] = await self.missions.look(self.text, *keys)
         return found
 
-    def undo(self) -> None:
-        """Take the last step back."""
-        if self.can_undo:
-            self._history.undo()
-            self._tell("undo")
+    async def undo(self) -> None:
+        """Take the last step back: the last edit that was asked for, also where it is still under way."""
+        async with self._editing:
+            if self._history.can_undo:
+                self._history.undo()
+                self._tell("undo")
 
-    def redo(self) -> None:
-        """Do the step again that was undone."""
-        if self.can_redo:
-            self._history.redo()
-            self._tell("undo")
+    async def redo(self) -> None:
+        """Do the step again that was undone, unless an edit that is under way takes its place."""
+        async with self._editing:
+            if self._history.can_redo:
+                self._history.redo()
+                self._tell("undo")
 
     def load(self, version: MissionVersion, text: str | None = None) -> None:
         """Go on from another version; with a `text`, that is kept as changes to it."""
@@ -140,6 +151,22 @@ class Draft:
         known = found.get("mission") or self.checked.mission
         self.checked = Checked(found["errors"], found["impossible"], known)
         for listener in self.on_check:
+            listener()
+
+    @contextmanager
+    def _waiting(self) -> Iterator[None]:
+        """An edit is under way within."""
+        self._edits += 1
+        self.tell_waiting()
+        try:
+            yield
+        finally:
+            self._edits -= 1
+            self.tell_waiting()
+
+    def tell_waiting(self) -> None:
+        """Say whether an edit is under way; also to be said where one is refused before it is asked for."""
+        for listener in self.on_wait:
             listener()
 
     def _take(self, text: str, kind: str) -> None:

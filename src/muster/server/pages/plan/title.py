@@ -27,6 +27,7 @@ class Title:
                 with ui.element("div").classes("bar edits"):
                     self._buttons()
         draft.on_change.append(lambda _: self._show())
+        draft.on_wait.append(self._show)
         draft.on_check.append(self._show_name)
         self._show_name()
         self._show()
@@ -51,8 +52,8 @@ class Title:
         self._state.text = known if self._draft.is_saved else f"{known}, changed"
         if not self._editable:
             return
-        self._undo.set_enabled(self._draft.can_undo)
-        self._redo.set_enabled(self._draft.can_redo)
+        _show_idle(self._undo, not self._draft.can_undo)
+        _show_idle(self._redo, not self._draft.can_redo)
         ui.run_javascript(f"window.musterUnsaved = {json.dumps(not self._draft.is_saved)}")
 
     async def _pressed(self) -> None:
@@ -102,3 +103,9 @@ class Title:
             self._draft.load(newest)
             ui.run_javascript("window.musterUnsaved = false")
             ui.navigate.to(f"/plan/{made.mission}")
+
+
+def _show_idle(button: ui.button, idle: bool) -> None:
+    """Show whether a button has anything to do; it may be pressed all the same, as an edit may be on its way here."""
+    button.props["aria-disabled"] = "true" if idle else "false"
+    button.classes(add="idle") if idle else button.classes(remove="idle")
