@@ -248,3 +248,17 @@ def test_undo_right_after_a_nudge_takes_it_back(watched, page):
     page.wait_for_selector("#redo[aria-disabled=false]")
     page.get_by_text("version 4", exact=True).wait_for()
     page.wait_for_function(f"{SCENE}.tasks.find(({{ id }}) => id === '1').x === {before['x']}")
+
+
+def test_saving_twice_at_once_is_no_conflict(watched, page):
+    plan_view(watched, "yard-test")
+    choose_task(page, "1")
+    page.keyboard.press("Alt+ArrowRight")
+    page.get_by_text("version 4, changed").wait_for()
+    for _ in range(3):
+        page.keyboard.press("Control+s")
+    page.get_by_text("version 5", exact=True).wait_for()
+    page.keyboard.press("Control+s")
+    page.get_by_text("Nothing has changed since the last version.").first.wait_for()
+    assert not page.get_by_text("Somebody else has saved this mission").count()
+    assert page.get_by_text("Saved as version").count() == 1

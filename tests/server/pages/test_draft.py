@@ -34,6 +34,7 @@ class Missions:
         return text.replace(*arguments) if change == "replace" else text + arguments[0]
 
     async def save(self, who: Who, mission: str, text: str, base: int, files: object = None, note: str = "") -> Any:
+        await asyncio.sleep(0)
         if base != self.newest.version:
             raise ConflictError("another one was saved")
         self.newest = replace(self.newest, version=base + 1, text=text, author=who.name)
@@ -88,6 +89,18 @@ def test_saving_knows_of_others_and_loses_nothing() -> None:
     asyncio.run(mine.undo())
     assert mine.text == "name: a\n"
     assert not mine.is_saved
+
+
+def test_who_saves_twice_at_once_saves_once_and_is_not_in_their_own_way() -> None:
+    async def story() -> list[bool]:
+        missions = Missions()
+        draft = Draft(missions, FIRST)
+        draft.typed("name: b\n")
+        saved = await asyncio.gather(draft.save(WHO), draft.save(WHO))
+        assert (missions.newest.version, draft.base) == (2, missions.newest)
+        return saved
+
+    assert asyncio.run(story()) == [True, False]
 
 
 def test_edits_asked_for_before_are_waited_for() -> None:

@@ -50,6 +50,7 @@ document.addEventListener("keydown", (event) => {
   const button = document.getElementById({ z: event.shiftKey ? "redo" : "undo", y: "redo", s: "save" }[key] ?? "");
   if (!button || event.target.closest?.(".cm-editor") || (key !== "s" && event.target.closest?.("input, textarea"))) return;
   event.preventDefault();
+  if (key === "s" && event.repeat) return; // a key that is held saves once
   if (key === "s") document.activeElement?.blur?.(); // what is being typed into a field is saved, too
   button.click();
 });

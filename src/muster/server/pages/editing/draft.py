@@ -49,6 +49,7 @@ class Draft:
     _changed_at: float | None = None
     _checking: bool = False
     _editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    _saving: asyncio.Lock = field(default_factory=asyncio.Lock)
     _edits: int = 0  # that were asked for and are not there yet
 
     def __post_init__(self) -> None:
@@ -129,11 +130,20 @@ class Draft:
         self._history.change(version.text if text is None else text)
         self._tell("load")
 
-    async def save(self, who: Who, note: str = "") -> None:
-        """Save the text as a version; raises ConflictError where another one has been saved since."""
-        if not self.is_saved:
+    async def save(self, who: Who, note: str = "") -> bool:
+        """Save the text as a version, and say whether that was needed.
+
+        Raises
+        ------
+        ConflictError
+            if somebody else has saved another one since.
+        """
+        async with self._saving:  # a save that is on its way may be of this very text
+            if self.is_saved:
+                return False
             self.base = await self.missions.save(who, self.id, self.text, self.base.version, note=note)
             self._tell("save")
+            return True
 
     async def tick(self) -> None:
         """Check the text when nobody has changed it for a moment; called again and again, also after it has failed."""

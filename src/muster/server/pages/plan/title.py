@@ -19,6 +19,7 @@ class Title:
     def __init__(self, draft: Draft) -> None:
         self._draft = draft
         self._editable = may_command() and not on_the_wall()
+        self._resolving = False
         with ui.element("div").classes("bar title-bar"):
             self._name = ui.label(draft.id).classes("mission-name")
             self._id = ui.label(draft.id).classes("quiet small")
@@ -69,30 +70,25 @@ class Title:
             return True
         with told():
             try:
-                await self._draft.save(the_asker(), note)
+                if await self._draft.save(the_asker(), note):
+                    say(f"Saved as version {self._draft.base.version}.")
             except ConflictError as conflict:
-                await self._resolve(str(conflict))
-            else:
-                say(f"Saved as version {self._draft.base.version}.")
+                if not self._resolving:  # it may be asked already: of a save that was on its way before
+                    await self._resolve(str(conflict))
         return self._draft.is_saved
 
     async def _resolve(self, conflict: str) -> None:
         """Ask which text is to be the newest version."""
-        client, newest = ui.context.client, await the_desk().missions.get(self._draft.id)
-        mine = self._draft.text
-        with ui.dialog().props("persistent") as dialog, ui.card().classes("making"):
-            ui.label("Somebody else has saved this mission").classes("dialog-title")
-            ui.label(f"{conflict}.".replace("..", "."))
-            ui.button("See what is different", on_click=lambda: open_differences(newest.text, mine)).props("flat")
-            with ui.element("div").classes("dialog-buttons"):
-                ui.button("Go on editing", on_click=lambda: dialog.submit("")).props("flat")
-                ui.button("Take theirs", on_click=lambda: dialog.submit("theirs")).props("outline")
-                ui.button("Save mine as a copy", on_click=lambda: dialog.submit("copy")).props("outline")
-                ui.button("Save mine on top", on_click=lambda: dialog.submit("mine")).props("unelevated")
-        answer = await dialog
+        client = ui.context.client
+        self._resolving = True
+        try:
+            newest = await the_desk().missions.get(self._draft.id)
+            mine = self._draft.text
+            answer = await self._asked(conflict, newest.text, mine)
+        finally:
+            self._resolving = False
         if client.is_deleted:  # somebody left the page and not the dialog
             return
-        dialog.delete()
         if answer == "theirs":
             self._draft.load(newest)
         elif answer == "mine":
@@ -103,6 +99,23 @@ class Title:
             self._draft.load(newest)
             ui.run_javascript("window.musterUnsaved = false")
             ui.navigate.to(f"/plan/{made.mission}")
+
+    async def _asked(self, conflict: str, theirs: str, mine: str) -> str:
+        """What somebody wants: `theirs`, `mine`, a `copy`, or nothing yet."""
+        client = ui.context.client
+        with ui.dialog().props("persistent") as dialog, ui.card().classes("making"):
+            ui.label("Somebody else has saved this mission").classes("dialog-title")
+            ui.label(f"{conflict}.".replace("..", "."))
+            ui.button("See what is different", on_click=lambda: open_differences(theirs, mine)).props("flat")
+            with ui.element("div").classes("dialog-buttons"):
+                ui.button("Go on editing", on_click=lambda: dialog.submit("")).props("flat")
+                ui.button("Take theirs", on_click=lambda: dialog.submit("theirs")).props("outline")
+                ui.button("Save mine as a copy", on_click=lambda: dialog.submit("copy")).props("outline")
+                ui.button("Save mine on top", on_click=lambda: dialog.submit("mine")).props("unelevated")
+        answer = await dialog
+        if not client.is_deleted:
+            dialog.delete()
+        return str(answer or "")
 
 
 def _show_idle(button: ui.button, idle: bool) -> None:
