@@ -262,3 +262,28 @@ def test_saving_twice_at_once_is_no_conflict(watched, page):
     page.get_by_text("Nothing has changed since the last version.").first.wait_for()
     assert not page.get_by_text("Somebody else has saved this mission").count()
     assert page.get_by_text("Saved as version").count() == 1
+
+
+def test_what_is_nudged_on_and_on_never_jumps_back(watched, page):
+    plan_view(watched, "yard-test")
+    choose_task(page, "1")
+    page.evaluate(
+        """() => {
+          const { stage } = getElement(document.querySelector('.muster-map'));
+          window.seen = [];
+          const show = stage.show;
+          stage.show = (scene) => { show.call(stage, scene); window.seen.push(stage.places.tasks.get('1').x); };
+          window.nudged = [];
+          const place = stage.place;
+          stage.place = (one, x, y) => { place.call(stage, one, x, y); window.nudged.push([x, window.seen.length]); };
+        }"""
+    )
+    for _ in range(40):
+        page.keyboard.press("Alt+ArrowRight", delay=40)
+    last = page.evaluate("nudged.at(-1)[0]")
+    page.wait_for_function(f"seen.at(-1) === {last}")
+    moved = [x for x, _ in page.evaluate("nudged")]
+    assert moved == sorted(set(moved))
+    for _ in moved:
+        page.keyboard.press("Control+z")
+    page.get_by_text("version 5", exact=True).wait_for()

@@ -25,6 +25,7 @@ class Missions:
 
     async def check(self, text: str, files: object) -> dict[str, Any]:
         self.checked.append(text)
+        await asyncio.sleep(0.01)
         return {"errors": [], "impossible": [], "mission": {"name": text}}
 
     async def edit(self, text: str, change: str, *arguments: str) -> str:
@@ -71,6 +72,25 @@ def test_a_text_whose_check_failed_is_checked_again(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("muster.server.pages.editing.draft._QUIET_S", -1.0)
     asyncio.run(draft.tick())
     assert missions.checked == ["name: a\n"]
+
+
+def test_a_check_is_of_the_text_as_it_is_until_the_next_edit_is_asked_for() -> None:
+    async def story() -> list[bool]:
+        draft, seen = Draft(Missions(), FIRST), []
+        draft.on_check.append(lambda: seen.append(draft.is_checked))
+        await draft.tick()
+        edit = asyncio.create_task(draft.edit("append", "# one\n"))
+        await asyncio.sleep(0)
+        assert not draft.is_checked
+        await edit
+        check = asyncio.create_task(draft.tick())  # of the text with one
+        await asyncio.sleep(0)
+        await draft.edit("append", "# two\n")
+        await check
+        await draft.tick()
+        return seen
+
+    assert asyncio.run(story()) == [True, False, True]
 
 
 def test_saving_knows_of_others_and_loses_nothing() -> None:

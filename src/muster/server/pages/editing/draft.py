@@ -17,11 +17,15 @@ _QUIET_S = 0.35  # without a change, before a text is checked
 
 @dataclass(frozen=True)
 class Checked:
-    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data or None."""
+    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data or None.
+
+    `text` is what was checked, None as long as nothing was.
+    """
 
     errors: Sequence[Mapping[str, Any]] = ()
     impossible: Sequence[Mapping[str, Any]] = ()
     mission: Mapping[str, Any] | None = None
+    text: str | None = None
 
 
 @dataclass
@@ -85,6 +89,11 @@ class Draft:
     def can_redo(self) -> bool:
         """Whether there is an undone step."""
         return self._history.can_redo
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether what the check said is of the text as it is now, and no edit is under way."""
+        return not self.is_editing and self.checked.text == self.text
 
     def typed(self, text: str) -> None:
         """Take what somebody typed into the text."""
@@ -151,15 +160,16 @@ class Draft:
             return
         self._changed_at = None
         self._checking = True
+        text = self.text
         try:
-            found = await self.missions.check(self.text, dict(self.base.files))
+            found = await self.missions.check(text, dict(self.base.files))
         except BaseException:
             self._changed_at = self._changed_at or monotonic()  # it is still not known: asked again
             raise
         finally:
             self._checking = False
         known = found.get("mission") or self.checked.mission
-        self.checked = Checked(found["errors"], found["impossible"], known)
+        self.checked = Checked(found["errors"], found["impossible"], known, text)
         for listener in self.on_check:
             listener()
 

@@ -21,7 +21,7 @@ class MissionMap(
     | event | data |
     |---|---|
     | `choose` | `{what: robot, task or zone; id; corner of a zone}`, or null |
-    | `move` | the same, with `x` and `y` in metres: dragged there |
+    | `move` | the same, with `x` and `y` in metres: dragged there; `moves`: how many there were on this page |
     | `add` | `{what: the mode; x; y}`: clicked on free ground in the mode `task` or `robot` |
     | `zone` | `{corners: [[x, y], ...]}`: drawn in the mode `zone` |
     | `leave` | nothing: Escape, while nothing is being drawn |
@@ -55,9 +55,12 @@ class MissionMap(
         if group:
             self.props["group"] = group
 
-    def show(self, scene: Mapping[str, Any]) -> None:
-        """Show another state of the mission; the view stays where somebody moved it."""
-        self.props["scene"] = scene
+    def show(self, scene: Mapping[str, Any], moves: int = 0) -> None:
+        """Show another state of the mission; the view stays where somebody moved it.
+
+        A state that knows of fewer `moves` than there were is not shown: what was moved would jump back.
+        """
+        self.props["scene"] = {**scene, "moves": moves}
 
     def show_plan(self, plan: Mapping[str, Any] | None) -> None:
         """Show routes: `{routes: [{robot, tasks, lines}], left_out: [ids]}`, or none."""

@@ -46,7 +46,7 @@ export default {
     plan() { this.applyPlan(); },
     editable() { this.stage.editable = this.editable; this.stage.draw(); },
   },
-  created() { this.stage = null; },
+  created() { this.stage = null; this.moves = 0; },
   mounted() {
     const { host, ground, top } = this.$refs;
     this.stage = new Stage(host, ground, top);
@@ -72,7 +72,7 @@ export default {
   },
   methods: {
     applyScene() {
-      if (!this.scene) return;
+      if (!this.scene || (this.scene.moves ?? 0) < this.moves) return; // of before a move: it would jump back
       this.stage.show(withShapes(deepRaw(this.scene)));
       this.applyPlan();
     },
@@ -84,7 +84,7 @@ export default {
       if (name === "hover") this.hint(data);
       else if (name === "choose") this.choose(data, true);
       else if (name === "prerequisites") this.prerequisites = data;
-      else this.$emit(name, data);
+      else this.$emit(name, name === "move" ? { ...data, moves: ++this.moves } : data);
     },
     // From Python and from scripts: `one` is {what: "robot" | "task", id}, or null.
     choose(one, byHand = false) {

@@ -44,6 +44,7 @@ class Workshop:
         self.map: MissionMap
         self._on_choose = on_choose
         self._on_ask = on_ask
+        self._moves = 0  # on the map that came here
         self._form: Form | None = None
         self._script: Script | None = None
         self._editable = may_command() and not on_the_wall()
@@ -72,7 +73,7 @@ class Workshop:
         self.map.on("choose", lambda event: self._on_choose(event.args))
         self.map.on("ask", lambda event: self._on_ask(event.args))
         if self._editable:
-            self.map.on("move", lambda event: self.edit("move", event.args, *_place(event.args)))
+            self.map.on("move", lambda event: self._moved(event.args))
             self.map.on("add", lambda event: self.edit("add", event.args["what"], *_place(event.args)))
             self.map.on("zone", lambda event: self._drawn(event.args["corners"]))
             self.map.on("leave", lambda _: self._mode.set_value("select"))
@@ -87,6 +88,10 @@ class Workshop:
             self._show_checked()
             return False
         return True
+
+    async def _moved(self, one: Mapping[str, Any]) -> None:
+        self._moves = int(one["moves"])
+        await self.edit("move", one, *_place(one))
 
     async def _drawn(self, corners: Sequence[Sequence[float]]) -> None:
         with told():
@@ -124,8 +129,10 @@ class Workshop:
         self.findings.show(checked)
         if self._script is not None:
             self._script.mark(checked.errors)
+        if not self._draft.is_checked:  # the scene of an older text would put back what was moved since
+            return
         if checked.mission is not None:
-            self.map.show(scene_of_draft(self._draft))
+            self.map.show(scene_of_draft(self._draft), self._moves)
         else:
             self.map.wait("The text has errors; the map is drawn when they are mended.")
 
