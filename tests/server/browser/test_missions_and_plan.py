@@ -287,3 +287,59 @@ def test_what_is_nudged_on_and_on_never_jumps_back(watched, page):
     for _ in moved:
         page.keyboard.press("Control+z")
     page.get_by_text("version 5", exact=True).wait_for()
+
+
+def test_a_cell_is_that_of_its_task_though_another_is_taken_out_meanwhile(watched, page):
+    plan_view(watched, "31T-6R50")
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("type of 5", exact=True).wait_for()
+    page.evaluate(
+        """() => {
+          document.querySelector("[aria-label='Remove 3']").click();
+          const field = document.querySelector("[aria-label='type of 5']");
+          field.value = "late";
+          field.dispatchEvent(new Event("change"));
+        }"""
+    )
+    page.get_by_label("type of 3", exact=True).wait_for(state="detached")
+    page.wait_for_function("document.querySelector('#undo').ariaDisabled === 'false'")
+    assert re.search(r"id: 5,.*type: late", text_of(page))
+    page.click("#undo")
+    page.click("#undo")
+    page.get_by_text("shipped with Muster", exact=True).or_(page.get_by_text(re.compile("^version 1$"))).wait_for()
+
+
+def test_what_is_being_typed_into_a_cell_stays_whatever_the_server_sends(watched, page):
+    plan_view(watched, "yard-test")
+    page.get_by_role("button", name="Form", exact=True).click()
+    speed = page.get_by_label("speed_mps of r_0")
+    speed.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("0.7")
+    rows = page.get_by_role("button", name=re.compile("^Remove"))
+    before = rows.count()
+    page.get_by_role("button", name="Add a row").last.dispatch_event("click")  # as an answer that comes now
+    page.wait_for_function(f"document.querySelectorAll('.edit-table [aria-label^=Remove]').length > {before}")
+    page.keyboard.type("5")
+    assert speed.input_value() == "0.75"
+    page.keyboard.press("Tab")
+    page.keyboard.press("Control+s")
+    page.get_by_text("version 6", exact=True).wait_for()
+    assert speed.input_value() == "0.75"
+    assert "speed_mps: 0.75" in text_of(page)
+
+
+def test_a_row_that_gets_another_id_stays_the_same_row(watched, page):
+    plan_view(watched, "yard-test")
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("id of r_0", exact=True).click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("rover")
+    page.keyboard.press("Tab")
+    page.keyboard.type("2")
+    page.get_by_label("x of rover", exact=True).wait_for()
+    page.keyboard.type("5")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Control+s")
+    page.get_by_text("version 7", exact=True).wait_for()
+    assert "{id: rover, position: [25, " in text_of(page)

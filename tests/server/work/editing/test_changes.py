@@ -67,6 +67,21 @@ def test_cells_set_and_clear_keys() -> None:
     assert "name: yard   # ours" in text
 
 
+def test_cells_are_those_of_an_id_wherever_its_row_is_now() -> None:
+    text = changes.drop(TEXT, "task", "7")
+    tasks = data_of(changes.set_cell(text, ("tasks", 1, "priority"), 3, "8"))["tasks"]
+    assert [(task["id"], task.get("priority")) for task in tasks] == [(8, 3), (9, None)]
+    tasks = data_of(changes.set_coordinate(text, ("tasks", 2), 0, 1, "9"))["tasks"]
+    assert [task["position"][0] for task in tasks] == [6, 1]
+    for name in ("7", ""):
+        with pytest.raises(EditError, match="no such one"):
+            changes.set_cell(text, ("tasks", 0, "priority"), 3, name)
+    with pytest.raises(EditError, match="more than one"):
+        changes.set_cell(text.replace("id: 9", "id: 8"), ("tasks", 0, "priority"), 3, "8")
+    nameless = text.replace("id: 9, ", "")
+    assert data_of(changes.set_cell(nameless, ("tasks", 1, "priority"), 3, ""))["tasks"][1]["priority"] == 3
+
+
 def test_a_mission_in_the_plane_is_made_3d_and_keeps_its_comments() -> None:
     flat = "robots:\n  - {id: a, position: [1, 2]}  # first\ntasks:\n  - id: 1\n    position:\n      - 3\n      - 4\n"
     text = changes.raised(flat)

@@ -57,7 +57,6 @@ class Form:
     def __init__(self, draft: Draft, edit: Callable[..., Awaitable[bool]], *, editable: bool) -> None:
         self._draft = draft
         self._edit = edit
-        self._ids: dict[str, list[str]] = {"robots": [], "tasks": []}
         self._message = ui.label("").classes("alarm").props('role="status"')
         self._flat = ui.element("div").classes("bar")
         with self._flat:
@@ -84,6 +83,12 @@ class Form:
         background_tasks.create_lazy(self._show(), name=f"form {id(self)}")
 
     async def _show(self) -> None:
+        await self._read()
+        if not self._draft.is_editing:  # otherwise it is shown again when that is done
+            for table in (self._rules, self._robots, self._tasks):
+                table.forget()
+
+    async def _read(self) -> None:
         """Where the text cannot be read, say so and show what was there."""
         try:
             data = await self._draft.look(*_SHOWN.values())
@@ -92,7 +97,6 @@ class Form:
             return
         self._message.text = ""
         robots, tasks = (_rows(data.get(team)) for team in ("robots", "tasks"))
-        self._ids = {team: [row.get("id", "") for row in rows] for team, rows in (("robots", robots), ("tasks", tasks))}
         in_space = any("z" in row for row in (*robots, *tasks))
         self._flat.set_visibility(not in_space)
         place = (*_PLACE, _HEIGHT) if in_space else _PLACE
@@ -101,37 +105,27 @@ class Form:
         self._tasks.show(_explained(Task, (Column("id"), *place, *_TASKS)), tasks)
 
     async def _cell(self, team: str, change: Mapping[str, Any]) -> None:
-        key, row = str(change["key"]), int(change["row"])
+        key, row, name = str(change["key"]), int(change["row"]), str(change["id"])
         columns = {column.key: column for column in (*_PLACE, _HEIGHT, *_ROBOTS, *_TASKS, *_RULES)}
         kind = columns[key].kind if key in columns else "text"
-        where = self._where(team, row, key)
+        where = key if team == "rules" else f"{team[:-1]} {name or f'in row {row + 1}'}: {key}"
         try:
             value = _value(str(change["value"]), where, kind)
             if key in _AXES and value is None:
                 raise ParameterError(f"{where}: empty; expected a number of metres")
         except ParameterError as error:
             warn(words_of(error))
-            done = False
         else:
-            done = await self._changed(team, row, key, value)
-        if not done:
-            for table in (self._rules, self._robots, self._tasks):
-                table.forget()
+            await self._change(team, row, name, key, value)
         self.show()
 
-    def _where(self, team: str, row: int, key: str) -> str:
-        """A cell in words: `task 3: priority`, or the number of its row where that has no name."""
+    async def _change(self, team: str, row: int, name: str, key: str, value: object) -> None:
         if team == "rules":
-            return key
-        name = self._ids[team][row] if row < len(self._ids[team]) else ""
-        return f"{team[:-1]} {name or f'in row {row + 1}'}: {key}"
-
-    async def _changed(self, team: str, row: int, key: str, value: object) -> bool:
-        if team == "rules":
-            return await self._edit("set_cell", ("rules", key), value)
-        if key in _AXES:
-            return await self._edit("set_coordinate", (team, row), _AXES[key], value)
-        return await self._edit("set_cell", (team, row, key), value)
+            await self._edit("set_cell", ("rules", key), value)
+        elif key in _AXES:
+            await self._edit("set_coordinate", (team, row), _AXES[key], value, name)
+        else:
+            await self._edit("set_cell", (team, row, key), value, name)
 
 
 def _value(typed: str, where: str, kind: str) -> object:

@@ -15,19 +15,20 @@ export default {
             <th v-if="grows && editable" class="drop"><span class="sr-only">Remove</span></th>
           </tr></thead>
           <tbody>
-            <tr v-for="(row, k) in page" :key="revision + ' ' + (first + k)">
+            <tr v-for="line in page" :key="line.key">
               <td v-for="column in columns" :key="column.key" :class="column.kind">
-                <select v-if="column.kind === 'choice'" :value="row[column.key] ?? ''" :disabled="!editable"
-                        :aria-label="name(row, column)" @change="change(k, column, $event)">
+                <select v-if="column.kind === 'choice'" :value="shown(line, column)" :disabled="!editable"
+                        :aria-label="label(line, column)" @change="change(line, column, $event)">
                   <option value=""></option>
                   <option v-for="choice in column.choices" :key="choice" :value="choice">{{ choice }}</option>
                 </select>
-                <input v-else size="1" :value="row[column.key] ?? ''" :readonly="!editable" :class="column.kind"
-                       :inputmode="column.kind === 'number' ? 'decimal' : 'text'" :aria-label="name(row, column)"
-                       @change="change(k, column, $event)">
+                <input v-else size="1" :value="shown(line, column)" :readonly="!editable" :class="column.kind"
+                       :inputmode="column.kind === 'number' ? 'decimal' : 'text'" :aria-label="label(line, column)"
+                       @input="typing = { cell: cell(line, column), text: $event.target.value }" @blur="typing = null"
+                       @change="change(line, column, $event)">
               </td>
               <td v-if="grows && editable" class="drop">
-                <button type="button" class="bare" :aria-label="'Remove ' + row.id" title="Remove" @click="$emit('drop', row.id)">×</button>
+                <button type="button" class="bare" :aria-label="'Remove ' + line.row.id" title="Remove" @click="$emit('drop', line.row.id)">×</button>
               </td>
             </tr>
           </tbody>
@@ -42,11 +43,47 @@ export default {
         </template>
       </p>
     </section>`,
-  props: { title: String, columns: Array, rows: Array, editable: Boolean, grows: Boolean, revision: Number },
-  data() { return { first: 0 }; },
-  computed: { page() { return this.rows.slice(this.first, this.first + PAGE); } },
+  props: { title: String, columns: Array, rows: Array, editable: Boolean, grows: Boolean },
+  // `typing`: the cell that somebody is typing into; `sent`: what was typed into others, until the server has answered.
+  data() { return { first: 0, typing: null, sent: {} }; },
+  created() { this.names = new Map(); }, // of rows that got another id: the one they had, so that they stay what they are
+  computed: {
+    // Rows with a key that stays theirs while others come and go. A wrong text may have ids twice, or none.
+    page() {
+      const met = new Map();
+      return this.rows.slice(this.first, this.first + PAGE).map((row, k) => {
+        const name = this.names.get(row.id) ?? row.id ?? String(this.first + k);
+        met.set(name, (met.get(name) ?? 0) + 1);
+        return { row, name, at: this.first + k, key: `${name} ${met.get(name)}` };
+      });
+    },
+  },
+  watch: {
+    rows: {
+      handler() { if (!this.$el.contains(document.activeElement)) this.typing = null; }, // the row is gone
+      flush: "post",
+    },
+  },
   methods: {
-    name(row, column) { return `${column.key} ${row.id ? `of ${row.id}` : ""}`; },
-    change(k, column, event) { this.$emit("cell", { row: this.first + k, key: column.key, value: event.target.value }); },
+    label({ row }, column) { return `${column.key} ${row.id ? `of ${row.id}` : ""}`; },
+    cell({ key }, column) { return `${key} ${column.key}`; },
+    shown(line, column) {
+      const cell = this.cell(line, column);
+      return this.typing?.cell === cell ? this.typing.text : this.sent[cell] ?? line.row[column.key] ?? "";
+    },
+    change(line, column, event) {
+      const { value } = event.target;
+      const id = this.sent[`${line.key} id`]?.trim() ?? line.row.id ?? ""; // as it is called once what was sent is done
+      this.typing = null;
+      this.sent[this.cell(line, column)] = value;
+      if (column.key === "id") this.names.set(value.trim(), line.name);
+      this.$emit("cell", { row: line.at, id, key: column.key, value });
+    },
+    // From Python: what was sent is in the rows, or was refused.
+    forget() {
+      this.sent = {};
+      const ids = new Set(this.rows.map(({ id }) => id));
+      for (const id of this.names.keys()) if (!ids.has(id)) this.names.delete(id);
+    },
   },
 };

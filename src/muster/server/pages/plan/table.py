@@ -19,7 +19,11 @@ class Column:
 
 
 class Table(Element, component="table.js"):
-    """Emits `cell` with `{row, key, value}` (the value as it was typed), `add`, and `drop` with the name of a row."""
+    """Emits `cell`, `add`, and `drop` with the id of a row.
+
+    `cell` comes with `{row, id, key, value}`: the row's number and id, empty where it has none, and what was typed.
+    That is shown until the table is told to `forget` it, whatever else changes meanwhile.
+    """
 
     def __init__(self, title: str, *, editable: bool, grows: bool = True) -> None:
         super().__init__()
@@ -28,18 +32,14 @@ class Table(Element, component="table.js"):
         self.props["grows"] = grows
         self.props["columns"] = []
         self.props["rows"] = []
-        self.props["revision"] = 0
 
     def show(self, columns: Sequence[Column], rows: Sequence[Mapping[str, str]]) -> None:
-        """Show rows, each a mapping from keys of columns to what their cells say.
-
-        What is shown already is not sent again: it would take the place of what somebody is typing.
-        """
+        """Show rows, each a mapping from keys of columns to what their cells say; what is there is not sent again."""
         shown = {"columns": [asdict(column) for column in columns], "rows": [dict(row) for row in rows]}
         for name, value in shown.items():
             if self.props[name] != value:
                 self.props[name] = value
 
     def forget(self) -> None:
-        """Show again what is, in place of what was typed and refused."""
-        self.props["revision"] += 1
+        """Show what the rows say in place of what was typed into cells: it has been taken, or refused."""
+        self.run_method("forget")

@@ -60,9 +60,9 @@ def drop(text: str, what: str, name: str | int) -> str:
     return text
 
 
-def set_cell(text: str, path: Sequence[str | int], value: object) -> str:
-    """Give a cell of a table a value; None takes its key out."""
-    path = tuple(path)
+def set_cell(text: str, path: Sequence[str | int], value: object, name: str | None = None) -> str:
+    """Give a cell of a table a value; None takes its key out. With a `name` the row is that of this id."""
+    path = _by_name(text, path, name)
     owner = _at(data_of(text), path[:-1]) if len(path) > 1 and path[0] != "rules" else data_of(text).get("rules") or {}
     if value is None:
         return remove(text, path) if path[-1] in owner else text
@@ -71,9 +71,9 @@ def set_cell(text: str, path: Sequence[str | int], value: object) -> str:
     return set_value(text, path, value)
 
 
-def set_coordinate(text: str, path: Sequence[str | int], axis: int, value: float) -> str:
-    """Change one coordinate of the position of the item at `path`."""
-    path = tuple(path)
+def set_coordinate(text: str, path: Sequence[str | int], axis: int, value: float, name: str | None = None) -> str:
+    """Change one coordinate of the position of the item at `path`; with a `name` that of this id."""
+    path = _by_name(text, path, name)
     position = _at(data_of(text), path).get("position")
     if not isinstance(position, list) or axis > len(position):
         raise EditError("the place is not written as a list of numbers; change it in the text")
@@ -112,6 +112,24 @@ def _path_of(text: str, what: str, name: str) -> Path:
         if isinstance(item, dict) and str(item.get("id")) == str(name):
             return TEAMS[what], k
     raise EditError(f"{what} {name}: no such one in the text")
+
+
+def _by_name(text: str, path: Sequence[str | int], name: str | None) -> Path:
+    """A path whose second step is where the item of this id stands now: rows move when others are taken out.
+
+    An empty name is that of an item without an id, which is known by its number alone.
+    """
+    if name is None:
+        return tuple(path)
+    team, row, *rest = path
+    items = data_of(text).get(str(team)) or []
+    rows = [k for k, item in enumerate(items) if isinstance(item, dict) and str(item.get("id", "")) == name]
+    if not name:
+        rows = [k for k in rows if k == row]
+    if len(rows) != 1:
+        found = "more than one is called so" if rows else "no such one in the text"
+        raise EditError(f"{str(team)[:-1]} {name or f'in row {int(row) + 1}'}: {found}; change it in the text itself")
+    return (team, rows[0], *rest)
 
 
 def _at(data: Any, path: Path) -> Any:
