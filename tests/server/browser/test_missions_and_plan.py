@@ -343,3 +343,19 @@ def test_a_row_that_gets_another_id_stays_the_same_row(watched, page):
     page.keyboard.press("Control+s")
     page.get_by_text("version 7", exact=True).wait_for()
     assert "{id: rover, position: [25, " in text_of(page)
+
+
+def test_delete_pressed_on_and_on_takes_out_one_zone(watched, page):
+    plan_view(watched, "yard")
+    zones = page.evaluate(f"{SCENE}.zones.length")
+    assert zones > 1
+    page.evaluate("getElement(document.querySelector('.muster-map')).heard('choose', {what: 'zone', id: 0, corner: 0})")
+    page.locator(".muster-map-host").focus()
+    page.keyboard.down("Delete")
+    page.keyboard.down("Delete")
+    page.keyboard.up("Delete")
+    page.keyboard.press("Delete")
+    page.wait_for_function(f"{SCENE}.zones.length < {zones}")
+    page.keyboard.press("Control+z")
+    page.wait_for_function(f"{SCENE}.zones.length === {zones}")
+    page.wait_for_selector("#undo[aria-disabled=true]")

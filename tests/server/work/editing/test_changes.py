@@ -57,6 +57,14 @@ def test_a_task_that_goes_is_no_prerequisite_any_more() -> None:
         changes.drop(TEXT, "task", "77")
 
 
+def test_a_zone_that_is_another_by_now_stays() -> None:
+    assert data_of(changes.drop(TEXT, "zone", 0, [[1.0, 1], [2, 1], [2, 2]]))["map"]["zones"] == []
+    with pytest.raises(EditError, match="another one by now"):
+        changes.drop(TEXT, "zone", 0, [[3, 1], [2, 1], [2, 2]])
+    with pytest.raises(EditError, match="nothing stands there"):
+        changes.drop(TEXT, "zone", 1, [[1, 1], [2, 1], [2, 2]])
+
+
 def test_cells_set_and_clear_keys() -> None:
     text = changes.set_cell(TEXT, ("robots", 0, "speed_mps"), 0.5)
     assert data_of(text)["robots"][0]["speed_mps"] == 0.5

@@ -25,7 +25,7 @@ class MissionMap(
     | `add` | `{what: the mode; x; y}`: clicked on free ground in the mode `task` or `robot` |
     | `zone` | `{corners: [[x, y], ...]}`: drawn in the mode `zone` |
     | `leave` | nothing: Escape, while nothing is being drawn |
-    | `remove`, `ask` | what is chosen, at the keys Delete and Enter |
+    | `remove`, `ask` | what is chosen, at the keys Delete and Enter; a zone that is removed with its `corners` |
 
     Scripts of the page call `states`, `status`, `routes` and `clear` (messages of a run's stream) by
     `getElement(ID)`.

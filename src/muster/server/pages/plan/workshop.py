@@ -77,7 +77,7 @@ class Workshop:
             self.map.on("add", lambda event: self.edit("add", event.args["what"], *_place(event.args)))
             self.map.on("zone", lambda event: self._drawn(event.args["corners"]))
             self.map.on("leave", lambda _: self._mode.set_value("select"))
-            self.map.on("remove", lambda event: self.edit("drop", event.args["what"], event.args["id"]))
+            self.map.on("remove", lambda event: self._removed(event.args))
 
     async def edit(self, change: str, *arguments: object) -> bool:
         """Change the text; where that cannot be, say why and show again what is."""
@@ -92,6 +92,9 @@ class Workshop:
     async def _moved(self, one: Mapping[str, Any]) -> None:
         self._moves = int(one["moves"])
         await self.edit("move", one, *_place(one))
+
+    async def _removed(self, one: Mapping[str, Any]) -> None:
+        await self.edit("drop", one["what"], one["id"], one.get("corners"))
 
     async def _drawn(self, corners: Sequence[Sequence[float]]) -> None:
         with told():

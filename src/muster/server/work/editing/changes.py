@@ -44,10 +44,16 @@ def add_beside(text: str, what: str) -> str:
     return add(text, what, float(x) + 2, float(y))
 
 
-def drop(text: str, what: str, name: str | int) -> str:
-    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, locks) lets go of it."""
+def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float]] | None = None) -> str:
+    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, locks) lets go of it.
+
+    A zone is known by its number, and by its `corners` where they are given: another one may have that number by now.
+    """
     if what == "zone":
-        return remove(text, ("map", "zones", int(name)))
+        path: Path = ("map", "zones", int(name))
+        if corners is not None and not _is_of(_at(data_of(text), path), corners):
+            raise EditError(f"zone {int(name) + 1} is another one by now; choose it again")
+        return remove(text, path)
     text = remove(text, _path_of(text, what, str(name)))
     key = "prerequisites" if what == "task" else "only_robots"
     for k, task in enumerate(data_of(text).get("tasks") or []):
@@ -55,9 +61,16 @@ def drop(text: str, what: str, name: str | int) -> str:
         if not isinstance(named, list) or str(name) not in map(str, named):
             continue
         rest = [other for other in named if str(other) != str(name)]
-        path: Path = ("tasks", k, key)
+        path = ("tasks", k, key)
         text = set_value(text, path, rest) if rest else remove(text, path)
     return text
+
+
+def _is_of(zone: Any, corners: Sequence[Sequence[float]]) -> bool:
+    """Whether a zone as it is written has those corners."""
+    polygon = zone.get("polygon") if isinstance(zone, dict) else None
+    written = polygon if isinstance(polygon, list) else []
+    return [list(corner[:2]) for corner in written if isinstance(corner, list)] == [list(c) for c in corners]
 
 
 def set_cell(text: str, path: Sequence[str | int], value: object, name: str | None = None) -> str:

@@ -33,7 +33,7 @@ export function listenToKeys(element, stage, emit, modeOf, { letters = true } = 
     else if (event.key === "Enter" && adds(modeOf())) emit("add", { what: modeOf(), ...middle() });
     else if (event.key === " " && modeOf() === "zone") corner();
     else if (event.key === "Enter" && stage.chosen) emit("ask", stage.chosen);
-    else if (event.key === "Delete" && stage.chosen && stage.editable) emit("remove", stage.chosen);
+    else if (event.key === "Delete" && stage.chosen && stage.editable) { if (!event.repeat) remove(stage.chosen); }
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -64,6 +64,12 @@ export function listenToKeys(element, stage, emit, modeOf, { letters = true } = 
     const { x, y } = middle();
     const corners = stage.sketch.click([x, y]);
     if (corners) emit("zone", { corners });
+  }
+
+  // Nothing is chosen afterwards: zones are known by number, and the next one would have it.
+  function remove(one) {
+    emit("remove", one.what === "zone" ? { ...one, corners: stage.scene.zones[one.id].corners } : one);
+    emit("choose", null);
   }
 
   function zoom(factor) {
