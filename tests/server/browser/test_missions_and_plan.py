@@ -359,3 +359,45 @@ def test_delete_pressed_on_and_on_takes_out_one_zone(watched, page):
     page.keyboard.press("Control+z")
     page.wait_for_function(f"{SCENE}.zones.length === {zones}")
     page.wait_for_selector("#undo[aria-disabled=true]")
+
+
+def test_the_page_asks_before_one_leaves_it_right_after_an_edit(watched, page):
+    plan_view(watched, "yard-test")
+    choose_task(page, "1")
+    asks = page.evaluate(
+        """() => {
+          const key = new KeyboardEvent("keydown", { key: "ArrowRight", altKey: true });
+          document.querySelector(".muster-map-host").dispatchEvent(key);
+          return window.musterUnsaved;
+        }"""
+    )
+    assert asks
+    page.get_by_text("version 7, changed").wait_for()
+    page.keyboard.press("Control+z")
+    page.wait_for_function("window.musterUnsaved === false")
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("speed_mps of rover").wait_for()
+    asks = page.evaluate(
+        """() => {
+          const field = document.querySelector("[aria-label='speed_mps of rover']");
+          field.value = "fast";
+          field.dispatchEvent(new Event("change"));
+          return window.musterUnsaved;
+        }"""
+    )
+    assert asks
+    page.get_by_text("'fast'; expected a number").wait_for()
+    page.wait_for_function("window.musterUnsaved === false")
+
+
+def test_a_zone_that_is_drawn_and_not_added_leaves_nothing_to_save(watched, page):
+    plan_view(watched, "yard-test")
+    page.get_by_role("combobox", name="What a click on the map does").click()
+    page.get_by_role("option", name="Draw zones").click()
+    page.get_by_text("Click the corners of the zone").wait_for()
+    page.locator(".muster-map-host").focus()
+    for key in (" ", "ArrowRight", " ", "ArrowDown", " ", "Enter"):
+        page.keyboard.press(key)
+    assert page.evaluate("window.musterUnsaved")
+    page.get_by_role("button", name="Cancel").click()
+    page.wait_for_function("window.musterUnsaved === false")

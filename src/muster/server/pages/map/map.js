@@ -12,6 +12,7 @@ const NOTES = {
   robot: "Click where the new robot begins (Enter: in the middle of the map); Escape ends adding.",
   zone: "Click the corners of the zone (space: in the middle of the map). Enter, a double-click or the first corner closes it; Backspace takes the last corner back, Escape leaves it.",
 };
+const EDITS = ["move", "add", "remove", "zone"];
 const groups = new Map(); // maps that are looked at together, by the name of their group
 
 export default {
@@ -81,6 +82,7 @@ export default {
       fillTable(this.$refs.table, this.stage);
     },
     heard(name, data) {
+      if (EDITS.includes(name)) window.musterUnsaved = true; // until the server, which has not heard of it, says
       if (name === "hover") this.hint(data);
       else if (name === "choose") this.choose(data, true);
       else if (name === "prerequisites") this.prerequisites = data;

@@ -115,6 +115,7 @@ class Form:
                 raise ParameterError(f"{where}: empty; expected a number of metres")
         except ParameterError as error:
             warn(words_of(error))
+            self._draft.tell_waiting()
         else:
             await self._change(team, row, name, key, value)
         self.show()

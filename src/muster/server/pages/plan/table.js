@@ -28,14 +28,14 @@ export default {
                        @change="change(line, column, $event)">
               </td>
               <td v-if="grows && editable" class="drop">
-                <button type="button" class="bare" :aria-label="'Remove ' + line.row.id" title="Remove" @click="$emit('drop', line.row.id)">×</button>
+                <button type="button" class="bare" :aria-label="'Remove ' + line.row.id" title="Remove" @click="ask('drop', line.row.id)">×</button>
               </td>
             </tr>
           </tbody>
         </table>
       </div>
       <p class="edit-table-foot">
-        <button v-if="grows && editable" type="button" class="plain" @click="$emit('add')">Add a row</button>
+        <button v-if="grows && editable" type="button" class="plain" @click="ask('add')">Add a row</button>
         <template v-if="rows.length > ${PAGE}">
           <button type="button" class="plain" :disabled="first === 0" @click="first -= ${PAGE}">‹</button>
           <span>{{ first + 1 }} to {{ first + page.length }}</span>
@@ -77,7 +77,11 @@ export default {
       this.typing = null;
       this.sent[this.cell(line, column)] = value;
       if (column.key === "id") this.names.set(value.trim(), line.name);
-      this.$emit("cell", { row: line.at, id, key: column.key, value });
+      this.ask("cell", { row: line.at, id, key: column.key, value });
+    },
+    ask(name, data) {
+      window.musterUnsaved = true; // until the server, which has not heard of it, says
+      this.$emit(name, data);
     },
     // From Python: what was sent is in the rows, or was refused.
     forget() {

@@ -55,7 +55,8 @@ class Title:
             return
         _show_idle(self._undo, not self._draft.can_undo)
         _show_idle(self._redo, not self._draft.can_redo)
-        ui.run_javascript(f"window.musterUnsaved = {json.dumps(not self._draft.is_saved)}")
+        unsaved = self._draft.is_editing or not self._draft.is_saved
+        ui.run_javascript(f"window.musterUnsaved = {json.dumps(unsaved)}")
 
     async def _pressed(self) -> None:
         await self._draft.settled()

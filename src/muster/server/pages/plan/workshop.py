@@ -97,10 +97,15 @@ class Workshop:
         await self.edit("drop", one["what"], one["id"], one.get("corners"))
 
     async def _drawn(self, corners: Sequence[Sequence[float]]) -> None:
-        with told():
+        try:
             ground = (await self._draft.look("map")).get("map")
-            with self._sides["map"]:
-                open_zone(corners, ground, self.edit)
+        except MusterError as error:
+            warn(words_of(error))
+            self._draft.tell_waiting()
+            return
+        with self._sides["map"]:
+            dialog = open_zone(corners, ground, self.edit)
+        dialog.on("hide", self._draft.tell_waiting)  # with the zone, or without
 
     def _turn(self, event: events.ValueChangeEventArguments[str]) -> None:
         for name, side in self._sides.items():

@@ -11,7 +11,7 @@ Corner = Sequence[float]
 _WHOM = {"both": "ground and air robots", "ground": "ground robots", "air": "air robots"}
 
 
-def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awaitable[bool]]) -> None:
+def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awaitable[bool]]) -> ui.dialog:
     """Ask what a zone is like, and put it by `edit` into a mission with that map."""
     with ui.dialog() as dialog, ui.card().classes("making"):
         ui.label(f"A new zone of {len(corners)} corners").classes("dialog-title")
@@ -31,6 +31,7 @@ def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awa
             ui.button("Cancel", on_click=dialog.close).props("flat")
             ui.button("Add the zone", on_click=make).props('unelevated autofocus id="add-zone"')
     dialog.open()
+    return dialog
 
 
 def _notes(corners: Sequence[Corner], ground: object) -> list[str]:
