@@ -401,3 +401,91 @@ def test_a_zone_that_is_drawn_and_not_added_leaves_nothing_to_save(watched, page
     assert page.evaluate("window.musterUnsaved")
     page.get_by_role("button", name="Cancel").click()
     page.wait_for_function("window.musterUnsaved === false")
+
+
+HELD = """() => {
+  const pass = socket.onevent;
+  window.held = [];
+  window.heldHas = (words) => held.some((packet) => JSON.stringify(packet.data).includes(words));
+  window.release = () => { socket.onevent = pass; held.forEach((packet) => socket.onevent(packet)); };
+  socket.onevent = (packet) => held.push(packet);
+}"""  # what the server sends is on its way, as long as a test wants
+
+
+def end_of_text(page):
+    page.get_by_role("button", name="Text", exact=True).click()
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+
+
+def test_what_is_typed_while_another_text_is_on_its_way_is_put_into_that(watched, page):
+    plan_view(watched, "yard-test")
+    before = text_of(page)
+    end_of_text(page)
+    page.keyboard.type("# last")
+    page.get_by_text("version 7, changed").wait_for()
+    page.wait_for_function("document.querySelector('#undo').ariaDisabled === 'false'")
+    page.evaluate(HELD)
+    page.keyboard.press("Control+z")
+    page.wait_for_function("heldHas('setEditorValueFromProps')")
+    page.keyboard.press("Control+Home")
+    page.keyboard.type("# first")
+    page.keyboard.press("Enter")
+    page.evaluate("release()")
+    page.wait_for_function("!document.querySelector('.cm-content').textContent.includes('# last')")
+    page.wait_for_function("document.querySelector('.cm-line').textContent === '# first'")
+    assert text_of(page) == "# first\n" + before
+    page.keyboard.press("Control+s")
+    page.get_by_text("version 8", exact=True).wait_for()
+    plan_view(watched, "yard-test")
+    assert text_of(page) == "# first\n" + before
+
+
+def test_what_is_typed_while_a_mark_is_on_its_way_stays(watched, page):
+    plan_view(watched, "yard-test")
+    end_of_text(page)
+    page.evaluate(HELD)
+    page.keyboard.type("taskss: []")
+    page.wait_for_function("heldHas('wrong-line')")
+    page.keyboard.type(" # mo")
+    page.evaluate("release()")
+    page.wait_for_selector(".wrong-line")
+    page.keyboard.type("re")
+    assert text_of(page).endswith("taskss: [] # more")
+    page.get_by_role("button", name="Form", exact=True).click()
+    page.get_by_label("speed_mps of rover").wait_for()
+    assert text_of(page).endswith("taskss: [] # more")
+
+
+def test_what_cannot_be_put_into_another_text_is_told_and_gone_on_both_sides(watched, page):
+    plan_view(watched, "yard-test")
+    before = text_of(page)
+    end_of_text(page)
+    page.keyboard.type("# last")
+    page.get_by_text("version 8, changed").wait_for()
+    page.evaluate(HELD)
+    page.keyboard.press("Control+z")
+    page.wait_for_function("heldHas('setEditorValueFromProps')")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.type("er")
+    page.evaluate("release()")
+    page.get_by_text("What you typed last is not in the text").wait_for()
+    assert text_of(page) == before
+    page.get_by_text("version 8", exact=True).wait_for()
+
+
+def test_a_change_of_a_text_that_is_not_known_cuts_nothing(watched, page):
+    plan_view(watched, "yard-test")
+    before = text_of(page)
+    change = "{ sections: [5, -1, 0, 1], inserted: [[], ['x']] }"
+    page.evaluate(f"getElement(document.querySelector('.script')).$emit('update:value', {change})")
+    page.get_by_text("What you typed last is not in the text").wait_for()
+    assert text_of(page) == before
+    page.get_by_text("version 8", exact=True).wait_for()
+    end_of_text(page)
+    page.keyboard.type("# still")
+    page.get_by_text("version 8, changed").wait_for()
+    page.keyboard.press("Control+s")
+    page.get_by_text("version 9", exact=True).wait_for()
+    plan_view(watched, "yard-test")
+    assert text_of(page) == before + "# still"

@@ -9,6 +9,8 @@ from typing import Any
 from nicegui import ui
 
 from muster.server.pages.editing.draft import Draft
+from muster.server.pages.notices import warn
+from muster.server.pages.plan.editor import Editor
 
 
 class Script:
@@ -22,13 +24,15 @@ class Script:
             "Mod-Shift-z": lambda: draft.redo(),
             "Mod-s": lambda: ui.run_javascript("document.getElementById('save')?.click()"),
         }
-        self._editor = ui.codemirror(
-            draft.text,
+        self._editor = Editor(
+            _lines(draft.text),
             language="YAML",
             indent="  ",
             keymap=dict(keys),
-            on_change=lambda event: draft.typed(event.value),
+            on_change=lambda event: self._take(event.value),
         ).classes("script")
+        self._editor.on_lost = lambda: warn("What you typed last is not in the text: it was changed there meanwhile.")
+        self._words: dict[int, str] = {}
         self._editor.props["aria-label"] = "Text of the mission"
         if not editable:
             self._editor.disable()
@@ -41,8 +45,12 @@ class Script:
 
     def show(self, text: str) -> None:
         """Show another text."""
-        if self._editor.value != text:
-            self._editor.value = text
+        if self._editor.value != _lines(text):
+            self._editor.value = _lines(text)
+
+    def _take(self, text: str) -> None:
+        if text != _lines(self._draft.text):
+            self._draft.typed(text)
 
     def mark(self, errors: Sequence[Mapping[str, Any]]) -> None:
         """Mark the lines of what is wrong, and say it where one points at them."""
@@ -53,9 +61,15 @@ class Script:
             if line is not None and 1 <= line <= lines:
                 told = f"{error['field']}: {error['value']}; expected {error['expected']}".removeprefix(": ")
                 words[line] = f"{words[line]}\n{told}" if line in words else told
-        self._editor.decorations = [{"kind": "line", "line": line, "class": "wrong-line"} for line in words]
-        self._editor.line_tooltips = words
+        if words or self._words:
+            self._words = words
+            self._editor.mark_lines([{"kind": "line", "line": line, "class": "wrong-line"} for line in words], words)
 
     def reveal(self, line: int) -> None:
         """Bring a line into sight."""
         self._editor.reveal_line(line)
+
+
+def _lines(text: str) -> str:
+    """A text with the line ends that the editor knows."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
