@@ -5,6 +5,8 @@ import re
 
 import pytest
 
+from muster.server.client import Client
+
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
 SLOW_MS = 90_000
@@ -37,6 +39,11 @@ def task_place(page, task):
     )
 
 
+def own_missions(watched):
+    with Client(watched.origin) as client:
+        return sorted(mission.name for mission in client.missions.list() if not mission.shipped)
+
+
 def text_of(page):
     page.get_by_role("button", name="Text", exact=True).click()
     page.wait_for_selector(".cm-content")
@@ -52,22 +59,24 @@ def test_missions_are_found_made_deleted_and_taken_back(watched, page):
     page.fill("#search", "no such")
     assert page.locator(".none-found").is_visible()
     page.fill("#search", "")
-    page.get_by_role("button", name="Duplicate 6T-2R", exact=True).click()
+    page.get_by_role("button", name="Duplicate 6T-2R", exact=True).dblclick()
     row = page.locator("tr[data-name='6t-2r copy 6t-2r-copy']")
     row.wait_for()
     page.get_by_role("button", name="Delete 6T-2R copy").click()
     row.wait_for(state="detached")
     page.get_by_role("button", name="Undo").click()
     row.wait_for()
+    assert own_missions(watched) == ["6T-2R copy"]
 
 
 def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):
     watched.open("/")
     page.click("#new")
     page.get_by_label("Name", exact=True).fill("yard test")
-    page.get_by_role("button", name="Make it").click()
+    page.get_by_role("button", name="Make it").dblclick()
     page.wait_for_url("**/plan/yard-test")
     page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SLOW_MS)
+    assert own_missions(watched) == ["6T-2R copy", "yard test"]
     before = task_place(page, "1")
     page.mouse.move(before["px"], before["py"])
     page.mouse.down()
@@ -96,11 +105,11 @@ def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page):
         page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
     page.keyboard.press("Enter")
     page.get_by_label("ceiling_m").fill("3")
-    page.get_by_role("button", name="Add the zone").click()
+    page.get_by_role("button", name="Add the zone").dblclick()
     page.get_by_text("version 1, changed").wait_for()
     page.wait_for_function("getElement(document.querySelector('.muster-map')).stage.scene.zones.length === 1")
     assert task_place(page, "1") == before
-    polygon = re.search(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))[1]
+    (polygon,) = re.findall(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))
     corners = re.findall(r"\[([^\[\]]*), ([^\[\]]*)\]", polygon)
     assert len(corners) == 3
     assert all(len(number.partition(".")[2]) <= 2 for corner in corners for number in corner)

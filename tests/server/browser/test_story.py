@@ -39,8 +39,10 @@ def test_a_mission_is_found_and_planned(watched, page):
     watched.shoot("missions")
     page.get_by_role("link", name=MISSION, exact=True).click()
     page.get_by_label("Time limit, s").fill("1")
-    page.locator("#plan").click()
+    page.locator("#plan").dblclick()
     page.locator("#carry-out").wait_for()
+    with Client(watched.origin) as client:
+        assert len(client.jobs()) == 1
     watched.shoot("plan")
 
 
@@ -55,7 +57,7 @@ def test_why_a_task_is_done_so(watched, page):
 
 def test_it_is_carried_out(watched, page):
     page.locator("#carry-out").click()
-    page.locator("#start").click()
+    page.locator("#start").dblclick()
     page.wait_for_url("**/live/1")
     page.get_by_text("running", exact=False).first.wait_for()
     page.get_by_label("Speed", exact=True).select_option("4")  # ten times
@@ -63,6 +65,8 @@ def test_it_is_carried_out(watched, page):
     page.wait_for_function("Number(document.querySelector('.clock').dataset.seconds) > 15")
     page.keyboard.press(" ")
     page.locator(".run-state[data-state=paused]").wait_for()
+    with Client(watched.origin) as client:
+        assert [run.id for run in client.runs()] == [1]
     watched.shoot("live")
 
 
