@@ -9,6 +9,7 @@ from tests.server.serving import served as serving
 
 from muster.server.client import Client
 from muster.server.desk.missions import Missions
+from muster.server.desk.plans import Plans
 from muster.server.store.database import Database
 from muster.server.words import StoreError
 
@@ -65,6 +66,32 @@ def hold(monkeypatch):
     yield hold
     for one in held:
         one.let_go()
+
+
+def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client, hold):
+    page = watched.page
+    older, newer = (client.plan(MISSION, iterations=20, seed=seed).wait().id for seed in (1, 2))
+    watched.open(f"/plan/{MISSION}")
+    page.locator("table.robots").wait_for()
+    held = hold(Plans, "get", only=lambda plan: plan == older)
+
+    def choose(number):
+        page.get_by_role("combobox", name="Plan", exact=True).click()
+        page.get_by_role("option").nth(number).click()
+
+    choose(1)
+    page.locator("#carry-out").wait_for(state="detached")
+    choose(0)
+    page.locator("table.robots").wait_for()
+    held.let_go()
+    held.wait_for_answer()
+    page.locator("#carry-out").click()
+    page.locator("#start").click()
+    page.wait_for_url("**/live/*")
+    run = client.runs()[0]
+    assert run.plan == newer
+    client.run(run.id).cancel()
+    watched.require_clean()
 
 
 @contextmanager
