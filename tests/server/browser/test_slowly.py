@@ -2,9 +2,12 @@
 
 import asyncio
 import threading
+import time
 from contextlib import contextmanager
 
 import pytest
+from nicegui import Client as PageClient
+from nicegui import core
 from tests.server.serving import served as serving
 
 from muster.server.client import Client
@@ -66,6 +69,13 @@ def hold(monkeypatch):
     yield hold
     for one in held:
         one.let_go()
+
+
+def wait_for(condition):
+    until = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.02)
 
 
 def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client, hold):
@@ -140,3 +150,28 @@ def test_live_and_records_open_while_workers_are_busy(watched, client, hold):
     held.let_go()
     page.get_by_role("link", name="Log (JSON)").wait_for()
     watched.require_clean()
+
+
+def test_a_page_with_unsaved_work_waits_longer_for_its_browser(watched, chromium, client, monkeypatch):
+    monkeypatch.setattr(core.app.config, "reconnect_timeout", 0.1)
+    text = client.missions.get(MISSION).text
+    name = client.missions.create(text, name="kept").mission
+
+    def opened():
+        before = set(PageClient.instances)
+        page = chromium.new_page()
+        page.goto(f"{watched.origin}/plan/{name}")
+        page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SCENE_S)
+        (new,) = set(PageClient.instances) - before
+        return page, new
+
+    (edited, kept), (other, left) = opened(), opened()
+    edited.locator(".muster-map-host").focus()
+    edited.keyboard.press("p")
+    edited.keyboard.press("Alt+ArrowRight")
+    edited.get_by_text("version 1, changed").wait_for()
+    edited.close()
+    wait_for(lambda: not PageClient.instances[kept].has_socket_connection)
+    other.close()
+    wait_for(lambda: left not in PageClient.instances)
+    assert kept in PageClient.instances

@@ -132,7 +132,8 @@ class Ordering:
         async for job in the_desk().jobs.follow(asked.id):
             if client.is_deleted:
                 return
-            self._show(job)
+            if client.has_socket_connection:
+                self._show(job)
         self._show(job)
         if job.state == "done" and job.result:
             if self._stopped:
