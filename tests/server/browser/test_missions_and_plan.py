@@ -69,6 +69,24 @@ def test_missions_are_found_made_deleted_and_taken_back(watched, page):
     assert own_missions(watched) == ["6T-2R copy"]
 
 
+def test_two_missions_are_duplicated_at_once(watched, page):
+    """The list is made anew by whichever is first, while the other is under way."""
+    watched.open("/")
+    page.get_by_role("button", name="Duplicate 31T-6R50", exact=True).wait_for()
+    page.evaluate(
+        "names => names.forEach(name => document.querySelector(`[aria-label='Duplicate ${name}']`).click())",
+        ["6T-2R copy", "31T-6R50"],
+    )
+    copies = ["6T-2R copy copy", "31T-6R50 copy"]
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for()
+        page.get_by_text(f"is a copy of {name.removesuffix(' copy')}.").wait_for()
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).click()
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for(state="detached")
+    assert own_missions(watched) == ["6T-2R copy"]
+
+
 def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):
     watched.open("/")
     page.click("#new")

@@ -25,7 +25,7 @@ def once(act: Callable[[], Awaitable[bool | None]]) -> Callable[[ClickEventArgum
     async def _done(button: ui.button) -> None:
         done: bool | None = False
         try:
-            with told():
+            with button.client, told():  # what is around the button may be gone when it is done
                 done = await act()
         finally:
             if done is False and not button.is_deleted:
