@@ -5,6 +5,8 @@ import re
 
 import pytest
 
+from muster.server.client import Client
+
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
 SLOW_MS = 90_000
@@ -48,6 +50,11 @@ def choose_task(page, task):
     raise AssertionError(f"no task {task}")
 
 
+def own_missions(watched):
+    with Client(watched.origin) as client:
+        return sorted(mission.name for mission in client.missions.list() if not mission.shipped)
+
+
 def text_of(page):
     page.get_by_role("button", name="Text", exact=True).click()
     page.wait_for_selector(".cm-content")
@@ -63,22 +70,42 @@ def test_missions_are_found_made_deleted_and_taken_back(watched, page):
     page.fill("#search", "no such")
     assert page.locator(".none-found").is_visible()
     page.fill("#search", "")
-    page.get_by_role("button", name="Duplicate 6T-2R", exact=True).click()
+    page.get_by_role("button", name="Duplicate 6T-2R", exact=True).dblclick()
     row = page.locator("tr[data-name='6t-2r copy 6t-2r-copy']")
     row.wait_for()
     page.get_by_role("button", name="Delete 6T-2R copy").click()
     row.wait_for(state="detached")
     page.get_by_role("button", name="Undo").click()
     row.wait_for()
+    assert own_missions(watched) == ["6T-2R copy"]
+
+
+def test_two_missions_are_duplicated_at_once(watched, page):
+    """The list is made anew by whichever is first, while the other is under way."""
+    watched.open("/")
+    page.get_by_role("button", name="Duplicate 31T-6R50", exact=True).wait_for()
+    page.evaluate(
+        "names => names.forEach(name => document.querySelector(`[aria-label='Duplicate ${name}']`).click())",
+        ["6T-2R copy", "31T-6R50"],
+    )
+    copies = ["6T-2R copy copy", "31T-6R50 copy"]
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for()
+        page.get_by_text(f"is a copy of {name.removesuffix(' copy')}.").wait_for()
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).click()
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for(state="detached")
+    assert own_missions(watched) == ["6T-2R copy"]
 
 
 def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):
     watched.open("/")
     page.click("#new")
     page.get_by_label("Name", exact=True).fill("yard test")
-    page.get_by_role("button", name="Make it").click()
+    page.get_by_role("button", name="Make it").dblclick()
     page.wait_for_url("**/plan/yard-test")
     page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SLOW_MS)
+    assert own_missions(watched) == ["6T-2R copy", "yard test"]
     before = task_place(page, "1")
     page.mouse.move(before["px"], before["py"])
     page.mouse.down()
@@ -107,11 +134,11 @@ def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page):
         page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
     page.keyboard.press("Enter")
     page.get_by_label("ceiling_m").fill("3")
-    page.get_by_role("button", name="Add the zone").click()
+    page.get_by_role("button", name="Add the zone").dblclick()
     page.get_by_text("version 1, changed").wait_for()
     page.wait_for_function("getElement(document.querySelector('.muster-map')).stage.scene.zones.length === 1")
     assert task_place(page, "1") == before
-    polygon = re.search(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))[1]
+    (polygon,) = re.findall(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))
     corners = re.findall(r"\[([^\[\]]*), ([^\[\]]*)\]", polygon)
     assert len(corners) == 3
     assert all(len(number.partition(".")[2]) <= 2 for corner in corners for number in corner)

@@ -39,8 +39,10 @@ def test_a_mission_is_found_and_planned(watched, page):
     watched.shoot("missions")
     page.get_by_role("link", name=MISSION, exact=True).click()
     page.get_by_label("Time limit, s").fill("1")
-    page.locator("#plan").click()
+    page.locator("#plan").dblclick()
     page.locator("#carry-out").wait_for()
+    with Client(watched.origin) as client:
+        assert len(client.jobs()) == 1
     watched.shoot("plan")
 
 
@@ -55,7 +57,7 @@ def test_why_a_task_is_done_so(watched, page):
 
 def test_it_is_carried_out(watched, page):
     page.locator("#carry-out").click()
-    page.locator("#start").click()
+    page.locator("#start").dblclick()
     page.wait_for_url("**/live/1")
     page.get_by_text("running", exact=False).first.wait_for()
     page.get_by_label("Speed", exact=True).select_option("4")  # ten times
@@ -63,6 +65,8 @@ def test_it_is_carried_out(watched, page):
     page.wait_for_function("Number(document.querySelector('.clock').dataset.seconds) > 15")
     page.keyboard.press(" ")
     page.locator(".run-state[data-state=paused]").wait_for()
+    with Client(watched.origin) as client:
+        assert [run.id for run in client.runs()] == [1]
     watched.shoot("live")
 
 
@@ -164,26 +168,60 @@ def test_what_nobody_can_do_is_seen_at_once(watched, page):
 
 
 def test_who_comes_back_misses_nothing(watched, page):
-    """The stream breaks off: the page says so, goes on by itself, and tells each event once."""
+    """The stream breaks off: the page says so, goes on by itself, and tells each event once; outcomes too."""
     page.keyboard.press(" ")
     page.locator(".run-state[data-state=paused]").wait_for()
     told = page.locator("ol.events li")
     page.locator("li[data-kind=command]", has_text="pause").first.wait_for()
     before = told.all_inner_texts()
     sockets = []
-    page.route_web_socket(re.compile("/stream"), lambda socket: sockets.append((socket, socket.connect_to_server())))
+
+    def without_outcomes(socket):
+        """A stream as of whoever was away in the moment when outcomes were told."""
+        server = socket.connect_to_server()
+        server.on_message(lambda text: None if '"type":"action"' in text else socket.send(text))
+        sockets.append((socket, server))
+
+    page.route_web_socket(re.compile("/stream"), without_outcomes)
     page.reload()
     page.wait_for_function("count => document.querySelectorAll('ol.events li').length === count", arg=len(before))
     sockets[0][0].close(code=1012, reason="restarts")
     page.locator(".connection", has_text="connection lost").wait_for()
     page.locator(".connection").wait_for(state="hidden")
     page.keyboard.press(" ")
+    page.locator(".notices .done", has_text="Go on").wait_for()
     page.locator(".run-state[data-state=running]").wait_for()
     page.keyboard.press(" ")
     page.locator(".run-state[data-state=paused]").wait_for()
     assert len(sockets) == 2
     assert not sockets[1][0].url.endswith("after=0")
     assert told.all_inner_texts()[-len(before) :] == before
+
+
+def test_keys_go_on_from_what_was_asked_for_last(watched, page):
+    """However long the run takes to say that it has obeyed: here it cannot between two keys."""
+    twice = (
+        "key => [1, 2].forEach(() => document.body.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true})))"
+    )
+    asked = page.locator("li[data-kind=command]")
+
+    def newest(count):
+        with Client(watched.origin) as client:
+            return [action.verb for action in client.actions(run=1)][:count]
+
+    before = asked.count()
+    page.evaluate(twice, " ")
+    page.wait_for_function("n => document.querySelectorAll('li[data-kind=command]').length === n", arg=before + 2)
+    assert newest(2) == ["run.pause", "run.resume"]
+    page.locator(".run-state[data-state=paused]").wait_for()
+    page.evaluate(twice, "+")
+    page.locator(".notices .done", has_text="Speed 5").wait_for()
+    page.evaluate(twice, "-")
+    page.locator(".notices .done", has_text="Speed 1 ").wait_for()
+    page.get_by_role("button", name="Go on").dblclick()
+    page.wait_for_function("n => document.querySelectorAll('li[data-kind=command]').length === n", arg=before + 8)
+    page.locator(".run-state[data-state=paused]").wait_for()
+    assert newest(2) == ["run.pause", "run.resume"]
 
 
 def test_on_a_wall_there_is_nothing_to_press(watched, page):

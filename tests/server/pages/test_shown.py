@@ -20,7 +20,7 @@ from muster.server.pages.plan.compare import moved_tasks, with_better
 from muster.server.pages.plan.figures import figures_of, lines_of, meaning_of
 from muster.server.pages.plan.ground import floor_plan
 from muster.server.pages.plan.taking import parcel
-from muster.server.pages.plan.versions import differences
+from muster.server.pages.plan.versions import differences, marked
 from muster.server.pages.plan.why import question
 
 
@@ -151,3 +151,8 @@ def test_differences_are_lines_with_signs() -> None:
     assert differences("a\nb\n", "a\nc\n")[1:] == [" a", "-b", "+c"]
     assert differences("a", "a") == []
     assert differences("a\n" * 15_000, "b\n" * 15_000) == ["The texts differ, and are too long to be compared here."]
+
+
+def test_differences_are_one_piece_of_html_in_which_nothing_is_marked_but_the_signs() -> None:
+    expected = '<div class="added">+a: &lt;b&gt; &amp;</div><div class="removed">-</div><div class=""> c</div>'
+    assert marked(["+a: <b> &", "-", " c"]) == expected

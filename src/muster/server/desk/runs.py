@@ -7,6 +7,7 @@ import hashlib
 import logging
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from muster.mission.errors import ParameterError
 from muster.server.runs.carrying import TOO_LATE, Carrying
+from muster.server.runs.claims import claims_of
 from muster.server.runs.feed import Feed
 from muster.server.runs.terms import SIMULATED, require_action, require_speed, require_world
 from muster.server.runs.unkept import unkept
@@ -37,15 +39,20 @@ class Runs:
         self._store, self._settings = store, settings
         self._live: dict[int, Carrying] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
-        self._beginning = 0
+        self._beginning: list[frozenset[str]] = []  # what runs that are not under way yet claim
         self._slow: set[asyncio.Task[Action]] = set()
         self._last = datetime.now(UTC)
 
     async def start_up(self) -> None:
         """Go on with runs that a server left unfinished, however it ended."""
         await asyncio.to_thread(sweep, OF_RUNS)
-        for run in await asyncio.to_thread(self._store.runs.unfinished):
-            self._carry(run)
+        unfinished = await asyncio.to_thread(self._store.runs.unfinished)
+        for k, run in enumerate(unfinished):
+            later = next((other for other in unfinished[k + 1 :] if _claims(run) & _claims(other)), None)
+            if later is None:
+                self._carry(run)
+            else:  # which began when this one was over, and that could not be written
+                await self._leave(run, f"run {later.id}, which began later, commands its robots")
 
     async def close(self) -> None:
         """End all runners; the runs go on when a server is there again. Real robots are told to stand."""
@@ -62,6 +69,8 @@ class Runs:
         ------
         ForbiddenError, NotFoundError, ParameterError
             if they may only watch; there is no such plan; a world, speed or setting is none.
+        ConflictError
+            if a run that is under way commands robots that this one would (`claims_of`).
         BusyError
             if as many runs are under way as may be.
         """
@@ -70,13 +79,15 @@ class Runs:
         speed = require_speed(speed)
         if world not in SIMULATED and speed != 1.0:
             raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
-        if self.under_way + self._beginning >= self._settings.runs:
+        claims = claims_of(world, settings)
+        self._require_unclaimed(claims)
+        if self.under_way + len(self._beginning) >= self._settings.runs:
             raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
-        self._beginning += 1
+        self._beginning.append(claims)
         try:
             return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
         finally:
-            self._beginning -= 1
+            self._beginning.remove(claims)
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
         """The newest first."""
@@ -175,6 +186,14 @@ class Runs:
         texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
         return tuple(text for text in texts if text)
 
+    def _require_unclaimed(self, claims: frozenset[str]) -> None:
+        """Raise ConflictError where another run commands such robots, or begins to."""
+        others = [(f"run {run}", _claims(each.run)) for run, each in self._live.items() if not each.over]
+        for whose, theirs in [*others, *(("another run", theirs) for theirs in self._beginning)]:
+            if both := claims & theirs:
+                what = ", ".join(sorted(both))
+                raise ConflictError(f"{whose} commands robots on {what}; expected others, or that it is over")
+
     def _add(self, who: Who, plan: int, world: str, speed: float | None, settings: Mapping[str, Any]) -> Run:
         entry = self._store.plans.get(plan)
         return self._store.runs.add(
@@ -186,6 +205,12 @@ class Runs:
         task = self._tasks[run.id] = asyncio.create_task(carrying.go())
         task.add_done_callback(lambda _: self._forget(run.id))
         return carrying
+
+    async def _leave(self, run: Run, why: str) -> None:
+        """Do not go on with a run."""
+        _log.warning("run %d: not gone on with: %s", run.id, why)
+        with suppress(StoreError):  # the next server is to find out again
+            await asyncio.to_thread(self._store.runs.set, run.id, state="failed", remark=why)
 
     def _forget(self, run: int) -> None:
         self._live.pop(run, None)
@@ -229,3 +254,7 @@ class Runs:
         """Now, and later than the last time."""
         self._last = max(datetime.now(UTC), self._last + timedelta(microseconds=1))
         return self._last
+
+
+def _claims(run: Run) -> frozenset[str]:
+    return claims_of(run.world, run.settings)

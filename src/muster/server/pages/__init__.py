@@ -6,6 +6,7 @@
 | `asking` | who looks at a page, and at which desk |
 | `sockets` | whose page it is: nobody presses the buttons of another's |
 | `notices` | errors of the desk, and news, for a person |
+| `pressing` | buttons that do something once, however often they are clicked |
 | `map` | the map, an element with its own scripts |
 """
 

@@ -71,6 +71,17 @@ def on_the_wall() -> bool:
     return ui.context.client.request.query_params.get("wall", "") not in ("", "0")
 
 
+async def is_seen() -> bool:
+    """Wait until the page as it is so far is seen; False: by nobody, so that nothing more is to be built.
+
+    A page that is not built within three seconds is an error page; what takes its time, as a database that does not
+    answer or workers that are busy, comes after this.
+    """
+    client = ui.context.client
+    await client.connected()
+    return not client.is_deleted
+
+
 def _asked() -> Asked:
     asked: Asked = ui.context.client.request.scope[_KEY]
     return asked

@@ -33,27 +33,20 @@ class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_c
         looks at it; without the role `command` there is nothing to press.
     wall
         large, and nothing to press.
-    image, tiles
-        what lies under it, as in `map.scene_of`.
     """
 
-    def __init__(
-        self,
-        runs: Any,
-        run: int,
-        who: Who,
-        *,
-        wall: bool,
-        image: Mapping[str, Any] | None = None,
-        tiles: Mapping[str, Any] | None = None,
-    ) -> None:
+    def __init__(self, runs: Any, run: int, who: Who, *, wall: bool) -> None:
         super().__init__()
         self._runs, self._run, self._who = runs, run, who
         self.props["path"] = f"/api/v1/runs/{run}/stream"
         self.props["may"] = who.role == "command"
         self.props["wall"] = wall
-        self.props["ground"] = {"image": image, "tiles": tiles}
+        self.props["ground"] = {"image": None, "tiles": None}
         self.on("act", self._act)
+
+    def lay(self, *, image: Mapping[str, Any] | None, tiles: Mapping[str, Any] | None) -> None:
+        """Show what lies under it, as in `map.scene_of`."""
+        self.props["ground"] = {"image": image, "tiles": tiles}
 
     async def _act(self, event: GenericEventArguments) -> None:
         token = event.args.get("token")

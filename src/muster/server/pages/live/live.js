@@ -5,6 +5,9 @@ import { LiveView } from "muster-live";
 export default {
   template: `<div class="muster-live" :class="{ wall }"></div>`,
   props: { path: String, ground: Object, may: Boolean, wall: Boolean },
+  watch: {
+    ground() { this.view.ground.lay(this.ground); },
+  },
   created() { this.view = null; },
   mounted() {
     const { path, ground, may, wall } = this;

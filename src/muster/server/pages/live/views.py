@@ -6,13 +6,14 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import on_the_wall, the_asker, the_desk
+from muster.mission.errors import MusterError
+from muster.server.pages.asking import is_seen, on_the_wall, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import told, words_of
 from muster.server.pages.plan.ground import TILES, floor_plan
 from muster.server.pages.tables import table
-from muster.server.words import OVER, NotFoundError, Run
+from muster.server.words import OVER, Run
 
 KEYS = {
     "space": "pause, go on",
@@ -42,8 +43,9 @@ async def runs_page() -> None:
                 _under_way([run for run in runs if run.state not in OVER])
                 _over([run for run in runs if run.state in OVER][:_ENDED])
 
-        await listed()
-        ui.timer(_REFRESH_S, listed.refresh)
+        if await is_seen():
+            await listed()
+            ui.timer(_REFRESH_S, listed.refresh, immediate=False)
 
 
 def _under_way(runs: list[Run]) -> None:
@@ -79,7 +81,7 @@ async def run_page(run: int) -> None:
     desk, who, wall = the_desk(), the_asker(), on_the_wall()
     try:
         entry = await desk.runs.get(run)
-    except NotFoundError as error:
+    except MusterError as error:
         with frame("Live"), ui.element("p"):
             ui.label(words_of(error))
         return
@@ -88,7 +90,10 @@ async def run_page(run: int) -> None:
         return
     with frame("Live", title=f"{entry.mission}, run {run}", keys=KEYS) as content:
         content.classes("live-view")
-        RunView(desk.runs, run, who, wall=wall, **await _ground(entry))
+        view = RunView(desk.runs, run, who, wall=wall)
+    if await is_seen():  # the robots before what lies under them: neither database nor workers are needed to stop them
+        with told():
+            view.lay(**await _ground(entry))
 
 
 async def _ground(run: Run) -> dict[str, Any]:

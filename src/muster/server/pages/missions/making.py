@@ -10,6 +10,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import flow_text
 from muster.server.pages.asking import the_asker, the_desk
 from muster.server.pages.notices import told, warn
+from muster.server.pages.pressing import once
 from muster.server.work import WorkError
 
 EMPTY = """\
@@ -63,7 +64,7 @@ async def open_making() -> None:
             start.props("outlined dense").classes("full")
             with ui.element("div").classes("dialog-buttons"):
                 ui.button("Cancel", on_click=dialog.close).props("flat")
-                ui.button("Make it", on_click=lambda: _make(name.value, start.value or "")).props("unelevated")
+                ui.button("Make it", on_click=once(lambda: _make(name.value, start.value or ""))).props("unelevated")
             ui.separator()
             _uploading()
         dialog.open()
@@ -109,15 +110,14 @@ def refused(files: Sequence[tuple[str, str, int]]) -> str:
 
 
 async def _make(name: str, start: str) -> None:
-    with told():
-        missions = the_desk().missions
-        title = name.strip() or "mission"
-        if start not in _STARTS:
-            old = await missions.get(start)
-            made = await missions.create(the_asker(), await named(old.text, title), dict(old.files), title)
-        else:
-            made = await missions.create(the_asker(), _STARTS[start][0].format(name=flow_text(title)), {}, title)
-        ui.navigate.to(f"/plan/{made.mission}")
+    missions = the_desk().missions
+    title = name.strip() or "mission"
+    if start not in _STARTS:
+        old = await missions.get(start)
+        made = await missions.create(the_asker(), await named(old.text, title), dict(old.files), title)
+    else:
+        made = await missions.create(the_asker(), _STARTS[start][0].format(name=flow_text(title)), {}, title)
+    ui.navigate.to(f"/plan/{made.mission}")
 
 
 async def named(text: str, name: str) -> str:

@@ -13,6 +13,7 @@ from muster.server.pages.asking import may_command, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.missions.making import named, open_making
 from muster.server.pages.notices import offer, say, told
+from muster.server.pages.pressing import once
 from muster.server.words import MissionEntry
 
 _KEYS = {"/": "search", "n": "new mission"}
@@ -108,13 +109,12 @@ def _named_row(entry: MissionEntry) -> ui.element:
 
 def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
     async def duplicate() -> None:
-        with told():
-            missions = the_desk().missions
-            old = await missions.get(entry.id)
-            name = f"{entry.name} copy"
-            new = await missions.create(the_asker(), await named(old.text, name), dict(old.files), name)
-            say(f"{new.mission} is a copy of {entry.name}.")
-            listed.refresh()
+        missions = the_desk().missions
+        old = await missions.get(entry.id)
+        name = f"{entry.name} copy"
+        new = await missions.create(the_asker(), await named(old.text, name), dict(old.files), name)
+        say(f"{new.mission} is a copy of {entry.name}.")
+        listed.refresh()
 
     async def delete() -> None:
         with told():
@@ -127,7 +127,7 @@ def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[
             await the_desk().missions.restore(the_asker(), entry.id)
             listed.refresh()
 
-    _icon("content_copy", f"Duplicate {entry.name}", duplicate)
+    _icon("content_copy", f"Duplicate {entry.name}", once(duplicate))
     if not entry.shipped:
         _icon("delete_outline", f"Delete {entry.name}", delete)
 

@@ -81,23 +81,39 @@ class Answer:
         self._none.set_visibility(not self._entries)
 
     async def _chosen_plan(self) -> None:
-        if self._choice.value is None:
+        chosen = self._choice.value
+        if chosen is None:
             return
+        self._show_no_plan()
         with told():
-            self._entry = await the_desk().plans.get(self._choice.value)
-            self._show_outdated()
-            self._body.clear()
-            with self._body:
-                figures_list(figures_of(self._entry.plan))
-                with ui.element("div").classes("bar").props('role="status"'):
-                    ui.spinner(size="1.2em")
-                    ui.label("The judge goes through the plan: ways, times, rules.").classes("quiet")
-            entry = self._entry
+            entry = await the_desk().plans.get(chosen)
+            if self._choice.value != chosen:  # another one meanwhile
+                return
+            self._entry = entry
+            self._show_judging(entry)
             verdict = await the_desk().plans.verdict(entry.id)
             version = await the_desk().missions.get(entry.mission, entry.mission_version)
             on_earth = bool((await the_desk().missions.look(version.text, "origin_wgs84")).get("origin_wgs84"))
-            if self._entry is entry:  # and not another one, chosen meanwhile
+            if self._entry is entry:
                 self._show(entry, verdict, on_earth=on_earth)
+
+    def _show_no_plan(self) -> None:
+        """Until a chosen plan is known nothing can be done with it, nor with the one before."""
+        self._entry = None
+        self._show_outdated()
+        self._body.clear()
+        self.taking.show()
+        self.why.clear()
+        self.choose(self._chosen)
+
+    def _show_judging(self, entry: PlanEntry) -> None:
+        self._show_outdated()
+        self._body.clear()
+        with self._body:
+            figures_list(figures_of(entry.plan))
+            with ui.element("div").classes("bar").props('role="status"'):
+                ui.spinner(size="1.2em")
+                ui.label("The judge goes through the plan: ways, times, rules.").classes("quiet")
 
     def _show(self, entry: PlanEntry, verdict: Mapping[str, Any], *, on_earth: bool) -> None:
         self._map.show_plan(lines_of(entry.plan, verdict))

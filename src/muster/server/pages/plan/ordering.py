@@ -54,7 +54,7 @@ class Ordering:
                 self._ignore = ui.select(list(IGNORABLE), multiple=True, value=[], label="Ignore rules")
                 self._ignore.props("outlined dense options-dense")
         with ui.element("div").classes("bar"):
-            self._go = ui.button("Plan", icon="route", on_click=self._ask).props('unelevated id="plan"')
+            self._go = ui.button("Plan", icon="route", on_click=self._pressed).props('unelevated id="plan"')
             self._stop = ui.button("Stop", on_click=self._ask_to_stop).props('outline id="stop"')
             self._stop.props('title="End the search; keep the best plan so far"')
             self._discard = ui.button("Discard", on_click=self._cancel)
@@ -77,15 +77,28 @@ class Ordering:
             if jobs:
                 await self._follow(max(jobs, key=lambda job: job.id))
 
+    def _pressed(self) -> Awaitable[None]:
+        """Plan, and hear no second click meanwhile: `_ask` begins after this event, maybe after the next one."""
+        self._go.disable()
+        return self._ask()
+
     async def _ask(self) -> None:
-        with told():
-            if self._draft.checked.errors:
-                raise ParameterError("the mission has errors; mend them first")
-            if not await self.before("to be planned"):
-                return
-            base = self._draft.base
-            job = await the_desk().jobs.ask_plan(the_asker(), base.mission, base.version or None, **self._arguments())
-            await self._follow(job)
+        try:
+            with told():
+                if self._draft.checked.errors:
+                    raise ParameterError("the mission has errors; mend them first")
+                if not await self.before("to be planned"):
+                    return
+                base, asker, arguments = self._draft.base, the_asker(), self._arguments()
+                job = await the_desk().jobs.ask_plan(asker, base.mission, base.version or None, **arguments)
+                await self._follow(job)
+        finally:
+            if not self._go.is_deleted:
+                self._go.set_enabled(not self._is_under_way)
+
+    @property
+    def _is_under_way(self) -> bool:
+        return self._job is not None and self._job.state in _WAITING
 
     def _arguments(self) -> dict[str, Any]:
         given: dict[str, Any] = {
@@ -119,7 +132,8 @@ class Ordering:
         async for job in the_desk().jobs.follow(asked.id):
             if client.is_deleted:
                 return
-            self._show(job)
+            if client.has_socket_connection:
+                self._show(job)
         self._show(job)
         if job.state == "done" and job.result:
             if self._stopped:
@@ -140,7 +154,7 @@ class Ordering:
 
     def _show(self, job: Job | None) -> None:
         self._job = job
-        under_way = job is not None and job.state in _WAITING
+        under_way = self._is_under_way
         self._go.set_enabled(not under_way)
         self._stop.set_visibility(under_way)
         self._discard.set_visibility(under_way)

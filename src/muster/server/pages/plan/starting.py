@@ -9,7 +9,7 @@ from nicegui import ui
 
 from muster.mission.errors import ParameterError
 from muster.server.pages.asking import the_asker, the_desk
-from muster.server.pages.notices import told
+from muster.server.pages.pressing import once
 from muster.server.words import PlanEntry
 
 _SPEEDS = {
@@ -48,16 +48,15 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
         ask()
 
         async def begin() -> None:
-            with told():
-                pace = float(speed.value) if speed.value else None
-                if world.value not in _SIMULATED:
-                    pace = 1.0
-                run = await the_desk().runs.start(the_asker(), entry.id, world.value, pace, **reading[0]())
-                ui.navigate.to(f"/live/{run.id}")
+            pace = float(speed.value) if speed.value else None
+            if world.value not in _SIMULATED:
+                pace = 1.0
+            run = await the_desk().runs.start(the_asker(), entry.id, world.value, pace, **reading[0]())
+            ui.navigate.to(f"/live/{run.id}")
 
         with ui.element("div").classes("dialog-buttons"):
             ui.button("Cancel", on_click=dialog.close).props("flat")
-            ui.button("Start", icon="play_arrow", on_click=begin).props('unelevated id="start"')
+            ui.button("Start", icon="play_arrow", on_click=once(begin)).props('unelevated id="start"')
     dialog.open()
 
 

@@ -90,6 +90,8 @@ class Taking:
             return
         with told():
             missions = {mission.id: mission for mission in await the_desk().missions.list()}
+            if entry is not self._answer.entry:  # another plan is chosen meanwhile
+                return
             open_start(entry, missions[entry.mission].dimensions if entry.mission in missions else 2)
 
     def _open_upload(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from typing import Any
 
 from nicegui import ui
@@ -17,6 +18,8 @@ from muster.server.pages.plan.title import Title
 from muster.server.pages.plan.workshop import Workshop
 
 _TICK_S = 0.2
+_UNSAVED_S = 3600.0
+"""Seconds without a connection for which a page with unsaved work is kept."""
 _KEYS = {
     "Ctrl+Z, Ctrl+Y": "undo, redo",
     "Ctrl+S": "save a version",
@@ -62,6 +65,7 @@ async def view(mission: str, plan: int | None = None) -> None:
 
 async def _build(mission: str, plan: int | None) -> None:
     draft = Draft(the_desk().missions, await the_desk().missions.get(mission))
+    _keep_unsaved(draft)
     answer: Answer
 
     def choose(one: Mapping[str, Any] | None) -> None:
@@ -85,10 +89,29 @@ async def _build(mission: str, plan: int | None) -> None:
         ordering.before = title.save
     await answer.begin(plan)
 
+    client = ui.context.client
+
     async def tick() -> None:
-        with told():
-            await draft.tick()
+        if client.has_socket_connection:  # nobody is told of errors before
+            with told():
+                await draft.tick()
 
     ui.timer(_TICK_S, tick)
     if ordering is not None:
         ui.timer(0, ordering.go_on, once=True)
+
+
+def _keep_unsaved(draft: Draft) -> None:
+    """Wait longer for a browser whose connection is gone while there is something that only this page has.
+
+    Not for every page: NiceGUI cannot tell a connection that is lost from a page that is left, and each page that is
+    left would hold a megabyte for an hour, and a large mission's scene beside it. A page that waits does next to
+    nothing: its draft is not checked, a job is not shown, and what is to be sent is kept once an element.
+    """
+    client = ui.context.client
+    page = client.page = copy(client.page)  # this client's own: what is set on the page counts for all who open it
+
+    def note(_: str) -> None:
+        page.reconnect_timeout = None if draft.is_saved else _UNSAVED_S
+
+    draft.on_change.append(note)

@@ -46,14 +46,17 @@ class Why:
             return
         self._box.clear()
         with self._box:
-            ui.spinner(size="1.4em")
+            waiting = ui.spinner(size="1.4em")
         with told():
             found = await the_desk().plans.explain(entry.id, task)
+            if waiting.is_deleted:  # another plan is shown meanwhile, or something else was asked
+                return
             self._box.clear()
             with self._box:
                 _explained(task, found)
             return
-        self._box.clear()
+        if not waiting.is_deleted:
+            self._box.clear()
 
 
 def question(task: str, plan: Mapping[str, Any]) -> str:

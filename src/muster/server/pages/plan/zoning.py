@@ -6,6 +6,8 @@ from collections.abc import Awaitable, Callable, Iterable, Sequence
 
 from nicegui import ui
 
+from muster.server.pages.pressing import once
+
 Corner = Sequence[float]
 
 _WHOM = {"both": "ground and air robots", "ground": "ground robots", "air": "air robots"}
@@ -22,14 +24,16 @@ def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awa
         for note in _notes(corners, ground):
             ui.label(note).classes("quiet small")
 
-        async def make() -> None:
+        async def make() -> bool:
             kinds = ["ground", "air"] if whom.value == "both" else [whom.value]
-            if await edit("add_zone", corners, floor.value, ceiling.value, kinds):
+            made = await edit("add_zone", corners, floor.value, ceiling.value, kinds)
+            if made:
                 dialog.close()
+            return made
 
         with ui.element("div").classes("dialog-buttons"):
             ui.button("Cancel", on_click=dialog.close).props("flat")
-            ui.button("Add the zone", on_click=make).props('unelevated autofocus id="add-zone"')
+            ui.button("Add the zone", on_click=once(make)).props('unelevated autofocus id="add-zone"')
     dialog.open()
     return dialog
 

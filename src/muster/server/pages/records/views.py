@@ -8,7 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import the_desk
+from muster.mission.errors import MusterError
+from muster.server.pages.asking import is_seen, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told, words_of
 from muster.server.pages.records.figures import (
@@ -23,7 +24,7 @@ from muster.server.pages.records.figures import (
 )
 from muster.server.pages.tables import table
 from muster.server.runs.lines import deed_of, line_of
-from muster.server.words import OVER, Action, Entry, NotFoundError, Run
+from muster.server.words import OVER, Action, Entry, Run
 
 KEYS = {
     "space, arrows, home, end": "in the replay: play or pause, go through time (after a click or Tab into it)",
@@ -80,11 +81,13 @@ async def record_page(run: int) -> None:
     desk = the_desk()
     try:
         found = await desk.runs.get(run)
-    except NotFoundError as error:
+    except MusterError as error:
         with frame("Records"):
             ui.label(words_of(error))
         return
     with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), told():
+        if not await is_seen():
+            return
         _head(found, on_earth=await _is_on_earth(found))
         if found.state not in OVER:
             with ui.element("p"):

@@ -10,13 +10,14 @@ const fast = (speed) => speed ?? Infinity;
 export class Controls {
   constructor({ may, act, onAdd, onSpace, onUndo }) {
     this.act = act;
+    this.asked = new Map(); // field of the run -> {token, value} of what was asked for last and is not settled
     this.state = html("span", { class: "run-state" });
     this.clock = html("output", { class: "clock", "aria-label": "Clock of the mission", title: "Clock of the mission" });
     this.remark = html("span", { class: "remark" });
     this.connection = html("span", { class: "connection", role: "alert", hidden: true });
     this.counts = html("span", { class: "counts", "aria-label": "Tasks" });
     this.hopeless = html("span", { class: "hopeless alarm", role: "status" });
-    this.pause = button("❚❚ Pause", () => this.togglePause(), { class: "pause main", title: "Pause or go on (space)" });
+    this.pause = button("❚❚ Pause", (event) => this.togglePause(event.detail > 1), { class: "pause main", title: "Pause or go on (space)" });
     this.speed = html("select", { "aria-label": "Speed", title: "Speed (+ and -)", onchange: () => this.setSpeed(this.chosen) });
     SPEEDS.forEach((speed, k) => this.speed.append(html("option", { value: k }, speedWords(speed))));
     this.speedLabel = html("label", { class: "speed" }, "Speed ", this.speed);
@@ -52,7 +53,7 @@ export class Controls {
     for (const one of this.commands) one.hidden = !this.may || team.over;
     if (!this.may || team.over) return;
     const alive = state !== "starting";
-    setText(this.pause, state === "paused" ? "▶ Go on" : "❚❚ Pause");
+    this.showPause();
     if (!SIMULATED.includes(world)) this.speedLabel.hidden = true;
     if (document.activeElement !== this.speed) this.showSpeed(speed);
     for (const one of [this.pause, this.speed, this.add, this.end]) one.disabled = !alive;
@@ -94,20 +95,49 @@ export class Controls {
     if (!forGood) this.counting = setInterval(tell, 1000);
   }
 
-  togglePause() {
+  // What a field of the run is, or will be when what was asked for is done: the next key goes on from there.
+  expected(field) {
+    return this.asked.has(field) ? this.asked.get(field).value : this.run[field];
+  }
+
+  ask(field, value, ...command) {
+    this.asked.set(field, { token: this.act(...command), value });
+  }
+
+  // What became of a command is known; what the run is follows in the same moment, but not before.
+  settled(token, done) {
+    for (const [field, { token: asked, value }] of this.asked) {
+      if (asked !== token) continue;
+      if (done) this.run[field] = value;
+      this.asked.delete(field);
+    }
+  }
+
+  // After a break the run's own state is what is known.
+  forget() {
+    this.asked.clear();
+  }
+
+  showPause() {
+    setText(this.pause, this.expected("state") === "paused" ? "▶ Go on" : "❚❚ Pause");
+  }
+
+  // `twice`: the second click of a double click, which never sends robots on: nobody aims at what a button has become.
+  togglePause(twice = false) {
     if (this.pause.disabled || this.given.inert) return;
-    const paused = this.run.state === "paused";
-    this.act(paused ? "resume" : "pause", {}, paused ? "Go on" : "Pause");
+    const paused = this.expected("state") === "paused" && !twice;
+    this.ask("state", paused ? "running" : "paused", paused ? "resume" : "pause", {}, paused ? "Go on" : "Pause");
+    this.showPause();
   }
 
   setSpeed(speed) {
-    this.act("speed", { speed }, `Speed ${speedWords(speed)}`);
+    this.ask("speed", speed, "speed", { speed }, `Speed ${speedWords(speed)}`);
   }
 
   // One speed up (1) or down (-1).
   faster(by) {
     if (this.speed.disabled || this.given.inert || this.speedLabel.hidden) return;
-    const now = fast(this.run.speed);
+    const now = fast(this.expected("speed"));
     const next = by > 0 ? SPEEDS.find((one) => fast(one) > now) : SPEEDS.findLast((one) => fast(one) < now);
     if (next !== undefined) this.setSpeed(next);
   }

@@ -100,6 +100,14 @@ export class Ground {
       part("+", "Nearer", zoom(1.4)), part("−", "Farther", zoom(1 / 1.4)), part("⤢", "All of it", () => this.stage.fit()));
   }
 
+  // What lies under all, which may be known later than the robots.
+  lay(under) {
+    this.under = under;
+    if (!this.team.mission) return;
+    this.showScene();
+    this.stage.fitIfWanted();
+  }
+
   // To be called where robots or tasks are new, or tasks have moved.
   showScene() {
     const robots = [...this.team.robots.values()].map(({ id, type, kind = "ground", radius_m: radius = 0, home: [x, y] }) =>

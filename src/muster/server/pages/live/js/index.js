@@ -48,7 +48,9 @@ export class LiveView {
     this.robots = new RobotTable({ onSelect: select });
     this.chosen = new Chosen({ may, act, onSelect: select, onCancel: (task) => this.cancel(task), onDelay: (task) => this.delay(task), onMove: (task) => this.setMoving(task) });
     this.events = new EventList({ onSelect: select });
-    this.notices = new Notices({ onUndo: ({ words, verb, data }) => act(verb, data, words) });
+    this.notices = new Notices({
+      onUndo: ({ words, verb, data }) => act(verb, data, words), onSettled: (token, done) => this.controls.settled(token, done),
+    });
     this.lost = false; // the connection
     this.hint = html("p", { class: "hint", role: "status", hidden: true });
     this.over = html("p", { class: "over", role: "status", hidden: true });
@@ -71,12 +73,16 @@ export class LiveView {
   take(message) {
     const what = this.team.take(message);
     if (what === "all" || (what === "entry" && SCENE_KINDS.includes(message.kind))) this.ground.showScene();
-    if (what === "all") this.controls.space.hidden = !this.team.spatial;
+    if (what === "all") {
+      this.controls.space.hidden = !this.team.spatial;
+      this.controls.forget();
+    }
     if (what === "status") this.ground.showTasks();
     if (what === "entry" && ["plan", "replanned"].includes(message.kind)) this.ground.showTasks();
     if (what === "states" || what === "entry") this.ground.move();
     if (what === "entry") this.notices.happened(message);
-    if (what === "action") this.notices.outcome(message, this.team.time);
+    if (what === "action") this.notices.outcome(message.id, message.outcome, this.team.time);
+    if (what === "entry" && message.kind === "command") this.notices.outcome(message.data.action, message.data.outcome, message.time_s);
     this.waiting ??= setTimeout(() => this.showPanels(), PANELS_MS);
   }
 
@@ -127,6 +133,7 @@ export class LiveView {
     const token = (this.tokens += 1);
     this.notices.ask(token, words, { undo, again });
     this.ask({ token, verb, data });
+    return token;
   }
 
   answer(told) {

@@ -14,7 +14,7 @@ export function listenToKeys(view) {
   const onKey = (event) => {
     if (event.target.closest?.("input, select, textarea, dialog, [contenteditable]") || event.altKey) return;
     const doIt = event.ctrlKey || event.metaKey ? withControl(event) : plain[event.key] ?? number(event.key);
-    if (!doIt || (event.key === " " && event.target.closest?.("button, a"))) return;
+    if (!doIt || (event.key === " " && (event.repeat || event.target.closest?.("button, a")))) return;
     event.preventDefault();
     doIt();
   };

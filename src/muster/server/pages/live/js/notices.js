@@ -7,11 +7,11 @@ const STAYS_MS = 4000;
 const CAN_BE_UNDONE_MS = 25000; // by its button; longer by the key
 
 export class Notices {
-  constructor({ onUndo }) {
-    this.onUndo = onUndo;
+  constructor({ onUndo, onSettled }) {
+    Object.assign(this, { onUndo, onSettled });
     this.asked = new Map(); // token -> notice
     this.byAction = new Map(); // action id -> notice
-    this.outcomes = new Map(); // action id -> outcome that came before its id was known
+    this.outcomes = new Map(); // action id -> outcome, which may come before its id is known
     this.undoable = []; // notices that can be undone, newest last
     this.element = html("ul", { class: "notices", role: "status", "aria-live": "polite", "aria-label": "Commands" });
   }
@@ -21,7 +21,7 @@ export class Notices {
     const state = html("span", { class: "state" }, "asked …");
     const element = html("li", { class: "asked" }, html("span", {}, words), state);
     element.append(button("✕", () => this.drop(notice), { class: "close", "aria-label": "Close" }));
-    const notice = { element, state, undo, again };
+    const notice = { token, element, state, undo, again };
     this.asked.set(token, notice);
     this.element.prepend(element);
     while (this.element.childElementCount > MOST_SHOWN) this.element.lastElementChild.remove();
@@ -41,15 +41,18 @@ export class Notices {
     else this.byAction.set(action, notice);
   }
 
-  outcome({ id, outcome }, time) {
+  // Told twice: by the log, where nothing is missed, and as it becomes known; the first counts.
+  outcome(id, outcome, time) {
+    if (this.outcomes.has(id)) return;
+    this.outcomes.set(id, outcome);
     const notice = this.byAction.get(id);
     this.byAction.delete(id);
     if (notice) this.settle(notice, outcome, time);
-    else this.outcomes.set(id, outcome);
   }
 
   settle(notice, outcome, time) {
     const done = outcome === "done";
+    this.onSettled(notice.token, done);
     setText(notice.state, done ? `✓ done at ${seconds(time)}` : `✕ refused: ${outcome}`);
     notice.element.className = done ? "done" : "refused";
     if (done && notice.undo) {

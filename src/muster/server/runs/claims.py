@@ -1,0 +1,54 @@
+"""Which real robots a run commands: no two runs may have one in common."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+
+def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+    """What a run has for itself, in words; nothing in a simulated world.
+
+    On ROS 1 that is a namespace, whichever the master, for one master goes by many names. On ROS 2 it is a namespace
+    of a domain. Over MAVLink it is each line (a UDP port that is listened at, an address that is called, a device),
+    whichever systems are on it: two processes do not share one.
+    """
+    return frozenset(_CLAIMS[world](settings)) if world in _CLAIMS else frozenset()
+
+
+def _ros1(settings: Mapping[str, Any]) -> Iterator[str]:
+    yield f"{_namespace(settings)} of ROS 1"
+
+
+def _ros2(settings: Mapping[str, Any]) -> Iterator[str]:
+    domain = settings.get("domain")
+    text = (os.environ.get("ROS_DOMAIN_ID") or "0") if domain is None else str(domain)
+    yield f"{_namespace(settings)} of domain {text.strip().lstrip('0') or '0'} of ROS 2"
+
+
+def _namespace(settings: Mapping[str, Any]) -> str:
+    name = str(settings.get("namespace", "")).strip().strip("/")
+    return f"namespace {name}" if name else "the root namespace"
+
+
+def _mavlink(settings: Mapping[str, Any]) -> Iterator[str]:
+    for endpoint in settings.get("endpoints", {}).values():
+        yield _line(endpoint.partition("#")[0].strip())
+
+
+def _line(text: str) -> str:
+    """The same words for the same line, as far as its name tells."""
+    if listens := re.fullmatch(r"udp(?:in)?:[^:]+:0*(\d+)", text):
+        return f"UDP port {listens[1]}"
+    if wire := re.fullmatch(r"serial:([^:]+)(?::\d+)?", text):
+        return f"device {os.path.realpath(wire[1])}"
+    return text.lower()
+
+
+_CLAIMS: Mapping[str, Callable[[Mapping[str, Any]], Iterator[str]]] = {
+    "ros1": _ros1,
+    "ros2": _ros2,
+    "mavlink": _mavlink,
+}
