@@ -449,23 +449,24 @@ def test_what_is_typed_while_another_text_is_on_its_way_is_put_into_that(watched
     plan_view(watched, "yard-test")
     before = text_of(page)
     end_of_text(page)
-    page.keyboard.type("# last")
+    page.keyboard.press("Control+Home")
+    page.keyboard.insert_text("# head ")
     page.get_by_text("version 7, changed").wait_for()
-    page.wait_for_function("document.querySelector('#undo').ariaDisabled === 'false'")
     page.evaluate(HELD)
     page.keyboard.press("Control+z")
     page.wait_for_function("heldHas('setEditorValueFromProps')")
-    page.keyboard.press("Control+Home")
-    page.keyboard.type("# first")
-    page.keyboard.press("Enter")
+    for key in ("Control+End", "ArrowUp", "End"):
+        page.keyboard.press(key)
+    page.keyboard.type(" # tail")
     page.evaluate("release()")
-    page.wait_for_function("!document.querySelector('.cm-content').textContent.includes('# last')")
-    page.wait_for_function("document.querySelector('.cm-line').textContent === '# first'")
-    assert text_of(page) == "# first\n" + before
+    page.wait_for_function("!document.querySelector('.cm-content').textContent.includes('# head')")
+    page.wait_for_function("document.querySelector('.cm-content').textContent.endsWith(' # tail')")
+    after = before.removesuffix("\n") + " # tail\n"
+    assert text_of(page) == after
     page.keyboard.press("Control+s")
     page.get_by_text("version 8", exact=True).wait_for()
     plan_view(watched, "yard-test")
-    assert text_of(page) == "# first\n" + before
+    assert text_of(page) == after
 
 
 def test_what_is_typed_while_a_mark_is_on_its_way_stays(watched, page):
@@ -488,7 +489,7 @@ def test_what_cannot_be_put_into_another_text_is_told_and_gone_on_both_sides(wat
     plan_view(watched, "yard-test")
     before = text_of(page)
     end_of_text(page)
-    page.keyboard.type("# last")
+    page.keyboard.insert_text("# last")
     page.get_by_text("version 8, changed").wait_for()
     page.evaluate(HELD)
     page.keyboard.press("Control+z")
