@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 from nicegui import Client as PageClient
-from nicegui import core
+from nicegui import core, ui
 from tests.server.serving import served as serving
 
 from muster.server.client import Client
@@ -79,8 +79,6 @@ def wait_for(condition):
 
 
 def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client, hold):
-    from playwright.sync_api import TimeoutError as TimedOut
-
     page = watched.page
     older, newer = (client.plan(MISSION, iterations=20, seed=seed).wait().id for seed in (1, 2))
     watched.open(f"/plan/{MISSION}")
@@ -89,19 +87,17 @@ def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client,
     page.locator("table.robots").wait_for()
     held = hold(Plans, "get", only=lambda plan: plan == older)
 
-    def choose(number):
-        option = page.get_by_role("option").nth(number)
-        opens = page.get_by_role("combobox", name="Plan", exact=True)
-        opens.click()
-        try:
-            option.click(timeout=5_000)
-        except TimedOut:  # the menu closes where the page is laid out anew under it
-            opens.click()
-            option.click()
+    (built,) = (one for one in PageClient.instances.values() if one.page.path == "/plan/{mission}")
+    selects = (one for one in built.elements.values() if isinstance(one, ui.select))
+    (choice,) = (one for one in selects if one.props.get("id") == "plans")
 
-    choose(1)
+    def choose(plan):
+        """As by the menu, which closes by itself where a slow page is laid out anew under it."""
+        core.loop.call_soon_threadsafe(choice.set_value, plan)
+
+    choose(older)
     page.locator("#carry-out").wait_for(state="detached")
-    choose(0)
+    choose(newer)
     page.locator("table.robots").wait_for()
     held.let_go()
     held.wait_for_answer()
