@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 from nicegui import Client as PageClient
-from nicegui import core
+from nicegui import core, ui
 from tests.server.serving import served as serving
 
 from muster.server.client import Client
@@ -19,7 +19,7 @@ from muster.server.words import StoreError
 pytestmark = pytest.mark.xdist_group("slowly")
 
 MISSION = "6T-2R"
-SCENE_S = 90_000
+SCENE_MS = 90_000
 
 
 @pytest.fixture(scope="module")
@@ -82,16 +82,22 @@ def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client,
     page = watched.page
     older, newer = (client.plan(MISSION, iterations=20, seed=seed).wait().id for seed in (1, 2))
     watched.open(f"/plan/{MISSION}")
+    page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SCENE_MS)
+    page.locator(".ordering").get_by_text("search", exact=True).wait_for()
     page.locator("table.robots").wait_for()
     held = hold(Plans, "get", only=lambda plan: plan == older)
 
-    def choose(number):
-        page.get_by_role("combobox", name="Plan", exact=True).click()
-        page.get_by_role("option").nth(number).click()
+    (built,) = (one for one in PageClient.instances.values() if one.page.path == "/plan/{mission}")
+    selects = (one for one in built.elements.values() if isinstance(one, ui.select))
+    (choice,) = (one for one in selects if one.props.get("id") == "plans")
 
-    choose(1)
+    def choose(plan):
+        """As by the menu, which closes by itself where a slow page is laid out anew under it."""
+        core.loop.call_soon_threadsafe(choice.set_value, plan)
+
+    choose(older)
     page.locator("#carry-out").wait_for(state="detached")
-    choose(0)
+    choose(newer)
     page.locator("table.robots").wait_for()
     held.let_go()
     held.wait_for_answer()
@@ -161,7 +167,7 @@ def test_a_page_with_unsaved_work_waits_longer_for_its_browser(watched, chromium
         before = set(PageClient.instances)
         page = chromium.new_page()
         page.goto(f"{watched.origin}/plan/{name}")
-        page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SCENE_S)
+        page.wait_for_function("document.querySelectorAll('.muster-map table tr').length > 1", timeout=SCENE_MS)
         (new,) = set(PageClient.instances) - before
         return page, new
 
