@@ -15,5 +15,6 @@
 | `unkept` | server | actions that the database has not taken in time |
 | `feed` | server | tells watchers |
 | `terms` | server | what may be asked |
+| `claims` | server | which real robots a run has for itself |
 | `recording`, `exports` | a worker | a record, a page, figures and files of other tools, from the log |
 """
