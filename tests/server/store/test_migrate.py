@@ -10,8 +10,9 @@ from sqlalchemy import text
 
 from muster.server.store import Store
 from muster.server.store.database import Database
-from muster.server.store.migrate import MIGRATIONS, migrate, revision
+from muster.server.store.migrate import MIGRATIONS, migrate, revision, upgrade
 from muster.server.store.schema import HEAD, metadata
+from muster.server.store.triggers import triggers
 
 LATER = '''
 """Runs have a colour."""
@@ -32,14 +33,47 @@ def later(tmp_path, more=""):
     return folder
 
 
-def test_tables_are_those_that_the_code_knows(store):
+TRIGGERS = {
+    "sqlite": "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'",
+    "postgresql": "SELECT tgname, pg_get_triggerdef(t.oid) || pg_get_functiondef(tgfoid) FROM pg_trigger t"
+    " WHERE NOT tgisinternal",
+}
+
+
+@pytest.fixture(params=["made at once", "by all migrations"])
+def new(request, database_url):
+    """A new database."""
+    database = Database(database_url)
+    if request.param == "made at once":
+        assert migrate(database)
+    else:
+        with database.writing() as connection:
+            upgrade(connection, database.name)
+    yield database
+    database.close()
+
+
+def test_tables_are_those_that_the_code_knows(new):
     from alembic.autogenerate import compare_metadata
     from alembic.migration import MigrationContext
 
-    with store.database.reading() as connection:
+    with new.reading() as connection:
         assert revision(connection) == HEAD
         context = MigrationContext.configure(connection, opts={"compare_server_default": True})
         assert compare_metadata(context, metadata) == []
+    assert not migrate(new)
+
+
+def test_logs_are_guarded_in_the_same_way(new):
+    with new.reading() as connection:
+        made = connection.execute(text(TRIGGERS[connection.dialect.name])).all()
+        words = " ".join(sql for _, sql in made)
+    assert len(made) == 6
+    for statement in triggers("sqlite" if new.is_sqlite else "postgresql"):
+        name = statement.split()[2].removesuffix("()")
+        assert name in words
+        if new.is_sqlite:
+            assert statement in words
 
 
 def test_an_older_database_is_brought_on(filled, tmp_path):
@@ -71,9 +105,10 @@ def test_two_who_open_a_new_database_at_once(database_url):
         store.close()
 
 
-def test_alembic_is_imported_only_if_something_is_due(store, database_url):
+def test_alembic_is_imported_only_for_a_database_of_an_older_muster(database_url):
     code = (
-        "import sys\nfrom muster.server.store import Store\nStore.open(sys.argv[1]).close()\n"
+        "import sys\nfrom muster.server.store import Store\n"
+        "for _ in range(2): Store.open(sys.argv[1]).close()\n"
         "heavy = {'alembic', 'sqlalchemy.orm', 'scipy', 'shapely', 'matplotlib', 'numpy'}\n"
         "print(sorted(heavy & sys.modules.keys()))"
     )
@@ -86,4 +121,5 @@ def test_a_path_with_percent_signs(tmp_path):
     shutil.copytree(MIGRATIONS, folder)
     database = Database(f"sqlite:///{tmp_path}/new.db")
     assert migrate(database, folder)
+    assert not migrate(database)
     database.close()

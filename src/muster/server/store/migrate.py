@@ -1,4 +1,4 @@
-"""Brings a database to the newest tables, by Alembic, which is imported only if something is due."""
+"""Makes the tables of a new database; brings those of an older Muster on by Alembic, which is imported only then."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from pathlib import Path
 from sqlalchemy import Connection, inspect, text
 
 from muster.server.store.database import Database
-from muster.server.store.schema import HEAD
+from muster.server.store.schema import HEAD, metadata
+from muster.server.store.triggers import triggers
 from muster.server.words import StoreError
 
 MIGRATIONS = Path(__file__).parent / "migrations"
@@ -36,13 +37,28 @@ def migrate(database: Database, folder: Path = MIGRATIONS, head: str = HEAD) -> 
     with database.writing() as connection:
         if not database.is_sqlite:
             connection.execute(text(f"SELECT pg_advisory_xact_lock({_LOCK})"))
-        if revision(connection) == head:  # another program was quicker
+        found = revision(connection)
+        if found == head:  # another program was quicker
             return False
-        _upgrade(connection, database.name, folder, head)
+        if found is None and (folder, head) == (MIGRATIONS, HEAD):
+            _make(connection)
+        else:
+            upgrade(connection, database.name, folder, head)
     return True
 
 
-def _upgrade(connection: Connection, name: str, folder: Path, head: str) -> None:
+def _make(connection: Connection) -> None:
+    """What all migrations come to, at once: without Alembic a server is there sooner."""
+    metadata.create_all(connection, checkfirst=False)
+    for statement in triggers(connection.dialect.name):
+        connection.exec_driver_sql(statement)
+    key = "version_num VARCHAR(32) NOT NULL CONSTRAINT alembic_version_pkc PRIMARY KEY"
+    connection.execute(text(f"CREATE TABLE alembic_version ({key})"))
+    connection.execute(text("INSERT INTO alembic_version VALUES (:head)"), {"head": HEAD})
+
+
+def upgrade(connection: Connection, name: str, folder: Path = MIGRATIONS, head: str = HEAD) -> None:
+    """Run the migrations that are due, within a transaction; see `migrate`."""
     from alembic import command
     from alembic.config import Config
     from alembic.script import ScriptDirectory
