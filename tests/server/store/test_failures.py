@@ -100,6 +100,10 @@ def tried_by_another(url):
     return done.stdout.splitlines()
 
 
+ONE_PROCESS = pytest.mark.xdist_group("open folder")
+"""As they open folders that processes of tests have in common, and close them again."""
+
+
 @pytest.fixture
 def open_folder(tmp_path):
     """A folder that others may enter, and its parents."""
@@ -116,6 +120,7 @@ def open_folder(tmp_path):
         parent.chmod(mode)
 
 
+@ONE_PROCESS
 def test_a_file_that_may_only_be_read(open_folder):
     file = open_folder / "muster.db"
     Store.open(f"sqlite:///{file}").close()
@@ -126,6 +131,7 @@ def test_a_file_that_may_only_be_read(open_folder):
     assert "writable for this user" in lines[-1]
 
 
+@ONE_PROCESS
 def test_a_folder_that_may_only_be_read(open_folder):
     open_folder.chmod(0o555)
     assert "writable for this user" in tried_by_another(f"sqlite:///{open_folder}/muster.db")[-1]
