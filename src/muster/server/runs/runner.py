@@ -26,11 +26,11 @@ from muster.server.runs.lock import alone
 from muster.server.runs.performance import Course, Performance
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.scribe import Scribe
+from muster.server.runs.terms import SIMULATED
 from muster.server.work.folders import OF_RUNS
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 
-REAL = ("ros1", "ros2", "mavlink")
 STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
 """Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
 
@@ -50,7 +50,7 @@ def _obey(folder: str, memory_mb: int) -> int:
     begin = inbox.take(None)
     if begin is None:
         return 0
-    if begin["world"] in REAL:
+    if begin["world"] not in SIMULATED:
         real.set()
         signal.signal(signal.SIGTERM, lambda *_: ended.set())
     else:
@@ -77,7 +77,7 @@ def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
 
 
 def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outbox, ended: threading.Event) -> None:
-    real, log = begin["world"] in REAL, begin["log"]
+    real, log = begin["world"] not in SIMULATED, begin["log"]
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(begin["lock"]))
@@ -105,7 +105,7 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
 
 def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scribe, ended: threading.Event) -> Course:
     settings, log = begin["settings"], begin["log"]
-    if begin["world"] not in REAL:
+    if begin["world"] in SIMULATED:
         from muster.server.runs.simulated import SimulatedCourse
 
         return SimulatedCourse(mission, plan, begin["world"], settings, scribe)
