@@ -65,3 +65,10 @@ def test_another_controller_takes_the_first_ones_place_which_ends_with_a_line(ro
     out, err = second.communicate(timeout=40)
     assert second.returncode == 0, err
     assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]
+
+
+def test_who_reports_while_its_node_says_goodbye_does_not_complain(ros):
+    """Topics are closed for a while before `rospy.is_shutdown`, and long where the machine is busy."""
+    monitor = ros.start(ros.file("slow_goodbye.py"))
+    _, err = monitor.communicate(timeout=30)
+    assert (monitor.returncode, err) == (0, "")

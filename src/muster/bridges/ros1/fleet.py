@@ -18,7 +18,7 @@ from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.node import SHUT_DOWN, publish, time_of_ros
+from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.steering import STILL, Steering
@@ -253,7 +253,7 @@ class Ros1Fleet:
                 if frames:
                     publish(self._tf, TFMessage(frames))
         except Exception as error:
-            if not (self._closed.is_set() or rospy.is_shutdown()):
+            if not (self._closed.is_set() or is_ending()):
                 self._failure = error
                 self._news.set()
                 with suppress(NetworkError):  # who could be told stands

@@ -84,12 +84,17 @@ def _require_master(address: str) -> None:
         raise NetworkError(f"ROS master: {address}: it does not answer; {told}")
 
 
+def is_ending() -> bool:
+    """Whether ROS shuts this node down, or has done so: topics are closed a while before `rospy.is_shutdown`."""
+    return bool(rospy.core.is_shutdown_requested())
+
+
 def publish(publisher: Any, message: Any) -> None:
     """Say something, if this node still is one: ROS may shut it down while a message is being made."""
     try:
         publisher.publish(message)
     except rospy.ROSException:
-        if not rospy.is_shutdown():
+        if not is_ending():
             raise
 
 
@@ -100,7 +105,7 @@ def hear(topic: str, kind: Any, do: Callable[..., None], **how: Any) -> Any:
         try:
             do(message, *more)
         except Exception:
-            if not rospy.is_shutdown():
+            if not is_ending():
                 raise
 
     return rospy.Subscriber(topic, kind, heard, **how)
