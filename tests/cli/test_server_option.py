@@ -22,6 +22,12 @@ from muster.server.words import Job
 
 VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")
 
+APART = """
+schema: muster/1
+robots: [{id: r_0, position: [0, 0], work_capacity: 12}]
+tasks: [{id: east, position: [5, 0]}, {id: west, position: [-5, 0]}]
+"""
+
 
 @pytest.fixture(scope="module")
 def url(tmp_path_factory):
@@ -60,8 +66,9 @@ def test_a_plan_is_judged_and_explained_as_here(plan, muster, url):
         here, there = (muster(verb, "yard.yaml", plan, "--format", "json", *more) for more in ((), ("--server", url)))
         assert there == here
     assert muster("verify", "yard.yaml", plan, "--server", url) == muster("verify", "yard.yaml", plan)
-    code, out, _ = muster("explain", "yard.yaml", plan, "--task", "lift", "--server", url)
-    assert (code, "lift" in out) == (0, True)
+    for task in ((), ("--task", "lift"), ("--task", "gate")):
+        here, there = (muster("explain", "yard.yaml", plan, *task, *more) for more in ((), ("--server", url)))
+        assert there == here
 
 
 def test_a_rejected_plan_is_rejected(plan, muster, url):
@@ -73,9 +80,20 @@ def test_a_rejected_plan_is_rejected(plan, muster, url):
 
 
 def test_a_mission_is_checked(folder, muster, url):
-    code, out, err = muster("check", "yard.yaml", "--server", url)
-    assert (code, "lift" in out, "not looked into" in err) == (0, True, True)
+    for more in ((), ("--ignore", "skills"), ("--format", "json"), ("--require-complete", "-q")):
+        assert muster("check", "yard.yaml", *more, "--server", url) == muster("check", "yard.yaml", *more)
     assert muster("check", "yard.yaml", "--require-complete", "--server", url)[0] == 3
+    code, _, err = muster("check", "yard.yaml", "--time-limit", 11, "--server", url)
+    assert (code, err) == (2, "body: time_limit: 11.0; expected less than or equal to 10\n")
+
+
+def test_tasks_that_no_plan_does_together_are_named(folder, muster, url):
+    Path("apart.yaml").write_text(APART, encoding="utf-8")
+    here = muster("check", "apart.yaml")
+    assert "no plan can do all of these 2 tasks (proven)" in here[1]
+    assert muster("check", "apart.yaml", "--server", url) == here
+    here = muster("check", "apart.yaml", "--format", "json")
+    assert muster("check", "apart.yaml", "--format", "json", "--server", url) == here
 
 
 def test_a_simulation_is_as_here(plan, muster, url):

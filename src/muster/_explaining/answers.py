@@ -107,7 +107,7 @@ def left_out(mission: Mission, plan: Plan) -> LeftOut:
     routes = routes_of(problem, plan)
     missing = unassigned(problem, routes)
     changes = {
-        item.task: smallest_as_is(problem, routes, problem.task_index[item.task], _admits)
+        item.task: smallest_as_is(problem, routes, problem.task_index[item.task], admits)
         for item in missing[:_MOST_SHORT]
     }
     return LeftOut(problem, missing, changes)
@@ -127,7 +127,7 @@ def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
         raise ParameterError(f"--task: {task}; expected the id of a task of this mission{hint}")
     routes, j = routes_of(problem, plan), problem.task_index[task]
     found = alternatives(problem, routes, j)
-    changes = remedies(problem, routes, j, _admits)
+    changes = remedies(problem, routes, j, admits)
     verdict = verify(mission, plan)
     return OneTask(
         problem=problem,
@@ -141,7 +141,8 @@ def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
     )
 
 
-def _admits(mission: Mission, plan: Plan) -> bool:
+def admits(mission: Mission, plan: Plan) -> bool:
+    """Whether nothing is wrong with a plan: the `Judge` of searches."""
     return verify(mission, plan).valid
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -21,9 +20,10 @@ from muster.cli.remote.option import server_option
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, Unassigned, json_text
+from muster.mission.plan import Unassigned, json_text
 
 if TYPE_CHECKING:
+    from muster._explaining import Possible
     from muster.allocation.conflicts import Together
 
 _MINIMAL = "without any one of them a plan was found that does the others"
@@ -62,44 +62,41 @@ def command(
 
     Where no plan can do all the others, name a smallest set of tasks of which one must be left out.
     """
-    from muster.allocation.conflicts import together
-    from muster.allocation.feasibility import impossible
-    from muster.allocation.problem import Problem
+    from muster._explaining import possible
 
     try:
         loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
-        problem = Problem.compile(loaded, ignored=ignore).ready()  # which reads the map
+        found = possible(loaded, ignored=ignore, time_limit=time_limit)
     except (MissionError, NotSupportedError) as error:
-        if form == "json":
-            click.echo(json_text(answer(errors=[f.as_dict() for f in error.findings])), nl=False)
-        else:
-            click.echo(str(error), err=True)
-        return BAD_INPUT
-    lost = impossible(problem)
-    found = together(problem, _admits, time_limit=time_limit)
+        return refused(form, error)
+    return checked(form, loaded, found, require_complete=require_complete)
+
+
+def refused(form: str, error: MissionError | NotSupportedError) -> int:
+    """Print what is wrong with a mission; the exit code."""
+    from muster._explaining import Possible
+
     if form == "json":
-        conflict = None if found.conflict is None else asdict(found.conflict)
-        told = answer(impossible=[asdict(item) for item in lost], conflict=conflict, unknown=found.unknown)
-        click.echo(json_text(told), nl=False)
+        errors = [finding.as_dict() for finding in error.findings]
+        click.echo(json_text({"errors": errors, **Possible().as_dict()}), nl=False)
     else:
-        print_checked(loaded, lost)
-        if len(lost) < len(loaded.tasks):
-            _print_together(found, "all other tasks" if lost else "all tasks")
-    return INCOMPLETE if (lost or found.conflict) and require_complete else DONE
+        click.echo(str(error), err=True)
+    return BAD_INPUT
 
 
-def answer(**given: Any) -> dict[str, Any]:
-    """What --format json prints: nothing wrong but what is given."""
-    return {"errors": [], "impossible": [], "conflict": None, "unknown": False} | given
+def checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
+    """Print what can be done of a mission that is right; the exit code."""
+    lost, all_others = found.impossible, found.together
+    if form == "json":
+        click.echo(json_text({"errors": [], **found.as_dict()}), nl=False)
+    else:
+        _print_checked(mission, lost)
+        if len(lost) < len(mission.tasks):
+            _print_together(all_others, "all other tasks" if lost else "all tasks")
+    return INCOMPLETE if (lost or all_others.conflict) and require_complete else DONE
 
 
-def _admits(mission: Mission, plan: Plan) -> bool:
-    from muster.verification import verify
-
-    return verify(mission, plan).valid
-
-
-def print_checked(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
+def _print_checked(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
     from muster.cli.tables import print_table
 
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,9 +13,7 @@ from muster.cli.remote.option import server_option
 from muster.mission.plan import json_text, read_plan
 
 if TYPE_CHECKING:
-    from muster._explaining import LeftOut, OneTask
-    from muster.allocation.problem import Problem
-    from muster.allocation.remedy import Remedy
+    from muster._explaining.tables import Part
 
 
 @click.command()
@@ -38,85 +36,30 @@ def command(
     verbose: bool,
 ) -> None:
     """Say why tasks are left out of a PLAN; with --task, why a task is done by this robot and not by another."""
-    from muster._explaining import LeftOut, left_out, one_task, require_fit
+    from muster._explaining import left_out, one_task, require_fit
+    from muster._explaining.tables import tables_on_left_out, tables_on_task
 
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = read_plan(plan)
     require_fit(loaded, given, str(plan))
     say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
-    found = left_out(loaded, given) if task is None else one_task(loaded, given, task)
-    if form == "json":
-        click.echo(json_text(found.as_dict()), nl=False)
-    elif isinstance(found, LeftOut):
-        _print_left_out(found)
+    if task is None:
+        missing = left_out(loaded, given)
+        print_explained(form, missing.as_dict(), tables_on_left_out(missing))
     else:
-        _print_one_task(found)
+        found = one_task(loaded, given, task)
+        print_explained(form, found.as_dict(), tables_on_task(found))
 
 
-def _print_left_out(found: LeftOut) -> None:
-    from muster.cli.tables import counted, print_table
+def print_explained(form: str, data: Mapping[str, Any], parts: Iterable[Part]) -> None:
+    """Print an explanation: its data for programs, its lines and tables for people."""
+    from muster.cli.tables import print_table
 
-    left_out, changes = found.unassigned, found.changes
-    if not left_out:
-        click.echo("no task is left out; --task T explains a task that is done")
+    if form == "json":
+        click.echo(json_text(data), nl=False)
         return
-    rows = [(item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons]
-    print_table(("task", "robot", "reason", "detail"), rows, title=f"{counted(len(left_out), 'task')} left out")
-    _print_smallest(found.problem, changes)
-    if len(left_out) > len(changes):
-        click.echo(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
-
-
-def _print_one_task(found: OneTask) -> None:
-    from muster._explaining.phrases import award_text, place
-
-    for line in place(found):
-        click.echo(line)
-    if found.plan.book is not None and found.award is not None:
-        click.echo(award_text(found.problem, found.plan.book, found.award))
-    _print_alternatives(found)
-    _print_remedies(found)
-
-
-def _print_alternatives(found: OneTask) -> None:
-    from muster._explaining.phrases import what_then
-    from muster.cli.tables import print_table
-
-    rows = []
-    for other in found.alternatives:
-        robot = other.robot + ("  (now)" if other.robot == found.robot else "")
-        if other.reason is not None:
-            rows.append((robot, "no", f"{other.reason.reason}: {other.reason.detail}"))
+    for part in parts:
+        if isinstance(part, str):
+            click.echo(part)
         else:
-            rows.append((robot, "yes", what_then(found, other)))
-    print_table(("robot", "could", "why, and what then"), rows, title="each robot, the rest of the plan as it is")
-
-
-def _print_smallest(problem: Problem, changes: Mapping[str, Remedy | None]) -> None:
-    from muster._explaining.phrases import short
-    from muster.cli.tables import print_table
-
-    rows = [
-        (
-            (task, "-", "none was found; --task T looks further")
-            if remedy is None
-            else (task, remedy.robot, short(problem, remedy))
-        )
-        for task, remedy in changes.items()
-    ]
-    print_table(("task", "robot", "change"), rows, title="smallest changes, the rest as it is")
-
-
-def _print_remedies(found: OneTask) -> None:
-    from muster._explaining.phrases import lines, reserve, smallest_change
-    from muster.cli.tables import print_table
-
-    problem = found.problem
-    rows = [
-        (r.robot + ("  (now)" if r.robot == found.robot else ""), "\n".join(lines(problem, r))) for r in found.remedies
-    ]
-    print_table(("robot", "would need"), rows, title=f"to do {found.task} beside all else that the plan does")
-    if found.robot is None and (change := smallest_change(problem, found.remedies)):
-        click.echo(change)
-    if note := reserve(problem):
-        click.echo(note)
+            print_table(part.columns, part.rows, title=part.title)

@@ -102,9 +102,10 @@ def test_explanations_are_those_of_the_command(in_desk, files, capsys, task):
         return await desk.plans.explain(1, task)
 
     answer = in_desk(story)
-    words = answer.pop("words")
+    words, tables = answer.pop("words"), answer.pop("tables")
     asked = () if task is None else ("--task", task)
     assert answer == said(capsys, "explain", files / "tiny.yaml", files / "a.json", *asked)
+    assert tables
     assert words
     assert all(line.endswith(".") for line in words)
 

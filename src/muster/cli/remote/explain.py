@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import click
-
+from muster._explaining.tables import Part, Table
+from muster.cli.explain import print_explained
 from muster.cli.options import load_mission, load_plan
 from muster.cli.remote.sending import kept_plan
-from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
     from muster.server.client import Client
@@ -29,13 +28,13 @@ def run(
     quiet: bool,
     verbose: bool,
 ) -> None:
-    """Send the mission and the plan; print the same JSON, or for people the server's sentences in place of tables."""
+    """Send the mission and the plan; print what comes back as it is printed here."""
     loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     found = control.plans.explain(kept_plan(control, loaded, given, verbose=verbose).id, task)
-    sentences = found.pop("words")
-    if form == "json":
-        click.echo(json_text(found), nl=False)
-        return
-    for sentence in sentences:
-        click.echo(sentence)
+    found.pop("words")
+    print_explained(form, found, [_part(part) for part in found.pop("tables")])
+
+
+def _part(said: str | dict[str, Any]) -> Part:
+    return said if isinstance(said, str) else Table(**said)

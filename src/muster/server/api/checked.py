@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import binascii
 from base64 import b64decode
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
@@ -63,4 +63,8 @@ Files = Annotated[
 ]
 Count = Annotated[int, Field(ge=0, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
+Ignored = Annotated[
+    list[Literal["prerequisites", "suitability", "skills", "capacity"]],
+    Field(max_length=4, description="Rules that do not hold."),
+]
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

@@ -19,6 +19,7 @@ from muster.server.api.checked import (
     Body,
     FileName,
     Files,
+    Ignored,
     MissionId,
     Name,
     Note,
@@ -57,10 +58,16 @@ class MissionText:
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """What is wrong with a mission, which tasks can never be done, how much is in it (null where it is none)."""
+    """What is wrong with a mission, which tasks can never be done, how much is in it (null where it is none).
+
+    `conflict` are tasks that can be done, but not all of them by one plan; `unknown` is true where that was not looked
+    into, or not found out.
+    """
 
     errors: list[dict[str, Any]]
     impossible: list[dict[str, Any]]
+    conflict: dict[str, Any] | None
+    unknown: bool
     summary: dict[str, Any] | None = None
     mission: dict[str, Any] | None = None
 
@@ -87,6 +94,10 @@ class MissionToCheck(Body):
 
     text: str = Field(examples=[_EXAMPLE])
     files: Files = Field(default={}, examples=[{}])
+    ignore: Ignored = Field(default=[])
+    time_limit: float | None = Field(
+        default=None, ge=0, le=10, description="Seconds for finding out whether one plan can do all tasks."
+    )
 
 
 @router.get("", summary="List missions")
@@ -105,7 +116,7 @@ async def create(desk: TheDesk, who: Asker, response: Response, body: NewMission
 @router.post("/check", summary="Check a mission")
 async def check(desk: TheDesk, body: MissionToCheck) -> Checked:
     """What is wrong with it, with lines; and the tasks that nobody can ever do. Nothing is kept."""
-    found = await desk.missions.check(body.text, body.files)
+    found = await desk.missions.check(body.text, body.files, ignore=body.ignore, time_limit=body.time_limit)
     return Checked(**found)
 
 

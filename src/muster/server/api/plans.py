@@ -14,6 +14,7 @@ from muster.server.api.checked import (
     LARGEST,
     Body,
     Count,
+    Ignored,
     MissionId,
     MissionQuery,
     Name,
@@ -27,7 +28,6 @@ from muster.server.words import Job, PlanEntry
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
 Objective = Literal["total+max", "total", "max", "average", "makespan"]
-Ignorable = Literal["prerequisites", "suitability", "skills", "capacity"]
 ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
 _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
@@ -41,7 +41,7 @@ class Wanted(Body):
     time_limit: Seconds | None = Field(default=None, description="Seconds.", examples=[1.0])
     iterations: Count | None = Field(default=None, description="Stop after so many; then a seed gives one plan.")
     seed: Seed = 0
-    ignore: list[Ignorable] = Field(default=[], max_length=4, description="Rules that do not hold.")
+    ignore: Ignored = Field(default=[])
     bound: Literal["quick", "exact"] | None = Field(default=None, description="Prove how good the plan is.")
     start: int | None = Field(default=None, ge=1, le=LARGEST, description="The id of a plan to go on from.")
     parameters: dict[Name, bool | int | float | Name] = Field(

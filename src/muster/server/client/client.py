@@ -187,9 +187,20 @@ class Missions:
         body |= {} if files is None else {"files": _packed(files)}
         return read(MissionText, self._connection.put(f"/missions/{_in(mission)}", body))
 
-    def check(self, text: str, files: Mapping[str, bytes] | None = None) -> dict[str, Any]:
-        """What is wrong with a mission, and which tasks can never be done; nothing is kept."""
-        found: dict[str, Any] = self._connection.post("/missions/check", {"text": text, "files": _packed(files or {})})
+    def check(
+        self,
+        text: str,
+        files: Mapping[str, bytes] | None = None,
+        *,
+        ignore: Sequence[str] = (),
+        time_limit: float | None = None,
+    ) -> dict[str, Any]:
+        """What is wrong with a mission, and which tasks can never be done; nothing is kept.
+
+        With a `time_limit`, in seconds, also whether one plan can do all of them.
+        """
+        asked = {"text": text, "files": _packed(files or {}), "ignore": list(ignore), "time_limit": time_limit}
+        found: dict[str, Any] = self._connection.post("/missions/check", asked)
         return found
 
     def delete(self, mission: str) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, Protocol
 
@@ -66,8 +66,10 @@ class Missions:
         """
         return await asyncio.to_thread(self._versions, mission)
 
-    async def check(self, text: str, files: Mapping[str, bytes], name: str = "mission") -> dict[str, Any]:
-        """What is wrong with a mission: `errors`, `impossible`, `summary` and `mission` (plain data), as workers say.
+    async def check(
+        self, text: str, files: Mapping[str, bytes], *, ignore: Sequence[str] = (), time_limit: float | None = None
+    ) -> dict[str, Any]:
+        """What is wrong with a mission: see `work.tasks.check`.
 
         Raises
         ------
@@ -77,7 +79,8 @@ class Missions:
             if no worker can say: it takes too long, or too much memory.
         """
         check_sizes(text, files)
-        return await self._pool.run("check", {"mission": for_work(text, files, name)})
+        asked = {"ignore": list(ignore), "time_limit": time_limit}
+        return await self._pool.run("check", {"mission": for_work(text, files, "mission"), **asked})
 
     async def edit(self, text: str, change: str, *arguments: object) -> str:
         """A text with one of `work.editing.changes.CHANGES`; nothing is kept.

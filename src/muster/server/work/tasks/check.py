@@ -1,13 +1,11 @@
-"""What is wrong with a mission, and which tasks can never be done."""
+"""What is wrong with a mission, and which tasks can never be done, alone or together."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
 from typing import Any
 
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster._explaining import Possible, possible
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import plain
@@ -16,21 +14,20 @@ from muster.server.work.missions import mission_of
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission"}` -> `{"errors", "impossible", "summary", "mission"}`; the last two None where it cannot be read.
+    """`{"mission"}` -> `{"errors", "impossible", "conflict", "unknown", "summary", "mission"}`.
 
-    With `brief` the mission is left out.
-
-    `errors` and `impossible` are as `muster check --format json` prints them; `mission` is the mission as plain data,
-    as a mission file holds it, places in metres.
+    The first four are as `muster check --format json` prints them; `mission` is the mission as plain data, as a mission
+    file holds it, places in metres, left out with `brief`. It and the `summary` are None where it cannot be read. Rules
+    that are to `ignore` do not hold; whether one plan can do all stays unknown without a `time_limit` for it.
     """
-    answer: dict[str, Any] = {"errors": [], "impossible": [], "summary": None, "mission": None}
+    answer: dict[str, Any] = {"errors": [], **Possible().as_dict(), "summary": None, "mission": None}
     try:
         mission = mission_of(arguments["mission"])
         answer |= {"summary": summary(mission), "mission": None if arguments.get("brief") else plain(mission)}
-        problem = Problem.compile(mission).ready()  # which reads the map
+        found = possible(mission, ignored=arguments.get("ignore", ()), time_limit=arguments.get("time_limit"))
     except (MissionError, NotSupportedError) as error:
         return answer | {"errors": [finding.as_dict() for finding in error.findings[:MOST_FINDINGS]]}
-    return answer | {"impossible": [asdict(task) for task in impossible(problem)]}
+    return answer | found.as_dict()
 
 
 def summary(mission: Mission) -> dict[str, Any]:
