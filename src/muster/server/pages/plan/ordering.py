@@ -13,6 +13,7 @@ from muster.server.pages.asking import the_asker, the_desk
 from muster.server.pages.charts import Curve
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import say, told
+from muster.server.pages.pressing import once
 from muster.server.words import Job
 
 _WAITING = ("queued", "running")
@@ -54,7 +55,7 @@ class Ordering:
                 self._ignore = ui.select(list(IGNORABLE), multiple=True, value=[], label="Ignore rules")
                 self._ignore.props("outlined dense options-dense")
         with ui.element("div").classes("bar"):
-            self._go = ui.button("Plan", icon="route", on_click=self._pressed).props('unelevated id="plan"')
+            self._go = ui.button("Plan", icon="route", on_click=once(self._ask)).props('unelevated id="plan"')
             self._stop = ui.button("Stop", on_click=self._ask_to_stop).props('outline id="stop"')
             self._stop.props('title="End the search; keep the best plan so far"')
             self._discard = ui.button("Discard", on_click=self._cancel)
@@ -77,28 +78,14 @@ class Ordering:
             if jobs:
                 await self._follow(max(jobs, key=lambda job: job.id))
 
-    def _pressed(self) -> Awaitable[None]:
-        """Plan, and hear no second click meanwhile: `_ask` begins after this event, maybe after the next one."""
-        self._go.disable()
-        return self._ask()
-
-    async def _ask(self) -> None:
-        try:
-            with told():
-                if self._draft.checked.errors:
-                    raise ParameterError("the mission has errors; mend them first")
-                if not await self.before("to be planned"):
-                    return
-                base, asker, arguments = self._draft.base, the_asker(), self._arguments()
-                job = await the_desk().jobs.ask_plan(asker, base.mission, base.version or None, **arguments)
-                await self._follow(job)
-        finally:
-            if not self._go.is_deleted:
-                self._go.set_enabled(not self._is_under_way)
-
-    @property
-    def _is_under_way(self) -> bool:
-        return self._job is not None and self._job.state in _WAITING
+    async def _ask(self) -> bool:
+        """Plan, and follow it to its end; False, as another plan may be asked for then."""
+        if self._draft.checked.errors:
+            raise ParameterError("the mission has errors; mend them first")
+        if await self.before("to be planned"):
+            base, asker, arguments = self._draft.base, the_asker(), self._arguments()
+            await self._follow(await the_desk().jobs.ask_plan(asker, base.mission, base.version or None, **arguments))
+        return False
 
     def _arguments(self) -> dict[str, Any]:
         given: dict[str, Any] = {
@@ -154,7 +141,7 @@ class Ordering:
 
     def _show(self, job: Job | None) -> None:
         self._job = job
-        under_way = self._is_under_way
+        under_way = job is not None and job.state in _WAITING
         self._go.set_enabled(not under_way)
         self._stop.set_visibility(under_way)
         self._discard.set_visibility(under_way)

@@ -16,7 +16,7 @@ def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
     """Put a robot, a task, or the corner of a zone elsewhere; a height stays."""
     if one["what"] == "zone":
         return set_value(text, ("map", "zones", int(one["id"]), "polygon", int(one["corner"])), [x, y])
-    path = _path_of(text, one["what"], one["id"])
+    path = _path_of(text, TEAMS[one["what"]], str(one["id"]))
     item = _at(data_of(text), path)
     if "position" not in item:
         raise EditError(f"{one['id']} is placed in degrees (lat_lon); change that in the text")
@@ -54,7 +54,7 @@ def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float
         if corners is not None and not _is_of(_at(data_of(text), path), corners):
             raise EditError(f"zone {int(name) + 1} is another one by now; choose it again")
         return remove(text, path)
-    text = remove(text, _path_of(text, what, str(name)))
+    text = remove(text, _path_of(text, TEAMS[what], str(name)))
     key = "prerequisites" if what == "task" else "only_robots"
     for k, task in enumerate(data_of(text).get("tasks") or []):
         named = task.get(key) if isinstance(task, dict) else None
@@ -75,7 +75,7 @@ def _is_of(zone: Any, corners: Sequence[Sequence[float]]) -> bool:
 
 def set_cell(text: str, path: Sequence[str | int], value: object, name: str | None = None) -> str:
     """Give a cell of a table a value; None takes its key out. With a `name` the row is that of this id."""
-    path = _by_name(text, path, name)
+    path = _with_row_of(text, path, name)
     owner = _at(data_of(text), path[:-1]) if len(path) > 1 and path[0] != "rules" else data_of(text).get("rules") or {}
     if value is None:
         return remove(text, path) if path[-1] in owner else text
@@ -86,7 +86,7 @@ def set_cell(text: str, path: Sequence[str | int], value: object, name: str | No
 
 def set_coordinate(text: str, path: Sequence[str | int], axis: int, value: float, name: str | None = None) -> str:
     """Change one coordinate of the position of the item at `path`; with a `name` that of this id."""
-    path = _by_name(text, path, name)
+    path = _with_row_of(text, path, name)
     position = _at(data_of(text), path).get("position")
     if not isinstance(position, list) or axis > len(position):
         raise EditError("the place is not written as a list of numbers; change it in the text")
@@ -119,30 +119,25 @@ def _positions(data: Mapping[str, Any]) -> dict[Path, list[Any]]:
     }
 
 
-def _path_of(text: str, what: str, name: str) -> Path:
-    items = data_of(text).get(TEAMS[what]) or []
-    for k, item in enumerate(items):
-        if isinstance(item, dict) and str(item.get("id")) == str(name):
-            return TEAMS[what], k
-    raise EditError(f"{what} {name}: no such one in the text")
-
-
-def _by_name(text: str, path: Sequence[str | int], name: str | None) -> Path:
-    """A path whose second step is where the item of this id stands now: rows move when others are taken out.
-
-    An empty name is that of an item without an id, which is known by its number alone.
-    """
+def _with_row_of(text: str, path: Sequence[str | int], name: str | None) -> Path:
+    """A path whose second step is where the item of this id stands now: rows move when others are taken out."""
     if name is None:
         return tuple(path)
     team, row, *rest = path
-    items = data_of(text).get(str(team)) or []
+    return (*_path_of(text, str(team), name, int(row)), *rest)
+
+
+def _path_of(text: str, team: str, name: str, row: int | None = None) -> Path:
+    """Where the only robot or task of this id stands; one without an id, whose name is empty, is known by its row."""
+    items = data_of(text).get(team) or []
     rows = [k for k, item in enumerate(items) if isinstance(item, dict) and str(item.get("id", "")) == name]
     if not name:
         rows = [k for k in rows if k == row]
     if len(rows) != 1:
         found = "more than one is called so" if rows else "no such one in the text"
-        raise EditError(f"{str(team)[:-1]} {name or f'in row {int(row) + 1}'}: {found}; change it in the text itself")
-    return (team, rows[0], *rest)
+        called = name or ("without an id" if row is None else f"in row {row + 1}")
+        raise EditError(f"{team[:-1]} {called}: {found}; change it in the text itself")
+    return team, rows[0]
 
 
 def _at(data: Any, path: Path) -> Any:
