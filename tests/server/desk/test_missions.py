@@ -32,10 +32,10 @@ class Worker:
             return {"text": "name: converted"}
         text = arguments["mission"]["text"]
         if "bad" in text:
-            return {"errors": [FINDING], "impossible": [], "summary": None, "mission": None}
+            return {"errors": [FINDING], "impossible": [], "summary": None, "mission": None, "floor": None}
         name = text.partition("name: ")[2].splitlines()[0] if "name: " in text else arguments["mission"]["name"]
         summary = {"name": name, "robots": 1, "tasks": 2, "dimensions": 2}
-        return {"errors": [], "impossible": [], "summary": summary, "mission": {}}
+        return {"errors": [], "impossible": [], "summary": summary, "mission": {}, "floor": None}
 
 
 @pytest.fixture

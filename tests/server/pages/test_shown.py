@@ -18,10 +18,11 @@ from muster.server.pages.missions.making import EMPTY, EMPTY_IN_SPACE, refused, 
 from muster.server.pages.missions.view import ago
 from muster.server.pages.plan.compare import moved_tasks, with_better
 from muster.server.pages.plan.figures import figures_of, lines_of, meaning_of
-from muster.server.pages.plan.ground import floor_plan
+from muster.server.pages.plan.ground import image_of
 from muster.server.pages.plan.taking import parcel
 from muster.server.pages.plan.versions import differences, marked
 from muster.server.pages.plan.why import question
+from muster.server.words import MissionVersion
 
 
 def test_the_scene_of_a_floor_has_its_robots_tasks_and_zone() -> None:
@@ -41,14 +42,13 @@ def test_tiles_are_drawn_only_where_the_earth_is_known() -> None:
     assert scene["tiles"] == {"url": "/t", "origin": [35.5, 24.0]}
 
 
-def test_a_floor_plan_is_where_its_description_says() -> None:
-    files = {"floor.yaml": b"image: floor.pgm\nresolution: 0.05\norigin: [-1, -2, 0]\n", "floor.pgm": b"P5"}
-    found = floor_plan({"ros_yaml": "floor.yaml"}, "my floor", files, 3)
+def test_a_floor_plan_is_found_among_the_files_of_the_mission() -> None:
+    kept = MissionVersion(mission="my floor", version=3, text="", author="", at=None, files={"floor.pgm": b"P5"})
+    floor = {"file": "floor.pgm", "resolution_m": 0.05, "origin": [-1.0, -2.0, 0.0]}
     url = "/api/v1/missions/my%20floor/files/floor.pgm?version=3"
-    assert found == {"url": url, "resolution": 0.05, "origin": [-1, -2, 0]}
-    assert floor_plan({"image": "a.png", "resolution_m": 0.1}, "m", {"a.png": b""}) is not None
-    assert floor_plan({"image": "../secret.png", "resolution_m": 0.1}, "m", files) is None
-    assert floor_plan({"ros_yaml": "floor.yaml"}, "m", {"floor.yaml": b"[1, 2"}) is None
+    assert image_of(floor, kept) == {"url": url, "resolution": 0.05, "origin": [-1.0, -2.0, 0.0]}
+    assert image_of({**floor, "file": "../secret.png"}, kept) is None
+    assert image_of(None, kept) is None
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,20 @@ def test_a_file_is_laid_down_nowhere_else(asked, name):
         asked("verdict", mission=given(TINY, {name: b"x"}), plan={"schema": "muster-plan/1", "routes": []})
 
 
+@pytest.mark.parametrize("key", ["image", "resolution", "origin", "negate"])
+def test_a_map_file_that_is_a_bomb_describes_no_floor(asked, key):
+    """The worker reads it, never the server, and says no more of it than fits into a line."""
+    text = MAPPED.replace("{image: floors/floor.png, resolution_m: 1}", "{ros_yaml: f.yaml}")
+    described = {"image": "floor.png", "resolution": "1", "origin": "[0, 0, 0]", "negate": "0"} | {key: "*b8"}
+    said = bomb("x", 9) + "".join(f"\n{name}: {value}" for name, value in described.items())
+    files = {"f.yaml": f"{said}\noccupied_thresh: 0.65\nfree_thresh: 0.2\n".encode(), "floor.png": FLOOR}
+    answer = asked("check", mission=given(text, files))
+    assert answer["errors"]
+    assert all(len(str(error)) < 1000 for error in answer["errors"])
+    assert (answer["floor"], answer["mission"]["name"]) == (None, "mapped")
+    assert asked("ground", mission=given(text, files)) == {"floor": None, "earth": None}
+
+
 def bomb(first, levels):
     lines = [f"b0: &b0 [{', '.join([first] * 9)}]"]
     return "\n".join([*lines, *(f"b{k}: &b{k} [{', '.join([f'*b{k - 1}'] * 9)}]" for k in range(1, levels))])

@@ -40,6 +40,7 @@ def test_check_names_tasks_that_can_never_be_done(asked):
 def test_a_mission_with_files_is_read_with_them(asked):
     answer = asked("check", mission=given(MAPPED, {"floors/floor.png": FLOOR}))
     assert answer["errors"] == []
+    assert answer["floor"] == {"file": "floors/floor.png", "resolution_m": 1, "origin": [0, 0, 0]}
     assert (
         asked("plan", mission=given(MAPPED, {"floors/floor.png": FLOOR}), iterations=1)["plan"]["tasks_completed"] == 1
     )
@@ -49,7 +50,10 @@ def test_a_map_may_stand_beside_the_folder_of_the_mission(asked):
     folder = mission_path("floor").parent.parent / "maps"
     files = {f"../maps/{path.name}": path.read_bytes() for path in folder.iterdir()}
     text = mission_path("floor").read_text(encoding="utf-8")
-    assert asked("check", mission=given(text, files))["errors"] == []
+    answer = asked("check", mission=given(text, files))
+    assert answer["errors"] == []
+    assert answer["floor"]["file"] in files
+    assert asked("ground", mission=given(text, files)) == {"floor": answer["floor"], "earth": None}
 
 
 def test_plan_as_the_command_does(plan):

@@ -61,15 +61,16 @@ class Checked:
     """What is wrong with a mission, which tasks can never be done, how much is in it (null where it is none).
 
     `conflict` are tasks that can be done, but not all of them by one plan; `unknown` is true where that was not looked
-    into, or not found out.
+    into, or not found out. `floor` is the picture of the mission's map, one of its files, and how it lies.
     """
 
     errors: list[dict[str, Any]]
     impossible: list[dict[str, Any]]
     conflict: dict[str, Any] | None
     unknown: bool
-    summary: dict[str, Any] | None = None
-    mission: dict[str, Any] | None = None
+    summary: dict[str, Any] | None
+    mission: dict[str, Any] | None
+    floor: dict[str, Any] | None
 
 
 class NewMission(Body):

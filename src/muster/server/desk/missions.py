@@ -82,6 +82,16 @@ class Missions:
         asked = {"ignore": list(ignore), "time_limit": time_limit}
         return await self._pool.run("check", {"mission": for_work(text, files, "mission"), **asked})
 
+    async def ground(self, mission: MissionVersion) -> dict[str, Any]:
+        """What lies under a mission: `floor` and `earth`, as `work.tasks.ground` says.
+
+        Raises
+        ------
+        WorkError
+            if it cannot be read.
+        """
+        return await self._pool.run("ground", {"mission": for_work(mission.text, mission.files, "mission")})
+
     async def edit(self, text: str, change: str, *arguments: object) -> str:
         """A text with one of `work.editing.changes.CHANGES`; nothing is kept.
 

@@ -17,14 +17,16 @@ _QUIET_S = 0.35  # without a change, before a text is checked
 
 @dataclass(frozen=True)
 class Checked:
-    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data or None.
+    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data.
 
-    `text` is what was checked, None as long as nothing was.
+    `mission` and its `floor` plan are of the last text that could be read, None before. `text` is what was checked,
+    None as long as nothing was.
     """
 
     errors: Sequence[Mapping[str, Any]] = ()
     impossible: Sequence[Mapping[str, Any]] = ()
     mission: Mapping[str, Any] | None = None
+    floor: Mapping[str, Any] | None = None
     text: str | None = None
 
 
@@ -168,8 +170,9 @@ class Draft:
             raise
         finally:
             self._checking = False
-        known = found.get("mission") or self.checked.mission
-        self.checked = Checked(found["errors"], found["impossible"], known, text)
+        before = self.checked
+        mission, floor = (found["mission"], found["floor"]) if found["mission"] else (before.mission, before.floor)
+        self.checked = Checked(found["errors"], found["impossible"], mission, floor, text)
         for listener in self.on_check:
             listener()
 

@@ -11,7 +11,7 @@ from muster.server.pages.asking import is_seen, on_the_wall, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import told, words_of
-from muster.server.pages.plan.ground import TILES, floor_plan
+from muster.server.pages.plan.ground import TILES, image_of
 from muster.server.pages.tables import table
 from muster.server.words import OVER, Run
 
@@ -100,7 +100,7 @@ async def _ground(run: Run) -> dict[str, Any]:
     """The floor plan and the map tiles of a run's mission; without either there is a plain grid."""
     desk = the_desk()
     version = await desk.missions.get(run.mission, run.mission_version)
-    mission = await desk.missions.look(version.text, "origin_wgs84", "map")
-    earth = mission.get("origin_wgs84")
+    found = await desk.missions.ground(version)
+    earth = found["earth"]
     tiles = {"url": TILES, "origin": [earth["lat_deg"], earth["lon_deg"]]} if desk.settings.tiles and earth else None
-    return {"image": floor_plan(mission.get("map") or {}, run.mission, version.files, version.version), "tiles": tiles}
+    return {"image": image_of(found["floor"], version), "tiles": tiles}

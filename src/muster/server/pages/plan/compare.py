@@ -62,7 +62,7 @@ async def _build(mission: str, a: int, b: int) -> None:
 async def _scene(entry: PlanEntry) -> dict[str, Any]:
     version = await the_desk().missions.get(entry.mission, entry.mission_version)
     found = await the_desk().missions.check(version.text, dict(version.files))
-    return ground_of(found["mission"] or {}, entry.mission, version.files, version=version.version)
+    return ground_of(found["mission"] or {}, found["floor"], version)
 
 
 def _follow(ground: MissionMap, one: Mapping[str, Any] | None) -> None:

@@ -44,6 +44,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
         "edit": Task(f"{_HERE}.edit", 20.0),
         "explain": Task(f"{_HERE}.explain", 120.0),
         "export": Task(f"{_HERE}.export", 120.0),
+        "ground": Task(f"{_HERE}.ground", 20.0),
         "look": Task(f"{_HERE}.look", 20.0),
         "picture": Task(f"{_HERE}.picture"),
         "plan": Task(f"{_HERE}.plan", None, long=True, stoppable=True),

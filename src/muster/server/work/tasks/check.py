@@ -10,20 +10,24 @@ from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import plain
 from muster.server.work.errors import MOST_FINDINGS
+from muster.server.work.floors import floor_of
 from muster.server.work.missions import mission_of
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission"}` -> `{"errors", "impossible", "conflict", "unknown", "summary", "mission"}`.
+    """`{"mission"}` -> `{"errors", "impossible", "conflict", "unknown", "summary", "mission", "floor"}`.
 
     The first four are as `muster check --format json` prints them; `mission` is the mission as plain data, as a mission
-    file holds it, places in metres, left out with `brief`. It and the `summary` are None where it cannot be read. Rules
-    that are to `ignore` do not hold; whether one plan can do all stays unknown without a `time_limit` for it.
+    file holds it, places in metres, and `floor` its floor plan; both are left out with `brief`. They and the `summary`
+    are None where it cannot be read. Rules that are to `ignore` do not hold; whether one plan can do all stays unknown
+    without a `time_limit` for it.
     """
-    answer: dict[str, Any] = {"errors": [], **Possible().as_dict(), "summary": None, "mission": None}
+    answer: dict[str, Any] = {"errors": [], **Possible().as_dict(), "summary": None, "mission": None, "floor": None}
     try:
         mission = mission_of(arguments["mission"])
-        answer |= {"summary": summary(mission), "mission": None if arguments.get("brief") else plain(mission)}
+        answer["summary"] = summary(mission)
+        if not arguments.get("brief"):
+            answer |= {"mission": plain(mission), "floor": floor_of(mission)}
         found = possible(mission, ignored=arguments.get("ignore", ()), time_limit=arguments.get("time_limit"))
     except (MissionError, NotSupportedError) as error:
         return answer | {"errors": [finding.as_dict() for finding in error.findings[:MOST_FINDINGS]]}
