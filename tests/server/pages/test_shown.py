@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from muster.library.shelf import mission_path
+from muster.mission.errors import ParameterError
 from muster.mission.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
 from muster.server.pages.map import scene_of
-from muster.server.pages.missions.making import EMPTY, EMPTY_IN_SPACE, refused, sorted_out
+from muster.server.pages.missions.making import EMPTY, EMPTY_IN_SPACE, options_of, refused, sorted_out
 from muster.server.pages.missions.view import ago
 from muster.server.pages.plan.compare import moved_tasks, with_better
 from muster.server.pages.plan.figures import figures_of, lines_of, meaning_of
@@ -64,6 +65,14 @@ def test_the_mission_among_files_is_found_by_their_names(
     names: list[str], expected: tuple[str, dict[str, str]]
 ) -> None:
     assert sorted_out(names) == expected
+
+
+def test_files_in_capitals_are_uploaded_like_others() -> None:
+    assert options_of("EIL51.TSP", {}, 4) == {"salesmen": 4, "depot": "1"}
+    assert options_of("TASKS.CSV", {"robots": "ROBOTS.CSV"}, 4) == {"robots": "ROBOTS.CSV"}
+    assert options_of("yard.YAML", {}, 4) == {}
+    with pytest.raises(ParameterError, match=r"^TASKS\.CSV: the robots are missing"):
+        options_of("TASKS.CSV", {}, 4)
 
 
 def test_tasks_that_change_robot_are_told_with_both() -> None:

@@ -1,11 +1,13 @@
 """What may be asked of a run is checked before anything is started."""
 
+from dataclasses import fields
+
 import pytest
 
-import muster
+from muster.cli import fly, ros, ros2, simulate
 from muster.mission.errors import ParameterError
-from muster.server.runs.simulated import SimulatedCourse
-from muster.server.runs.terms import require_world
+from muster.server.runs.terms import CHOICES, NOISE, require_world
+from muster.simulation.noise import Noise
 
 BRIDGES = ("ros1", "mavlink")
 
@@ -24,6 +26,11 @@ BRIDGES = ("ros1", "mavlink")
         ("kinematic", {"seed": True}, "seed: true; expected a whole number"),
         ("kinematic", {"noise": [1]}, "noise: [1]; expected a mapping"),
         ("kinematic", {"noise": {"position_m": -1.0}}, "position_m: -1.0; expected a number, 0 to inf"),
+        ("kinematic", {"noise": {"positon_m": 1.0}}, "noise: positon_m; expected velocity, slip, "),
+        ("kinematic", {"noise": {"slip": 1.5}}, "slip: 1.5; expected a number, 0 to 1"),
+        ("physics", {"avoidance": "orcas"}, "avoidance: orcas; expected orca, rvo, hrvo, none; did you mean 'orca'?"),
+        ("mavlink", {"at_end": "fly"}, "at_end: fly; expected hold, return, land"),
+        ("ros1", {"drive": "WP"}, "drive: WP; expected cmd_vel, goals"),
         ("ros1", {"known_only": "yes"}, 'known_only: "yes"; expected true or false'),
         ("mavlink", {"endpoints": {"r_0": 14550}}, "endpoints.r_0: 14550; expected a text"),
     ],
@@ -39,9 +46,8 @@ def test_what_worlds_can_be_told():
     require_world("mavlink", BRIDGES, {"endpoints": {"r_0": "udp:0.0.0.0:14550"}, "arm": True, "height_m": 10})
 
 
-def test_noise_of_no_kind_is_refused():
-    mission = muster.load("6T-2R")
-    with pytest.raises(ParameterError, match=r"noise: .positon_m.; expected .* did you mean"):
-        SimulatedCourse(
-            mission, muster.solve(mission, "greedy"), "kinematic", {"noise": {"positon_m": 1.0}}, recorder=None
-        )
+def test_the_words_are_those_that_worlds_understand():
+    assert tuple(field.name for field in fields(Noise)) == NOISE
+    verbs = (simulate, ros, ros2, fly)
+    options = {option.name: option.type for verb in verbs for option in verb.command.params}
+    assert {name: tuple(options[name].choices) for name in CHOICES} == dict(CHOICES)

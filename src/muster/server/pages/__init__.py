@@ -7,7 +7,6 @@
 | `sockets` | whose page it is: nobody presses the buttons of another's |
 | `notices` | errors of the desk, and news, for a person |
 | `pressing` | buttons that do something once, however often they are clicked |
-| `pressing` | buttons that do something once, however often they are clicked |
 | `map` | the map, an element with its own scripts |
 """
 

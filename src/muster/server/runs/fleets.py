@@ -88,10 +88,7 @@ def _mavlink(
         fleet.close()
         raise
     ends: dict[str, Callable[[], None]] = {"hold": _nothing, "return": fleet.go_back, "land": fleet.land}
-    at_end = settings.get("at_end", "hold")
-    if at_end not in ends:
-        raise ParameterError(f"at_end: {at_end}; expected {', '.join(ends)}")
-    return fleet, ends[at_end]
+    return fleet, ends[settings.get("at_end", "hold")]
 
 
 def _heard(fleet: Any, settings: Mapping[str, Any], halt: threading.Event) -> Fleet:

@@ -7,14 +7,10 @@ crash it is simulated again up to where the log reaches, and goes on.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 from typing import Any
 
 from muster._carrying_out import Simulation
 from muster.execution import Recorder, Report, Status
-from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.simulation import Noise
@@ -24,7 +20,7 @@ QUANTUM_S = 0.1
 
 
 class SimulatedCourse:
-    """See `runner.Course`."""
+    """See `performance.Course`."""
 
     real = False
 
@@ -32,7 +28,7 @@ class SimulatedCourse:
         self, mission: Mission, plan: Plan, world: str, settings: Mapping[str, Any], recorder: Recorder
     ) -> None:
         how = dict(settings)
-        noise = _noise(how.pop("noise", {}))
+        noise = Noise(**how.pop("noise", {}))
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
         self._quanta = 0
 
@@ -74,11 +70,3 @@ class SimulatedCourse:
 
     def close(self) -> None:
         self._simulation.close()
-
-
-def _noise(amounts: Mapping[str, float]) -> Noise:
-    kinds = [field.name for field in fields(Noise)]
-    for kind in amounts:
-        if kind not in kinds:
-            raise ParameterError(f"noise: {shown(kind)}; expected {', '.join(kinds)}{did_you_mean(kind, kinds)}")
-    return Noise(**amounts)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from muster.mission.errors import ParameterError
@@ -31,6 +31,27 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
     },
 }
 """What each world may be told, and of which kind it is."""
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "drive": ("cmd_vel", "goals"),
+    "give": ("goals", "nav2"),
+    "by": ("dds", "rclpy"),
+    "at_end": ("hold", "return", "land"),
+}
+"""What settings that are words may be; those who understand them take long to import."""
+NOISE = (
+    "velocity",
+    "slip",
+    "odometry",
+    "motors",
+    "position_m",
+    "heading_rad",
+    "attitude_rad",
+    "gyro_radps",
+    "gyro_bias_radps",
+    "accelerometer_mps2",
+)
+"""The kinds of a simulation's noise."""
 _KINDS = {str: "a text", bool: "true or false", dict: "a mapping", int: "a whole number", float: "a number"}
 VERBS = ("pause", "resume", "speed", "cancel", "event")
 _FASTEST = 1e6
@@ -38,20 +59,21 @@ _FASTEST = 1e6
 
 def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, Any]) -> None:
     """Raise ParameterError unless runs may be started in a world, with these settings."""
-    allowed = (*SIMULATED, *bridges)
-    if world not in allowed:
-        raise ParameterError(f"world: {world}; expected {', '.join(allowed)}{did_you_mean(world, allowed)}")
+    _require_choice("world", world, (*SIMULATED, *bridges))
     for name, value in settings.items():
         if name not in SETTINGS[world]:
             known = ", ".join(SETTINGS[world])
             raise ParameterError(f"{name}: no setting of world {world}; expected {known}")
         _require_kind(name, value, SETTINGS[world][name])
+        if name in CHOICES:
+            _require_choice(name, value, CHOICES[name])
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
     if world in SIMULATED:
         _require_number(settings, "dt_s", 0.001, 1.0)
         noise = settings.get("noise", {})
         for kind in noise:
-            _require_number(noise, kind, 0.0, math.inf)
+            _require_choice("noise", kind, NOISE)
+            _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
 
@@ -61,6 +83,11 @@ def _require_kind(name: str, value: object, kind: type) -> None:
     kinds = (int, float) if kind is float else (kind,)
     if not isinstance(value, kinds) or (isinstance(value, bool) and kind is not bool):
         raise ParameterError(f"{name}: {shown(value)}; expected {_KINDS[kind]}")
+
+
+def _require_choice(name: str, value: str, allowed: Sequence[str]) -> None:
+    if value not in allowed:
+        raise ParameterError(f"{name}: {value}; expected {', '.join(allowed)}{did_you_mean(value, allowed)}")
 
 
 def _require_number(values: Mapping[str, Any], name: str, least: float, most: float, *, whole: bool = False) -> None:
@@ -97,8 +124,7 @@ def require_action(verb: str, data: Mapping[str, Any]) -> dict[str, Any]:
     ParameterError
         if there is no such verb, or its data are not as expected. Whether an event fits the mission the runner says.
     """
-    if verb not in VERBS:
-        raise ParameterError(f"verb: {verb}; expected {', '.join(VERBS)}{did_you_mean(verb, VERBS)}")
+    _require_choice("verb", verb, VERBS)
     _require_text(data)
     if verb == "speed":
         if set(data) != {"speed"}:

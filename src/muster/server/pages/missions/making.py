@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
 
 from nicegui import events, ui
 
@@ -131,17 +133,31 @@ async def named(text: str, name: str) -> str:
 async def _upload(files: dict[str, bytes], salesmen: int) -> None:
     with told():
         name, beside = sorted_out(list(files))
-        if name.lower().endswith(".csv") and "robots" not in beside:
-            raise ParameterError(
-                f"{name}: the robots are missing; expected two CSV files chosen together, of which one has the word "
-                "robots in its name"
-            )
-        options: dict[str, object] = {kind: other for kind, other in beside.items() if name.endswith(".csv")}
-        if name.endswith(".tsp"):
-            options = {"salesmen": salesmen, "depot": "1"}
+        options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
         made = await the_desk().missions.upload(the_asker(), name, files[name], rest, **options)
         ui.navigate.to(f"/plan/{made.mission}")
+
+
+def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str, Any]:
+    """What has to be known of a mission's file besides, by its kind.
+
+    Raises
+    ------
+    ParameterError
+        for a task-list CSV without robots.
+    """
+    kind = PurePath(name).suffix.lower()
+    if kind == ".tsp":
+        return {"salesmen": salesmen, "depot": "1"}
+    if kind != ".csv":
+        return {}
+    if "robots" not in beside:
+        raise ParameterError(
+            f"{name}: the robots are missing; expected two CSV files chosen together, of which one has the word "
+            "robots in its name"
+        )
+    return dict(beside)
 
 
 def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
