@@ -77,6 +77,26 @@ def test_from_outside_of_the_cluster(cluster):
     assert by_ray.routes == by_threads.routes
 
 
+def test_joining_from_outside_is_tried_again(cluster, monkeypatch):
+    """Where the process that Ray starts for us is dead at once; but not for ever."""
+    init, failures = ray.init, [2]
+
+    def fail_at_first(**options):
+        if failures[0]:
+            failures[0] -= 1
+            raise ConnectionAbortedError("Starting Ray client server failed.")
+        init(**options)
+
+    monkeypatch.setattr(ray, "init", fail_at_first)
+    outside = f"ray://127.0.0.1:{cluster.head_node._ray_params.ray_client_server_port}"
+    with joined(outside) as workers:
+        assert workers.count == 2
+    failures[0] = 4
+    with pytest.raises(ParameterError, match=r"no cluster \(Starting Ray client server failed"), joined(outside):
+        pass
+    assert failures == [1]
+
+
 def test_within_a_time(address):
     plan = muster.solve(MISSION, "search", time_limit=4.0, parts=4, ray=address)
     assert plan.complete

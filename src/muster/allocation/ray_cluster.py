@@ -27,6 +27,7 @@ from muster.mission.interrupts import on_ctrl_c
 
 EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
 
+_ATTEMPTS = 3
 _REACHED_WITHIN_S = 5.0
 _ANSWERED_WITHIN_S = 20.0  # Ray's own check has to start first
 _RETURNED_WITHIN_S = 3.0  # after a job was told to end
@@ -82,20 +83,35 @@ def joined(address: str) -> Iterator[Cluster]:
 
 
 def _join(address: str) -> None:
-    """Join quietly: what Ray has to say is in its own log files."""
+    """Join, more than once if need be.
+
+    What speaks for Ray to those outside starts a process for each of them by a fork beside threads of its own, and now
+    and then that process is dead at once (Ray 2.60); the next one lives.
+    """
+    import ray
+
+    try:
+        for _ in range(_ATTEMPTS - 1):
+            with suppress(ConnectionAbortedError):
+                _init(address)
+                return
+        _init(address)
+    except ImportError:
+        raise MissingExtraError("ray", "joining a Ray cluster from outside") from None
+    except (OSError, RuntimeError, ValueError, ray.exceptions.RayError) as error:
+        raise _no_cluster(address, str(error)) from error
+
+
+def _init(address: str) -> None:
+    """Quietly: what Ray has to say is in its own log files."""
     import ray
 
     options: dict[str, Any] = {"log_to_driver": False, "logging_level": logging.ERROR}
     if address == "local":
         options |= {"include_dashboard": False, "object_store_memory": _LOCAL_STORE}
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            ray.init(address=address, **options)
-    except ImportError:
-        raise MissingExtraError("ray", "joining a Ray cluster from outside") from None
-    except (OSError, RuntimeError, ValueError, ray.exceptions.RayError) as error:
-        raise _no_cluster(address, str(error)) from error
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        ray.init(address=address, **options)
 
 
 def _work() -> Any:
