@@ -21,9 +21,9 @@ from muster.cli.auction_options import (
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
     Finite,
+    MissionFile,
     format_option,
     ignore_option,
-    load_mission,
     objective_option,
     optional_mission_argument,
     quiet_option,
@@ -68,11 +68,7 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
 @result_options
 @quiet_option
 def command(
-    mission: str | None,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile | None,
     method: str,
     transport: str,
     objective: str | None,
@@ -102,7 +98,7 @@ def command(
     if mission is None:
         return _replayed(others)
     _check_together(others)
-    require_writable(output, (book, plot, gantt), (mission, robots, suitability), ())
+    require_writable(output, (book, plot, gantt), mission.files, ())
     require_csv(book)
     require_folder(views, "--views")
     require_drawable(plot, gantt)
@@ -110,7 +106,7 @@ def command(
         logging.getLogger("muster").setLevel(logging.ERROR)
     chosen = method_named(method)
     terms = terms_of(chosen, others, settings)
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     problem = Problem.compile(loaded, objective, ignore).ready()
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE
 from muster.cli.options import (
+    MissionFile,
     format_option,
     ignore_option,
-    load_mission,
     mission_argument,
     quiet_option,
     require_complete_option,
@@ -46,11 +45,7 @@ _NOT_MINIMAL = "some of them may already be too many: not without each of them a
 @quiet_option
 @server_option
 def command(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     ignore: tuple[str, ...],
     form: str,
     require_complete: bool,
@@ -65,7 +60,7 @@ def command(
     from muster._explaining import possible
 
     try:
-        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+        loaded = mission.load(verbose=verbose)
         found = possible(loaded, ignored=ignore, time_limit=time_limit)
     except (MissionError, NotSupportedError) as error:
         return refused(form, error)

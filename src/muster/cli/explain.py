@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import format_option, load_mission, mission_argument, quiet_option, say_of_plan
+from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option, say_of_plan
 from muster.cli.remote.option import server_option
 from muster.mission.plan import json_text, read_plan
 
@@ -24,13 +24,9 @@ if TYPE_CHECKING:
 @quiet_option
 @server_option
 def command(
-    mission: str,
+    mission: MissionFile,
     plan: Path,
     task: str | None,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     quiet: bool,
     verbose: bool,
@@ -39,7 +35,7 @@ def command(
     from muster._explaining import left_out, one_task, require_fit
     from muster._explaining.tables import tables_on_left_out, tables_on_task
 
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     given = read_plan(plan)
     require_fit(loaded, given, str(plan))
     say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)

@@ -11,7 +11,7 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, load_mission, load_plan, mission_argument, quiet_option, require_admissible
+from muster.cli.options import Finite, MissionFile, load_plan, mission_argument, quiet_option, require_admissible
 from muster.cli.outputs import require_folder, require_writable
 from muster.cli.remote.option import server_option
 from muster.exchange.wishes import FORMATS, Wishes
@@ -63,12 +63,8 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 @quiet_option
 @server_option
 def command(
-    mission: str,
+    mission: MissionFile,
     plan: Path,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     output: Path | None,
     altitude: float | None,
@@ -89,14 +85,14 @@ def command(
         require_folder(output, "-o")
     else:
         _require_none_of_qgc(form)
-        require_writable(None, (output,), (mission, robots, suitability), (plan,))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+        require_writable(None, (output,), mission.files, (plan,))
+    loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     verdict = require_admissible(loaded, given, plan)
     if form == "qgc":
         assert output is not None
         wishes = Wishes(altitude, clearance, tolerance, firmware)
-        messages = _write_plan_files(loaded, verdict, output, (mission, plan), wishes)
+        messages = _write_plan_files(loaded, verdict, output, (mission.name, plan), wishes)
         for message in () if quiet else messages:
             click.echo(message, err=True)
         return DONE

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import threading
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.cli.exits import DONE
 from muster.cli.halting import ctrl_c_halts
-from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import TO_END
@@ -41,11 +40,7 @@ _AT_END = ("hold", "return", "land")
 @click.option("--at-end", type=click.Choice(_AT_END), default="hold", show_default=True, help="When all is done.")
 @real_options
 def command(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     endpoints: tuple[str, ...],
     arm: bool,
     offboard: bool,
@@ -64,8 +59,8 @@ def command(
     from muster.bridges.mavlink.settings import Settings
 
     wishes = Wishes(**asked)
-    require_outputs(wishes, (mission, robots, suitability))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    require_outputs(wishes, mission.files)
+    loaded = mission.load(verbose=wishes.verbose)
     given = read_wanted(wishes, loaded)
     settings = Settings(arm=arm, offboard=offboard, low_battery=low_battery / 100)
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
 
@@ -35,8 +37,40 @@ Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
 
 
+@dataclass(frozen=True, kw_only=True)
+class MissionFile:
+    """A MISSION as the command names it: a file, or one that ships with Muster, and what some forms of it need."""
+
+    name: str
+    robots: Path | None
+    suitability: Path | None
+    salesmen: int | None
+    depot: str | None
+
+    @property
+    def files(self) -> tuple[str | Path | None, ...]:
+        """What is read, where it is given."""
+        return self.name, self.robots, self.suitability
+
+    def load(self, *, verbose: bool = False) -> Mission:
+        """Read it; with -v a line says which file it is, and how much is in it."""
+        from muster import load
+
+        if self.depot is not None and self.salesmen is None:
+            raise ParameterError("--depot given; expected it together with --salesmen")
+        flags = {name: getattr(self, name) for name in ("robots", "suitability", "salesmen")}
+        loaded = load(self.name, **flags, depot=self.depot or "1")
+        if verbose:
+            amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
+            click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
+        return loaded
+
+
+MISSION_FLAGS = ("robots", "suitability", "salesmen", "depot")
+
+
 def mission_argument(verb: Verb) -> Verb:
-    """MISSION, and the flags that some forms of it need."""
+    """MISSION, and the flags that some forms of it need, as a `MissionFile`."""
     return _with_mission(verb, required=True)
 
 
@@ -46,6 +80,14 @@ def optional_mission_argument(verb: Verb) -> Verb:
 
 
 def _with_mission(verb: Verb, *, required: bool) -> Verb:
+    @wraps(verb)
+    def with_mission(*, mission: str | None, **given: Any) -> Any:
+        flags = {name: given.pop(name) for name in MISSION_FLAGS}
+        if mission is None:
+            require_none_without_mission(**flags)
+            return verb(mission=None, **given)
+        return verb(mission=MissionFile(name=mission, **flags), **given)
+
     options = (
         click.argument("mission", required=required),
         click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
@@ -53,30 +95,17 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
         click.option("--salesmen", type=click.IntRange(min=1), metavar="M", help="Robots of a TSPLIB mission."),
         click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
     )
+    decorated: Any = with_mission
     for option in reversed(options):
-        verb = option(verb)
-    return verb
+        decorated = option(decorated)
+    return cast("Verb", decorated)
 
 
-def load_mission(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
-    *,
-    verbose: bool = False,
-) -> Mission:
-    """The mission that the command names; with -v a line says which file it is, and how much is in it."""
-    from muster import load
-
-    if depot is not None and salesmen is None:
-        raise ParameterError("--depot given; expected it together with --salesmen")
-    loaded = load(mission, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot or "1")
-    if verbose:
-        amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
-        click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
-    return loaded
+def require_none_without_mission(**of_mission: object) -> None:
+    """Options that say something of a mission need one."""
+    for name, value in of_mission.items():
+        if value is not None:
+            raise ParameterError(f"--{name} given without a MISSION; expected both")
 
 
 def load_plan(file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> Plan:

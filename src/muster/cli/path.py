@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import format_option, load_mission, mission_argument, quiet_option
+from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
 from muster.mission.hints import did_you_mean
@@ -39,11 +39,7 @@ _FILE = click.Path(path_type=File)
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
 def command(
-    mission: str,
-    robots: File | None,
-    suitability: File | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     start: str,
     goal: str,
     planner: str,
@@ -62,9 +58,9 @@ def command(
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
     the reason, and no error. Without a map the way is straight.
     """
-    require_writable(None, (plot,), (mission, robots, suitability), ())
+    require_writable(None, (plot,), mission.files, ())
     require_drawable(plot)
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
     body = _body(loaded, robot, radius, kind)
     world = _world(loaded)

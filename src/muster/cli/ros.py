@@ -5,14 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.halting import ctrl_c_halts
-from muster.cli.options import Finite, load_mission, optional_mission_argument
+from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
 from muster.cli.real import (
     Wishes,
     carried_out,
@@ -57,11 +56,7 @@ _LEFT = "the robots were told to stand"
 @ros_options
 @real_options
 def command(
-    mission: str | None,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile | None,
     master: str | None,
     drive: Literal["cmd_vel", "goals"],
     namespace: str,
@@ -86,11 +81,11 @@ def command(
     from muster.bridges.ros1.node import become_node, leave
 
     wishes = Wishes(**asked)
-    _require_fitting(wishes, mission, stay, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot)
-    require_outputs(wishes, (mission, robots, suitability))
-    loaded = None
-    if mission is not None:
-        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    if mission is None:
+        require_none_without_mission(plan=wishes.plan)
+    _require_one_mission(wishes, stay)
+    require_outputs(wishes, () if mission is None else mission.files)
+    loaded = None if mission is None else mission.load(verbose=wishes.verbose)
     given = None if loaded is None else read_wanted(wishes, loaded)
 
     def fleet_of(its: Mission) -> Ros1Fleet:
@@ -113,11 +108,8 @@ def command(
         leave()
 
 
-def _require_fitting(wishes: Wishes, mission: str | None, stay: bool, **of_mission: object) -> None:
-    """Options that say something of a mission need one, and a file holds what came of one."""
-    for name, value in (of_mission | {"plan": wishes.plan}).items():
-        if mission is None and value is not None:
-            raise ParameterError(f"--{name} given without a MISSION; expected both")
+def _require_one_mission(wishes: Wishes, stay: bool) -> None:
+    """A file holds what came of one mission."""
     for name in ("record", "html", "plot", "gantt"):
         if stay and getattr(wishes, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, Literal
 
 import click
 
 from muster.cli.exits import INTERRUPTED
 from muster.cli.halting import ctrl_c_halts
-from muster.cli.options import Finite, load_mission, mission_argument
+from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real import (
     Wishes,
     carried_out,
@@ -45,11 +44,7 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 @ros_options
 @real_options
 def command(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     domain: int | None,
     namespace: str,
     give: Literal["goals", "nav2"],
@@ -69,8 +64,8 @@ def command(
     from muster.bridges.ros2.wire import open_wire
 
     wishes = Wishes(**asked)
-    require_outputs(wishes, (mission, robots, suitability))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=wishes.verbose)
+    require_outputs(wishes, mission.files)
+    loaded = mission.load(verbose=wishes.verbose)
     given = read_wanted(wishes, loaded)
     with ctrl_c_halts(TO_END) as halt:
         fleet = Ros2Fleet(

@@ -18,8 +18,8 @@ from muster.cli.keeping import drawing_options, kept_record, record_option
 from muster.cli.live import foxglove_option, shown_live, tell
 from muster.cli.options import (
     Finite,
+    MissionFile,
     format_option,
-    load_mission,
     mission_argument,
     quiet_option,
     require_complete_option,
@@ -86,11 +86,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @quiet_option
 @server_option
 def command(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     plan: Path | None,
     negotiate: bool,
     world: str,
@@ -130,12 +126,12 @@ def command(
     from muster import simulate
 
     _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt, film, still, found), (mission, robots, suitability), (plan,))
+    require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan,))
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise = noise_of(noises)
     speed = 1.0 if foxglove is not None and speed is None else speed
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
     if negotiate:

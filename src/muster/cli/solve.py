@@ -15,9 +15,9 @@ from muster._api import DEFAULT_ALLOCATOR
 from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
+    MissionFile,
     format_option,
     ignore_option,
-    load_mission,
     mission_argument,
     objective_option,
     quiet_option,
@@ -94,11 +94,7 @@ _FILE = click.Path(path_type=Path)
 @quiet_option
 @server_option
 def command(
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     allocator: str,
     objective: str | None,
     ignore: tuple[str, ...],
@@ -136,7 +132,7 @@ def command(
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.cli.progress import progress_bar
 
-    require_writable(output, (book, plot, gantt), (mission, robots, suitability), (start, fixed))
+    require_writable(output, (book, plot, gantt), mission.files, (start, fixed))
     require_csv(book)
     require_drawable(plot, gantt)
     if quiet:
@@ -146,7 +142,7 @@ def command(
         raise ParameterError(f"--book: {allocator} keeps no book; expected {_auctions()}")
     terms = _given(chosen, threads=threads, ray=ray, bid=bid, placement=placement, winner=winner)
     params = make_parameters(chosen, settings_of(settings, terms))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot)
+    loaded = mission.load()
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore)
     problem = (problem if fixed is None else keeping(problem, read_plan(fixed))).ready()

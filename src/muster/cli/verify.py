@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import format_option, load_mission, load_plan, mission_argument, quiet_option
+from muster.cli.options import MissionFile, format_option, load_plan, mission_argument, quiet_option
 from muster.cli.remote.option import server_option
 from muster.mission.plan import json_text
 
@@ -19,12 +19,8 @@ from muster.mission.plan import json_text
 @quiet_option
 @server_option
 def command(
-    mission: str,
+    mission: MissionFile,
     plan: Path,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     quiet: bool,
     verbose: bool,
@@ -36,7 +32,7 @@ def command(
     from muster.cli.plan_tables import print_verdict
     from muster.verification import verify
 
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     verdict = verify(loaded, given)
     if form == "json":

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster._explaining import Possible
 from muster.cli.check import checked, refused
-from muster.cli.options import load_mission
+from muster.cli.options import MissionFile
 from muster.cli.remote.sending import parcel
 from muster.mission.errors import Finding, MissionError
 
@@ -18,11 +17,7 @@ if TYPE_CHECKING:
 def run(
     control: Client,
     *,
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     ignore: tuple[str, ...],
     form: str,
     require_complete: bool,
@@ -32,7 +27,7 @@ def run(
 ) -> int:
     """Send the mission, and tell what is wrong with it."""
     try:
-        loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+        loaded = mission.load(verbose=verbose)
         found = control.missions.check(*parcel(loaded), ignore=ignore, time_limit=time_limit)
         if found["errors"]:
             raise MissionError([Finding(**error) for error in found["errors"]])

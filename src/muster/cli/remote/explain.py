@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster._explaining.tables import Part, Table
 from muster.cli.explain import print_explained
-from muster.cli.options import load_mission, load_plan
+from muster.cli.options import MissionFile, load_plan
 from muster.cli.remote.sending import kept_plan
 
 if TYPE_CHECKING:
@@ -17,19 +17,15 @@ if TYPE_CHECKING:
 def run(
     control: Client,
     *,
-    mission: str,
+    mission: MissionFile,
     plan: Path,
     task: str | None,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     quiet: bool,
     verbose: bool,
 ) -> None:
     """Send the mission and the plan; print what comes back as it is printed here."""
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     found = control.plans.explain(kept_plan(control, loaded, given, verbose=verbose).id, task)
     found.pop("words")

@@ -11,7 +11,7 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import load_mission, load_plan
+from muster.cli.options import MissionFile, load_plan
 from muster.cli.outputs import require_folder, require_writable
 from muster.cli.remote.sending import kept_plan
 from muster.mission.errors import NetworkError, ParameterError
@@ -25,12 +25,8 @@ _NOTES = "NOTES.txt"
 def run(
     control: Client,
     *,
-    mission: str,
+    mission: MissionFile,
     plan: Path,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     output: Path | None,
     altitude: float | None,
@@ -46,8 +42,8 @@ def run(
             raise ParameterError("-o missing; expected a folder for the .plan files")
         require_folder(output, "-o")
     else:
-        require_writable(None, (output,), (mission, robots, suitability), (plan,))
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+        require_writable(None, (output,), mission.files, (plan,))
+    loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     wishes = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
     asked = {name: value for name, value in wishes.items() if _is_given(name)}

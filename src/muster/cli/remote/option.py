@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from muster.cli.options import MISSION_FLAGS
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def _refuse_all_but(takes: Sequence[str]) -> None:
     for parameter in context.command.params:
         name = str(parameter.name)
         given = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
-        if given and name not in (*takes, "server", "token_file"):
+        if given and name not in (*takes, *MISSION_FLAGS, "server", "token_file"):
             raise ParameterError(f"{parameter.opts[-1]} given; expected it without --server")
 
 

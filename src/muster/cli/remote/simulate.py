@@ -11,7 +11,7 @@ import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.keeping import kept_record
-from muster.cli.options import load_mission, load_plan
+from muster.cli.options import MissionFile, load_plan
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.remote.sending import kept, kept_plan
 from muster.cli.remote.waiting import planned
@@ -29,11 +29,7 @@ if TYPE_CHECKING:
 def run(
     control: Client,
     *,
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     plan: Path | None,
     world: World,
     seed: int,
@@ -53,12 +49,12 @@ def run(
     verbose: bool,
 ) -> int:
     """Send the mission, have it planned unless there is a plan, follow the run, and report."""
-    require_writable(None, (record, html, plot, gantt), (mission, robots, suitability), (plan,))
+    require_writable(None, (record, html, plot, gantt), mission.files, (plan,))
     require_drawable(plot, gantt)
     settings: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance}
     if noises:
         settings["noise"] = {kind: amount for kind, amount in asdict(noise_of(noises)).items() if amount}
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     number = _plan(control, loaded, plan, seed, time_limit, iterations, quiet=quiet, verbose=verbose)
     carried = control.start(number, world=world, speed=speed, **settings)
     interrupted = _followed(carried, telling=speed is not None and not quiet)

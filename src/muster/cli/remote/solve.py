@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.options import load_mission, settings_of
+from muster.cli.options import MissionFile, settings_of
 from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.remote.sending import kept
 from muster.cli.remote.waiting import planned
@@ -23,11 +23,7 @@ if TYPE_CHECKING:
 def run(
     control: Client,
     *,
-    mission: str,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
+    mission: MissionFile,
     allocator: str,
     objective: str | None,
     ignore: tuple[str, ...],
@@ -51,12 +47,12 @@ def run(
     verbose: bool,
 ) -> int:
     """Send the mission, wait for its plan, judge and show it."""
-    require_writable(output, (book, plot, gantt), (mission, robots, suitability), (start,))
+    require_writable(output, (book, plot, gantt), mission.files, (start,))
     require_csv(book)
     require_drawable(plot, gantt)
     words = {"threads": threads, "bid": bid, "placement": placement, "winner": winner}
     parameters = settings_of(settings, words)
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     first = None if start is None else read_plan(start)
     there = kept(control, loaded, verbose=verbose)
     first_id = None if first is None else control.plans.upload(there.mission, first.as_dict()).id

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import load_mission, load_plan
+from muster.cli.options import MissionFile, load_plan
 from muster.cli.plan_tables import print_verdict
 from muster.cli.remote.sending import kept_plan
 from muster.mission.plan import json_text
@@ -26,18 +26,14 @@ _NOT_PRINTED = ("waiting_s", "lines", "routes")
 def run(
     control: Client,
     *,
-    mission: str,
+    mission: MissionFile,
     plan: Path,
-    robots: Path | None,
-    suitability: Path | None,
-    salesmen: int | None,
-    depot: str | None,
     form: str,
     quiet: bool,
     verbose: bool,
 ) -> int:
     """Send the mission and the plan, and show what the judge there says."""
-    loaded = load_mission(mission, robots, suitability, salesmen, depot, verbose=verbose)
+    loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
     said = control.plans.verdict(kept_plan(control, loaded, given, verbose=verbose).id)
     if form == "json":
