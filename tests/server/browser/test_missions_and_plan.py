@@ -138,10 +138,24 @@ def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page):
     page.get_by_text("version 1, changed").wait_for()
     page.wait_for_function("getElement(document.querySelector('.muster-map')).stage.scene.zones.length === 1")
     assert task_place(page, "1") == before
+    page.get_by_role("combobox", name="What a click on the map does").click()
+    page.get_by_role("option", name="Move and choose").click()
+    page.get_by_text("Click the corners of the zone").wait_for(state="hidden")
+    corner = "getElement(document.querySelector('.muster-map')).stage.scene.zones[0].corners[2]"
+    drawn = page.evaluate(corner)
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.6 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.7 * box["height"], steps=4)
+    page.mouse.up()
+    dragged = page.evaluate(corner)
+    assert dragged[0] > drawn[0]
+    text_of(page)
+    page.locator(".cm-content", has_text=f"[{dragged[0]:g}, {dragged[1]:g}]]").wait_for()
     (polygon,) = re.findall(r"polygon: \[(.*?)\], ceiling_m: 3", text_of(page))
     corners = re.findall(r"\[([^\[\]]*), ([^\[\]]*)\]", polygon)
     assert len(corners) == 3
     assert all(len(number.partition(".")[2]) <= 2 for corner in corners for number in corner)
+    page.click("#undo")
     page.click("#undo")
     page.get_by_text("version 1", exact=True).wait_for()
 

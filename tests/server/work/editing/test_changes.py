@@ -57,6 +57,14 @@ def test_a_task_that_goes_is_no_prerequisite_any_more() -> None:
         changes.drop(TEXT, "task", "77")
 
 
+def test_a_corner_that_is_another_by_now_stays() -> None:
+    corner = {"what": "zone", "id": 0, "corner": 1}
+    data = data_of(changes.move(TEXT, {**corner, "from": [2.0, 1.0]}, 3, 4))
+    assert data["map"]["zones"][0]["polygon"][1] == [3, 4]
+    with pytest.raises(EditError, match="the corner of zone 1 is elsewhere by now"):
+        changes.move(TEXT, {**corner, "from": [2.5, 1.0]}, 3, 4)
+
+
 def test_a_zone_that_is_another_by_now_stays() -> None:
     assert data_of(changes.drop(TEXT, "zone", 0, [[1.0, 1], [2, 1], [2, 2]]))["map"]["zones"] == []
     with pytest.raises(EditError, match="another one by now"):

@@ -21,7 +21,7 @@ class MissionMap(
     | event | data |
     |---|---|
     | `choose` | `{what: robot, task or zone; id; corner of a zone}`, or null |
-    | `move` | the same, with `x` and `y` in metres: dragged there; `moves`: how many there were on this page |
+    | `move` | the same, with `x` and `y` in metres: dragged there, `from` [x, y]; `moves`: how many there were here |
     | `add` | `{what: the mode; x; y}`: clicked on free ground in the mode `task` or `robot` |
     | `zone` | `{corners: [[x, y], ...]}`: drawn in the mode `zone` |
     | `leave` | nothing: Escape, while nothing is being drawn |

@@ -13,9 +13,17 @@ TEAMS = {"robot": "robots", "task": "tasks"}
 
 
 def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
-    """Put a robot, a task, or the corner of a zone elsewhere; a height stays."""
+    """Put a robot, a task, or the corner of a zone elsewhere; a height stays.
+
+    A corner is known by its number and its zone's, and by where it was (`from`) where that is given: others may have
+    those numbers by now.
+    """
     if one["what"] == "zone":
-        return set_value(text, ("map", "zones", int(one["id"]), "polygon", int(one["corner"])), [x, y])
+        corner: Path = ("map", "zones", int(one["id"]), "polygon", int(one["corner"]))
+        was = one.get("from")
+        if was is not None and _at(data_of(text), corner)[:2] != list(was):
+            raise EditError(f"the corner of zone {int(one['id']) + 1} is elsewhere by now; drag it again")
+        return set_value(text, corner, [x, y])
     path = _path_of(text, TEAMS[one["what"]], str(one["id"]))
     item = _at(data_of(text), path)
     if "position" not in item:

@@ -41,7 +41,7 @@ export function listenToPointer(element, stage, emit, modeOf) {
     } else if (moved < STILL) click(one, at(event));
     else if (one && stage.movable(one)) {
       const { x, y } = stage.find(one);
-      emit("move", { ...one, ...rounded(stage, x, y) });
+      emit("move", { ...one, ...rounded(stage, x, y), from: [start.x, start.y] });
     }
   };
   element.addEventListener("pointerup", end);
