@@ -96,6 +96,17 @@ def test_compose_file():
     assert (_FOLDER / services["muster"]["build"]["context"] / services["muster"]["build"]["dockerfile"]).is_file()
 
 
+def test_tokens_are_mounted_with_their_folder():
+    """A line that is deleted is to count, however the editor writes the file."""
+    (mount,) = (v for v in yaml.safe_load(_text("compose.yaml"))["services"]["muster"]["volumes"] if v.startswith("."))
+    there, inside, mode = mount.split(":")
+    entry = yaml.safe_load(dict(_instructions())["ENTRYPOINT"])
+    tokens = Path(entry[entry.index("--tokens") + 1])
+    assert (Path(inside), mode) == (tokens.parent, "ro")
+    (made,) = re.findall(r"muster serve --new-token .* --tokens (\S+)", _text("compose.yaml"))
+    assert Path(made) == Path("deploy", there, tokens.name)
+
+
 def test_the_proxy_of_the_compose_file_is_the_one_of_the_caddyfile():
     compose, caddy = yaml.safe_load(_text("compose.yaml")), _text("Caddyfile")
     origin = compose["services"]["muster"]["command"][1]
