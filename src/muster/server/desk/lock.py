@@ -89,7 +89,7 @@ def alone_with(url: str) -> Iterator[Lock]:
 def _file_locked(file: Path) -> Iterator[None]:
     lock = file.with_name(f"{file.name}.lock")
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     except OSError as error:
         raise StoreError(f"{lock}: {error.strerror}; expected a folder that can be written") from None
