@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import logging
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from muster.mission.errors import ParameterError
+from muster.server.desk.lock import lock_of_runs
 from muster.server.runs.carrying import TOO_LATE, Carrying
 from muster.server.runs.claims import claims_of
 from muster.server.runs.feed import Feed
@@ -37,6 +35,7 @@ class Runs:
 
     def __init__(self, store: Store, settings: Settings) -> None:
         self._store, self._settings = store, settings
+        self._lock = lock_of_runs(settings)
         self._live: dict[int, Carrying] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._beginning: list[frozenset[str]] = []  # what runs that are not under way yet claim
@@ -201,7 +200,7 @@ class Runs:
         )
 
     def _carry(self, run: Run) -> Carrying:
-        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock(run.id)), self._settings.memory_mb)
+        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock), self._settings.memory_mb)
         task = self._tasks[run.id] = asyncio.create_task(carrying.go())
         task.add_done_callback(lambda _: self._forget(run.id))
         return carrying
@@ -215,11 +214,6 @@ class Runs:
     def _forget(self, run: int) -> None:
         self._live.pop(run, None)
         self._tasks.pop(run, None)
-
-    def _lock(self, run: int) -> Path:
-        """A file that is the same for every server on this machine with this database."""
-        key = hashlib.sha256(f"{self._settings.database} {run}".encode()).hexdigest()[:16]
-        return Path(tempfile.gettempdir()) / f"muster-run-{key}.lock"
 
     def _newest(self, run: Run) -> Run:
         carrying = self._live.get(run.id)
