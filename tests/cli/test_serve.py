@@ -134,7 +134,8 @@ def asked(muster, tmp_path, monkeypatch):
         (("--tls-cert", "nowhere", "--tls-key", "tokens"), "nowhere: No such file or directory"),
         (("--user-header", "X-User"), "--user-header given without --tokens FILE"),
         (("--user-header", "X-User", "--tokens", "tokens"), "--user-header X-User given without --trusted-proxy"),
-        (("--trusted-proxy", "x"), "--trusted-proxy: 'x'; expected an IP address or network"),
+        (("--trusted-proxy", "127.0.0.1"), "--trusted-proxy given without --tokens FILE"),
+        (("--trusted-proxy", "x", "--tokens", "tokens"), "--trusted-proxy: 'x'; expected an IP address or network"),
         (("--public-origin", "https://a.b"), "--public-origin given without --tokens FILE"),
         (("--public-origin", "a.b", "--tokens", "tokens"), "--public-origin: 'a.b'; expected such as https://"),
         (("--tiles", "nowhere"), "--tiles nowhere: no folder; expected one with Z/X/Y.png in it"),
@@ -158,6 +159,50 @@ def test_what_it_refuses(asked, tmp_path, words, said):
     assert code == 2
     assert "secret" not in err
     assert "Traceback" not in err
+
+
+def _people(file):
+    return [(holder.role, holder.name) for holder in read_holders(file)]
+
+
+def test_a_token_is_added_behind_what_stands_in_the_file(muster, tmp_path):
+    """Also behind a last line without an end, and in a file that is empty; the file keeps its mode."""
+    for before, expected in (
+        ("", []),
+        ("\n", []),
+        ("# the team", []),
+        ("watch wall -", [("watch", "wall")]),
+        ("watch wall -\n", [("watch", "wall")]),
+    ):
+        file = tmp_path / "tokens"
+        file.write_text(before)
+        file.chmod(0o600)
+        for name in ("anna", "bob"):
+            code, _, err = muster("serve", "--new-token", name, "--tokens", file)
+            assert (code, err) == (0, f"added to {file}: watch {name}\n")
+        assert _people(file) == [*expected, ("watch", "anna"), ("watch", "bob")]
+        assert file.read_text().startswith(before)
+        assert stat.S_IMODE(file.stat().st_mode) == 0o600
+
+
+def test_a_new_file_of_tokens_can_be_read_by_a_service(muster, tmp_path):
+    before = os.umask(0o077)
+    try:
+        code, _, _ = muster("serve", "--new-token", "anna", "--tokens", tmp_path / "tokens")
+    finally:
+        os.umask(before)
+    assert (code, _people(tmp_path / "tokens")) == (0, [("watch", "anna")])
+    assert stat.S_IMODE((tmp_path / "tokens").stat().st_mode) == 0o644
+
+
+def test_tokens_that_are_added_at_once_have_a_line_each(tmp_path):
+    (tmp_path / "tokens").write_text("watch wall -")
+    names = [f"n{k}" for k in range(4)]
+    command = [sys.executable, "-m", "muster.cli", "serve", "--tokens", str(tmp_path / "tokens"), "--new-token"]
+    adding = [subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE) for name in names]
+    for each in adding:
+        each.communicate(timeout=_PATIENCE_S)
+    assert sorted(name for _, name in _people(tmp_path / "tokens")) == sorted([*names, "wall"])
 
 
 def test_a_port_that_is_taken(asked):

@@ -43,6 +43,11 @@ def _instructions():
     return [tuple(line.split(None, 1)) for line in joined.splitlines() if line.strip()]
 
 
+def _health_check():
+    """Of the container file: a program and its words."""
+    return yaml.safe_load(dict(_instructions())["HEALTHCHECK"].partition("CMD")[2])
+
+
 @pytest.mark.parametrize("name", sorted(path.name for path in _FOLDER.iterdir()))
 def test_options_are_those_of_serve(name):
     """What the files pass to `muster serve`, in comments too, is there."""
@@ -76,8 +81,7 @@ def test_shell_of_the_container_file():
 
 
 def test_code_of_the_health_check():
-    check = yaml.safe_load(dict(_instructions())["HEALTHCHECK"].partition("CMD")[2])
-    compile(check[-1], "HEALTHCHECK", "exec")
+    compile(_health_check()[-1], "HEALTHCHECK", "exec")
 
 
 def test_compose_file():
@@ -94,6 +98,33 @@ def test_compose_file():
     words = services["muster"]["command"]
     assert {word for word in words if word.startswith("--")} <= _options_of_serve()
     assert (_FOLDER / services["muster"]["build"]["context"] / services["muster"]["build"]["dockerfile"]).is_file()
+
+
+def test_the_health_check_is_kept_by_podman():
+    """Its own format of images leaves HEALTHCHECK out."""
+    builds = re.findall(r"podman build [^`\n]*", _text("Containerfile"))
+    assert builds
+    assert all("--format docker " in build for build in builds)
+    service = yaml.safe_load(_text("compose.yaml"))["services"]["muster"]
+    assert service["healthcheck"]["test"] == ["CMD", *_health_check()]
+
+
+def test_who_is_waited_for_says_how_it_is():
+    services = yaml.safe_load(_text("compose.yaml"))["services"]
+    for name, other in (("muster", "database"), ("proxy", "muster")):
+        assert services[name]["depends_on"] == {other: {"condition": "service_healthy"}}
+        assert "healthcheck" in services[other]
+
+
+def test_tokens_are_mounted_with_their_folder():
+    """A line that is deleted is to count, however the editor writes the file."""
+    (mount,) = (v for v in yaml.safe_load(_text("compose.yaml"))["services"]["muster"]["volumes"] if v.startswith("."))
+    there, inside, mode = mount.split(":")
+    entry = yaml.safe_load(dict(_instructions())["ENTRYPOINT"])
+    tokens = Path(entry[entry.index("--tokens") + 1])
+    assert (Path(inside), mode) == (tokens.parent, "ro")
+    (made,) = re.findall(r"muster serve --new-token .* --tokens (\S+)", _text("compose.yaml"))
+    assert Path(made) == Path("deploy", there, tokens.name)
 
 
 def test_the_proxy_of_the_compose_file_is_the_one_of_the_caddyfile():

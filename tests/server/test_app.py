@@ -22,6 +22,7 @@ from tests.server.security.shielded import TestClient as Client
 from muster.mission.errors import ParameterError
 from muster.server.app import make_app
 from muster.server.settings import Settings
+from muster.server.words import ForbiddenError, Who
 
 _OPEN = {"/healthz", "/login"}
 _PEER = "10.0.0.9"
@@ -210,4 +211,16 @@ def test_who_tries_to_command_without_the_role_is_in_the_audit_log(app, client):
     assert refused.status_code == 403
     client.portal.call(app.state.shield.audit.settle)
     noted = client.get("/api/v1/actions", headers=bearer(COMMANDER)).json()
-    assert [a["data"]["path"] for a in noted if (a["who"], a["verb"]) == ("wall", "refused")] == ["/api/v1/missions"]
+    (action,) = (a for a in noted if (a["who"], a["verb"], a["address"]) == ("wall", "refused", "10.0.2.1"))
+    assert action["data"] == {"why": "wall may only watch; expected the role command", "command": "mission.create"}
+
+
+def test_so_is_who_does_so_by_a_page_which_asks_no_route(app, client):
+    wall, runs = Who("wall", "watch", "10.0.3.1"), app.state.desk.runs
+    for _ in range(3):
+        with pytest.raises(ForbiddenError):
+            client.portal.call(runs.act, wall, 1, "pause")
+    client.portal.call(app.state.shield.audit.settle)
+    noted = client.get("/api/v1/actions", headers=bearer(COMMANDER)).json()
+    (action,) = (a for a in noted if a["address"] == "10.0.3.1")  # of one address, once in a while
+    assert (action["verb"], action["data"]["command"]) == ("refused", "run.pause")

@@ -131,19 +131,26 @@ def _print_token(name: str, role: Any, file: Path | None) -> int:
     if file is None:
         click.echo(f"token: {token}\nline:  {line}")
         return DONE
-    before = read_holders(file) if file.exists() else ()
-    if any(holder.name == name for holder in before):
+    is_new = not file.exists()
+    if not is_new and any(holder.name == name for holder in read_holders(file)):
         raise ParameterError(f"{file}: {name} has a token; expected another name, or that the line is deleted first")
-    descriptor = os.open(
-        file, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644
-    )  # no secret: a service that runs as somebody else reads it
-    if not before:
-        os.fchmod(descriptor, 0o644)  # whatever the umask
-    with os.fdopen(descriptor, "a", encoding="utf-8") as stream:
-        stream.write(f"{line}\n")
+    _add_line(file, line, is_new=is_new)
     click.echo(f"token: {token}")
     click.echo(f"added to {file}: {role} {name}", err=True)
     return DONE
+
+
+def _add_line(file: Path, line: str, *, is_new: bool) -> None:
+    """Write a line of tokens behind the others: at once, so that whoever adds one meanwhile has a line of its own."""
+    descriptor = os.open(
+        file, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o644
+    )  # no secret: a service that runs as somebody else reads it
+    with os.fdopen(descriptor, "ab") as stream:
+        if is_new:
+            os.fchmod(descriptor, 0o644)  # whatever the umask
+        end = os.fstat(descriptor).st_size
+        ended = end == 0 or os.pread(descriptor, 1, end - 1) == b"\n"
+        stream.write(f"{line}\n".encode() if ended else f"\n{line}\n".encode())
 
 
 def _require_usable(settings: Settings) -> None:

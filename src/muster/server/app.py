@@ -39,7 +39,7 @@ def make_app(settings: Settings) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        async with open_desk(settings, metrics.appended) as desk:
+        async with open_desk(settings, metrics.appended, shield.audit.forbade) as desk:
             app.state.desk = desk
             try:
                 yield

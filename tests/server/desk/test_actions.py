@@ -7,9 +7,10 @@ import pytest
 
 from muster.server.desk.actions import Actions
 from muster.server.store import Store
-from muster.server.words import ConflictError, Who
+from muster.server.words import ConflictError, ForbiddenError, Who
 
 ANN = Who("ann", "command")
+BO = Who("bo", "watch")
 
 
 @pytest.fixture
@@ -59,3 +60,18 @@ def test_whoever_goes_away_leaves_a_line(store):
         assert [a.outcome for a in await actions.list()] == ["broken off: CancelledError"]
 
     asyncio.run(story())
+
+
+def test_who_may_only_watch_is_told_of(store):
+    told = []
+    actions = Actions(store, lambda *what: told.append(what))
+
+    async def story():
+        with pytest.raises(ForbiddenError):
+            async with actions.of(BO, "mission.save", {}):
+                raise AssertionError("it is done")
+        await do(actions)
+
+    asyncio.run(story())
+    assert told == [(BO, "mission.save", "bo may only watch; expected the role command")]
+    assert [action.verb for action in store.actions.list()] == ["run.pause"]

@@ -2,6 +2,7 @@
 
 import muster
 from muster.mission.yaml_writer import yaml_text
+from muster.server.settings import Settings
 from muster.server.words import Who
 
 ADA = Who("ada", "command")
@@ -13,3 +14,8 @@ def planned(store, mission, **how):
     version = store.missions.create(mission.name, yaml_text(mission), {}, {"name": mission.name}, "ada")
     plan = muster.solve(mission, **{"iterations": 100, **how})
     return store.plans.add(version.mission, version.version, "planned", "ada", plan.as_dict()).id
+
+
+def settings_of(store, **more):
+    """Of a server with this database of SQLite: files beside it are the test's own."""
+    return Settings(database=f"sqlite:///{store.database.file}", **more)

@@ -3,12 +3,11 @@
 import asyncio
 
 import pytest
-from tests.server.runs.store import ADA, planned
+from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
 from muster.server.desk.runs import Runs
 from muster.server.runs.claims import claims_of
-from muster.server.settings import Settings
 from muster.server.words import ConflictError
 
 HERE, THERE = {"r_0": "udp:127.0.0.1:14550", "r_1": "udpout:10.0.0.2:14550"}, {"r_0": "udp:0.0.0.0:14550#2"}
@@ -53,7 +52,7 @@ def test_a_second_run_of_the_same_robots_is_refused_however_soon_it_is_asked_for
     plan = planned(store, muster.load("6T-2R"))
 
     async def story():
-        runs = Runs(store, Settings(bridges=("mavlink", "ros1")))
+        runs = Runs(store, settings_of(store, bridges=("mavlink", "ros1")))
         both = (runs.start(ADA, plan, "mavlink", endpoints=ends, arm=True) for ends in (HERE, THERE))
         run, at_once = await asyncio.gather(*both, return_exceptions=True)
         assert isinstance(at_once, ConflictError)
@@ -73,7 +72,7 @@ def test_of_two_runs_that_a_server_left_the_later_one_has_the_robots(store):
     first, later = (store.runs.add(*left, {"endpoints": ends, "arm": True}, 1.0, "ada").id for ends in (HERE, THERE))
 
     async def story():
-        runs = Runs(store, Settings(bridges=("mavlink",)))
+        runs = Runs(store, settings_of(store, bridges=("mavlink",)))
         await runs.start_up()
         assert runs.under_way == 1
         with pytest.raises(ConflictError, match=f"run {later} commands robots on UDP port 14550"):

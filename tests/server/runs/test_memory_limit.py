@@ -10,14 +10,14 @@ HUNGRY = """
 import sys
 from muster.server.runs import runner
 runner.mission_of = lambda _: bytearray(3 * 2**30)
-runner.alone = lambda _: __import__("contextlib").nullcontext()
+runner.alone = lambda *_: __import__("contextlib").nullcontext()
 sys.exit(runner.main(["2048"]))
 """
 
 
 def hungry(world):
     """What a runner says whose mission takes 3 GB."""
-    begin = {"world": world, "log": [], "mission": {}, "lock": ""}
+    begin = {"run": 1, "world": world, "log": [], "mission": {}, "lock": ""}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, "-c", HUNGRY], text=True, **pipes) as runner:
         runner.stdin.write(json.dumps(begin) + "\n")

@@ -12,13 +12,12 @@ from collections import Counter
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN
 from tests.server.runs.process import gone, serving, until
-from tests.server.runs.store import ADA, planned
+from tests.server.runs.store import ADA, planned, settings_of
 
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.server.desk.runs import Runs
-from muster.server.settings import Settings
 from muster.server.store.store import Store
 
 ONCE = {"across_partition": "at-most-once"}
@@ -59,7 +58,7 @@ def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
     plan = planned(store, there)
 
     async def story():
-        runs = Runs(store, Settings(bridges=("mavlink",)))
+        runs = Runs(store, settings_of(store, bridges=("mavlink",)))
         run = await runs.start(ADA, plan, "mavlink", endpoints=sky, arm=True)
         at_work = False
         async for text in runs.feed(run.id).watch(0):

@@ -10,11 +10,10 @@ from collections import Counter
 import pytest
 from tests.bridges.ros1 import conftest as ros1
 from tests.bridges.ros2 import conftest as ros2
-from tests.server.runs.store import ADA, planned
+from tests.server.runs.store import ADA, planned, settings_of
 
 from muster.mission.model import Mission, Robot, Task
 from muster.server.desk.runs import Runs
-from muster.server.settings import Settings
 
 rospy_there, shared_master, ros = ros1.rospy_there, ros1.shared_master, ros1.ros
 loopback, start, simulated = ros2.loopback, ros2.start, ros2.simulated
@@ -35,7 +34,7 @@ def mission(kinematics):
 
 async def through(store, world, there, **settings):
     """A run that is paused at the first task's end, and whose runner is killed at the third's begin."""
-    runs = Runs(store, Settings(bridges=(world,)))
+    runs = Runs(store, settings_of(store, bridges=(world,)))
     run = (await runs.start(ADA, planned(store, there), world, **settings)).id
     paused_at, stood, killed, ended = None, [], False, 0
     async for text in runs.feed(run).watch(0):

@@ -5,7 +5,7 @@ import json
 import os
 import signal
 import sqlite3
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, closing
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
@@ -292,3 +292,48 @@ def test_who_asks_for_what_cannot_be_is_told(store):
 
     found = asyncio.run(story())
     assert (found.state, "no such" in found.remark) == ("failed", True)
+
+
+def test_what_is_refused_is_written_down(store):
+    plan, told = planned(store, muster.load("31T-6R50")), []
+
+    async def story():
+        runs = Runs(store, Settings(), lambda *what: told.append(what))
+        for start in ({"world": "mavlink"}, {"speed": float("inf")}, {"plan": 99}):
+            with pytest.raises((ParameterError, NotFoundError)):
+                await runs.start(ADA, **{"plan": plan, **start})
+        for verb, data in (("cancel", None), ("stop", None), ("event", {"robot_fails": "\ud800"})):
+            with pytest.raises((ParameterError, NotFoundError)):
+                await runs.act(ADA, 99, verb, data)
+        for call in (runs.start(EVE, plan), runs.act(EVE, 99, "pause")):
+            with pytest.raises(ForbiddenError):
+                await call
+
+    asyncio.run(story())
+    found = [(action.verb, action.outcome, action.applied_s) for action in reversed(store.actions.list())]
+    assert found == [
+        ("run.start", "world: mavlink; expected kinematic, physics", None),
+        # infinity is no JSON: it cannot be written down
+        ("run.start", "no plan 99", None),
+        ("run.cancel", "no run 99", None),
+        ("run.stop", "verb: stop; expected pause, resume, speed, cancel, event", None),
+        ("run.event", "data: half a character; expected text in UTF-8", None),
+    ]
+    assert [action.data for action in store.actions.list() if action.verb == "run.cancel"] == [{"run": 99, "data": {}}]
+    assert [(who, verb) for who, verb, _ in told] == [(EVE, "run.start"), (EVE, "run.pause")]
+
+
+def test_who_is_refused_does_not_wait_for_a_locked_database(store):
+    async def story():
+        runs = Runs(store, Settings())
+        with closing(sqlite3.connect(store.database.file, isolation_level=None)) as lock:
+            lock.execute("BEGIN IMMEDIATE")
+            begun = asyncio.get_running_loop().time()
+            with pytest.raises(NotFoundError):
+                await runs.act(ADA, 99, "cancel")
+            took = asyncio.get_running_loop().time() - begun
+        await runs.close()
+        return took
+
+    assert asyncio.run(story()) < 8  # of the database's own patience of 10 s
+    assert [action.outcome for action in store.actions.list()] == ["no run 99"]

@@ -22,6 +22,7 @@ from tests.server.security.shielded import (
 )
 
 from muster.server.security.guard import Guard
+from muster.server.security.tokens import line_of
 
 
 def test_alone_everybody_at_this_machine_may_command(tmp_path):
@@ -116,6 +117,17 @@ def test_everybody_whom_the_proxy_lets_in(tmp_path):
     with Shielded(settings).client() as client:
         assert client.get("/who", headers={"x-user": "eve\u00e9".encode("latin-1")}).json()["role"] == "watch"
         assert len(client.get("/who", headers={"x-user": "e" * 5000}).json()["name"]) <= 64
+
+
+@pytest.mark.parametrize("name", ["", " ", "*", " * "])
+def test_a_header_that_names_nobody(tmp_path, name):
+    """As of a proxy whose own login is switched off: it lets nobody in, not even as everybody else."""
+    tokens = f"command * -\n{line_of('wall', 'watch', WATCHER)}\n"
+    settings = settings_in(tmp_path, tokens=tokens, user_header="X-User", trusted_proxies=("127.0.0.1",))
+    headers = {"x-user": name}
+    with Shielded(settings).client() as client:
+        assert client.get("/who", headers=headers).status_code == 401
+        assert client.get("/who", headers=headers | bearer(WATCHER)).json()["name"] == "wall"
 
 
 def test_too_many_requests(tmp_path):

@@ -41,7 +41,6 @@ def test_a_user_of_the_proxy_has_no_token(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "tokens.txt: no token; expected a line ROLE NAME DIGEST (muster serve --new-token)"),
         ("watch anna", "tokens.txt:1: 2 words; expected ROLE NAME DIGEST"),
         ("\nwatcher anna -", "tokens.txt:2: role: 'watcher'; expected watch or command; did you mean 'watch'?"),
         ("watch an/na -", "tokens.txt:1: name: 'an/na'; expected up to 64 of letters, digits and . _ @ + -"),
@@ -54,6 +53,28 @@ def test_what_is_wrong_with_a_file(tmp_path, text, said):
     with pytest.raises(InputError) as raised:
         read_holders(_file(tmp_path, text))
     assert str(raised.value).startswith(f"{tmp_path}/{said}")
+
+
+@pytest.mark.parametrize("text", ["", "\n", "# nobody yet\n"])
+def test_a_file_without_a_token(tmp_path, text):
+    """It names nobody; a server does not begin with it."""
+    file = _file(tmp_path, text)
+    assert read_holders(file) == ()
+    with pytest.raises(InputError) as raised:
+        Tokens(file)
+    said = "no token; expected a line ROLE NAME DIGEST (muster serve --new-token)"
+    assert str(raised.value) == f"{file}: {said}"
+
+
+@pytest.mark.parametrize("text", ["", "# the team\n"])
+def test_when_the_last_line_is_deleted_nobody_is_let_in(tmp_path, caplog, text):
+    now = [0.0]
+    tokens = Tokens(_file(tmp_path, f"{TOKENS}command bob -\n"), lambda: now[0])
+    _file(tmp_path, text)
+    now[0] += 2.0
+    assert [tokens.holder(token) for token in (COMMANDER, WATCHER)] == [None, None]
+    assert tokens.named("bob") is None
+    assert (tokens.look(), caplog.messages) == ("", [f"{tmp_path}/tokens.txt: no token; nobody is let in"])
 
 
 def test_a_token_in_the_file_is_not_shown(tmp_path):

@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
 
 from muster.mission.errors import MusterError
 from muster.server.store import Store
-from muster.server.words import Action, Who
+from muster.server.words import Action, ForbiddenError, Who
 
+Refused = Callable[[Who, str, str], None]
+"""Is told who may only watch, what they wanted to do, and why they may not; floods of that are not all written down."""
 _LONGEST_OUTCOME = 500
+
+
+def unheard(who: Who, verb: str, why: str) -> None:
+    """Nobody is told."""
 
 
 class Actions:
     """The audit log."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, refused: Refused = unheard) -> None:
         self._table = store.actions
+        self._refused = refused
+
+    def require_command(self, who: Who, verb: str) -> None:
+        """Raise ForbiddenError where they may only watch."""
+        try:
+            who.require_command()
+        except ForbiddenError as error:
+            self._refused(who, verb, str(error))
+            raise
 
     async def add(self, who: Who, verb: str, data: Mapping[str, Any], run: int | None = None) -> Action:
         """Write down what somebody wants to do; its outcome is not known yet."""
@@ -26,7 +41,7 @@ class Actions:
 
     async def settle(self, action: int, outcome: str, applied_s: float | None = None) -> None:
         """Write down what came of it: `done`, or why it was refused."""
-        await asyncio.to_thread(self._table.settle, action, outcome[:_LONGEST_OUTCOME], applied_s)
+        await asyncio.to_thread(self._table.settle, action, outcome, applied_s)
 
     @asynccontextmanager
     async def of(self, who: Who, verb: str, data: Mapping[str, Any], run: int | None = None) -> AsyncIterator[Action]:
@@ -35,14 +50,14 @@ class Actions:
         Raises
         ------
         ForbiddenError
-            if they may only watch; nothing is done, nor written down, then.
+            if they may only watch; nothing is done then, nor written down here.
         """
-        who.require_command()
+        self.require_command(who, verb)
         action = await self.add(who, verb, data, run)
         try:
             yield action
         except MusterError as error:
-            await self.settle(action.id, _first_line(error))
+            await self.settle(action.id, outcome_of(error))
             raise
         except BaseException as error:  # a fault of Muster's own, or whoever asked went away
             await self.settle(action.id, f"broken off: {type(error).__name__}")
@@ -54,6 +69,7 @@ class Actions:
         return await asyncio.to_thread(self._table.list, run, limit, before)
 
 
-def _first_line(error: MusterError) -> str:
+def outcome_of(error: MusterError) -> str:
+    """Why something was refused, in a line."""
     lines = str(error).splitlines()
-    return lines[0] if lines else type(error).__name__
+    return lines[0][:_LONGEST_OUTCOME] if lines else type(error).__name__

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
 
-from muster.server.desk.actions import Actions
+from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.jobs import Jobs
 from muster.server.desk.lock import Lock, TakenError, alone_with
 from muster.server.desk.missions import Missions
@@ -45,13 +45,17 @@ class Desk:
 
 
 @asynccontextmanager
-async def open_desk(settings: Settings, appended: Callable[[float], None] = lambda _: None) -> AsyncIterator[Desk]:
+async def open_desk(
+    settings: Settings, appended: Callable[[float], None] = lambda _: None, refused: Refused = unheard
+) -> AsyncIterator[Desk]:
     """The desk; queued jobs and unfinished runs go on, and are left where they are when it closes.
 
     Parameters
     ----------
     appended
         is told how many seconds each writing of a run's log took.
+    refused
+        is told of everybody who may only watch and wanted to command.
 
     Raises
     ------
@@ -67,14 +71,14 @@ async def open_desk(settings: Settings, appended: Callable[[float], None] = lamb
         store = replace(store, log=TimedLog(store.database, appended))
         pool = Pool(workers=settings.workers, memory_mb=settings.memory_mb)
         closing.push_async_callback(pool.close)
-        runs = Runs(store, settings)
+        runs = Runs(store, settings, refused)
         desk = Desk(
-            missions=Missions(store, pool),
-            plans=Plans(store, pool),
-            jobs=Jobs(store, pool, settings),
+            missions=Missions(store, pool, refused),
+            plans=Plans(store, pool, refused),
+            jobs=Jobs(store, pool, settings, refused),
             runs=runs,
             records=Records(store, pool, runs),
-            actions=Actions(store),
+            actions=Actions(store, refused),
             settings=settings,
             store=store,
             pool=pool,

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from muster.mission.errors import MusterError
-from muster.server.desk.actions import Actions
+from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.missions import Missions
 from muster.server.desk.uploads import for_work
 from muster.server.desk.wishes import checked_wishes
@@ -29,12 +29,12 @@ _log = logging.getLogger(__name__)
 class Jobs:
     """The queue, kept in the database: what waited or was under way when the server ended goes on when it is back."""
 
-    def __init__(self, store: Store, pool: Pool, settings: Settings) -> None:
+    def __init__(self, store: Store, pool: Pool, settings: Settings, refused: Refused = unheard) -> None:
         self._store = store
         self._pool = pool
         self._settings = settings
         self._missions = Missions(store, pool)
-        self._actions = Actions(store)
+        self._actions = Actions(store, refused)
         self._queue: asyncio.Queue[int] = asyncio.Queue()
         self._queued: set[int] = set()
         self._newest: dict[int, Job] = {}  # jobs of which more is known here than in the database

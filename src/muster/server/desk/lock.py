@@ -17,14 +17,16 @@ import os
 import secrets
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, text
 from sqlalchemy.engine import URL
 
+from muster.server.settings import Settings
 from muster.server.store.failures import connection_error
-from muster.server.store.urls import database_url, shown, sqlite_file
+from muster.server.store.urls import database_url, shown, sqlite_file, whereabouts
 from muster.server.words import StoreError
 
 if TYPE_CHECKING:
@@ -89,7 +91,7 @@ def alone_with(url: str) -> Iterator[Lock]:
 def _file_locked(file: Path) -> Iterator[None]:
     lock = file.with_name(f"{file.name}.lock")
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     except OSError as error:
         raise StoreError(f"{lock}: {error.strerror}; expected a folder that can be written") from None
@@ -108,6 +110,22 @@ def _file_locked(file: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
+
+
+def lock_of_runs(settings: Settings) -> Path:
+    """In which runners of real robots lock their runs: the same file for every server that may have left one behind.
+
+    That is one with this database, however its URL is spelt, on this machine: of SQLite any that has the file, beside
+    which it is; of PostgreSQL those of this user, or with the same `XDG_DATA_HOME`. Where a server ended on another
+    machine, or as another user, nobody waits for its runners, which tell their robots to stand when it is gone.
+    """
+    address = database_url(settings.database)
+    file = sqlite_file(address)
+    if file is not None:
+        whole = file.resolve()
+        return whole.with_name(f"{whole.name}.runs.lock")
+    key = sha256(whereabouts(address).encode()).hexdigest()[:16]
+    return settings.folder / f"{key}.runs.lock"
 
 
 class _SessionLock(Lock):

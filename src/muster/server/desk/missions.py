@@ -12,7 +12,7 @@ from pathlib import PurePath
 from typing import Any, Protocol
 
 from muster.mission.errors import MissionError, ParameterError
-from muster.server.desk.actions import Actions
+from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.desk.uploads import as_text, check_sizes, findings_of, for_work, require_file_name
 from muster.server.store import Store
@@ -31,9 +31,9 @@ class Workers(Protocol):
 class Missions:
     """What can be done with missions. Those that come with Muster are listed, too, and stored once they are used."""
 
-    def __init__(self, store: Store, pool: Workers) -> None:
+    def __init__(self, store: Store, pool: Workers, refused: Refused = unheard) -> None:
         self._table = store.missions
-        self._actions = Actions(store)
+        self._actions = Actions(store, refused)
         self._pool = pool
 
     async def get(self, mission: str, version: int | None = None) -> MissionVersion:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.server.desk.actions import Actions
+from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.comparison import compared
 from muster.server.desk.missions import Missions
 from muster.server.desk.uploads import for_work
@@ -23,11 +23,11 @@ _MOST_VERDICTS = 16  # that are kept: plans never change
 class Plans:
     """What can be done with plans. What takes thought is done by workers."""
 
-    def __init__(self, store: Store, pool: Pool) -> None:
+    def __init__(self, store: Store, pool: Pool, refused: Refused = unheard) -> None:
         self._store = store
         self._pool = pool
         self._missions = Missions(store, pool)
-        self._actions = Actions(store)
+        self._actions = Actions(store, refused)
         self._allocators: list[dict[str, Any]] = []
         self._verdicts: OrderedDict[int, dict[str, Any]] = OrderedDict()
 

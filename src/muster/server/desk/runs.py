@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import logging
-import tempfile
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from muster.mission.errors import ParameterError
+from muster.mission.errors import MusterError, ParameterError
+from muster.server.desk.actions import Actions, Refused, outcome_of, unheard
+from muster.server.desk.lock import lock_of_runs
 from muster.server.runs.carrying import TOO_LATE, Carrying
 from muster.server.runs.claims import claims_of
 from muster.server.runs.feed import Feed
@@ -35,8 +34,10 @@ _log = logging.getLogger("muster.runs")
 class Runs:
     """All runs of a database, and those that are under way here."""
 
-    def __init__(self, store: Store, settings: Settings) -> None:
+    def __init__(self, store: Store, settings: Settings, refused: Refused = unheard) -> None:
         self._store, self._settings = store, settings
+        self._actions = Actions(store, refused)
+        self._lock = lock_of_runs(settings)
         self._live: dict[int, Carrying] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._beginning: list[frozenset[str]] = []  # what runs that are not under way yet claim
@@ -74,20 +75,21 @@ class Runs:
         BusyError
             if as many runs are under way as may be.
         """
-        who.require_command()
-        require_world(world, self._settings.bridges, settings)
-        speed = require_speed(speed)
-        if world not in SIMULATED and speed != 1.0:
-            raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
-        claims = claims_of(world, settings)
-        self._require_unclaimed(claims)
-        if self.under_way + len(self._beginning) >= self._settings.runs:
-            raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
-        self._beginning.append(claims)
-        try:
-            return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
-        finally:
-            self._beginning.remove(claims)
+        asked = {"plan": plan, "world": world, "speed": speed, "settings": settings}
+        async with self._written_if_refused(who, "run.start", asked):
+            require_world(world, self._settings.bridges, settings)
+            speed = require_speed(speed)
+            if world not in SIMULATED and speed != 1.0:
+                raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
+            claims = claims_of(world, settings)
+            self._require_unclaimed(claims)
+            if self.under_way + len(self._beginning) >= self._settings.runs:
+                raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
+            self._beginning.append(claims)
+            try:
+                return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
+            finally:
+                self._beginning.remove(claims)
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
         """The newest first."""
@@ -116,12 +118,12 @@ class Runs:
         ConflictError
             if the run is over.
         """
-        who.require_command()
-        said = require_action(verb, data or {})
-        state = (await self.get(run)).state
-        carrying = self._live.get(run)
-        if carrying is None or carrying.over:
-            raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
+        async with self._written_if_refused(who, f"run.{verb}", {"run": run, "data": dict(data or {})}):
+            said = require_action(verb, data or {})
+            state = (await self.get(run)).state
+            carrying = self._live.get(run)
+            if carrying is None or carrying.over:
+                raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
         action = await self._added(unkept(who, f"run.{verb}", said, run, self._moment()), who, carrying)
         if not carrying.ask(action):
             await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
@@ -186,6 +188,25 @@ class Runs:
         texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
         return tuple(text for text in texts if text)
 
+    @asynccontextmanager
+    async def _written_if_refused(self, who: Who, verb: str, asked: Mapping[str, Any]) -> AsyncIterator[None]:
+        """Around what writes itself down once it is done: here it is if it is refused; of no run, as there may be none.
+
+        Whoever asked is told why, whether the database takes it or not, however long that lasts.
+
+        Raises
+        ------
+        ForbiddenError
+            if they may only watch.
+        """
+        self._actions.require_command(who, verb)
+        try:
+            yield
+        except MusterError as error:
+            with suppress(MusterError):  # `_written` says so
+                await self._patiently(self._store.actions.refused, who, verb, asked, outcome_of(error))
+            raise
+
     def _require_unclaimed(self, claims: frozenset[str]) -> None:
         """Raise ConflictError where another run commands such robots, or begins to."""
         others = [(f"run {run}", _claims(each.run)) for run, each in self._live.items() if not each.over]
@@ -201,7 +222,7 @@ class Runs:
         )
 
     def _carry(self, run: Run) -> Carrying:
-        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock(run.id)), self._settings.memory_mb)
+        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock), self._settings.memory_mb)
         task = self._tasks[run.id] = asyncio.create_task(carrying.go())
         task.add_done_callback(lambda _: self._forget(run.id))
         return carrying
@@ -215,11 +236,6 @@ class Runs:
     def _forget(self, run: int) -> None:
         self._live.pop(run, None)
         self._tasks.pop(run, None)
-
-    def _lock(self, run: int) -> Path:
-        """A file that is the same for every server on this machine with this database."""
-        key = hashlib.sha256(f"{self._settings.database} {run}".encode()).hexdigest()[:16]
-        return Path(tempfile.gettempdir()) / f"muster-run-{key}.lock"
 
     def _newest(self, run: Run) -> Run:
         carrying = self._live.get(run.id)

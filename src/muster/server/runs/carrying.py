@@ -44,7 +44,7 @@ class Carrying:
     run
         as the database has it.
     lock
-        a file that a runner of real robots locks, so that never two command them.
+        a file in which a runner of real robots locks its run, so that never two command them.
     memory_mb
         what a runner of a simulated world may have.
     """

@@ -1,9 +1,9 @@
 """`python -m muster.server.runs.runner MEMORY_MB`: carries one plan out, for a server at the other end of its pipes.
 
 The first line says what is to be carried out: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`,
-`settings`, `speed`, and of a run that goes on `log`, `until_s`, `tracked_s`. Others are users' actions: `id`, `verb`,
-`data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before. A simulated
-world may have so much memory; what commands real robots is not ended for that.
+`settings`, `speed`, `lock`, and of a run that goes on `log`, `until_s`, `tracked_s`. Others are users' actions: `id`,
+`verb`, `data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before. A
+simulated world may have so much memory; what commands real robots is not ended for that.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -80,7 +81,7 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
     real, log = begin["world"] not in SIMULATED, begin["log"]
     with ExitStack() as stack:
         if real:
-            stack.enter_context(alone(begin["lock"]))
+            stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
         os.chdir(folder)
         mission = mission_of(begin["mission"])
         outbox.say({"type": "mission", "mission": _shown(mission)})

@@ -136,8 +136,8 @@ class Asking:
             if any(name in headers for name in _FORWARDED):
                 raise RefusalError(403, "it came through a proxy; expected a server with --tokens behind one")
             return Asker(Who("local", "command", address))
-        user = headers.get(self._user_header) if self._user_header else None
-        if user is not None and self.proxies.trust(peer):
+        user = self._user(headers)
+        if user and self.proxies.trust(peer):
             holder = self.tokens.named(user) or self.tokens.named("*")
             if holder is None:
                 return None
@@ -150,6 +150,11 @@ class Asking:
                 raise WrongTokenError
             return _held(holder, address)
         return self._of_session(headers.get("cookie", ""), address)
+
+    def _user(self, headers: Mapping[str, str]) -> str:
+        """Whom a proxy names, if it is believed; `*`, which is everybody else in the file of tokens, names nobody."""
+        user = headers.get(self._user_header, "").strip() if self._user_header else ""
+        return "" if user == "*" else user
 
     def _of_session(self, cookies: str, address: str) -> Asker | None:
         assert self.tokens is not None

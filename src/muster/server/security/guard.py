@@ -225,8 +225,6 @@ class Guard:
         await self.app(request.scope, body.receive, answer.send)
         if body.refused is not None:
             raise body.refused
-        if answer.status == 403 and asker.who.name:
-            self._shield.audit.refused(asker.who, "may only watch", answer.path, 403)
 
     async def _socket(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
         """As long as who opened it may watch; messages that come too fast are read later."""

@@ -41,15 +41,21 @@ class Audit:
         self._under_way: set[asyncio.Task[None]] = set()
 
     def refused(self, who: Who, why: str, path: str, status: int) -> None:
-        """Note a refusal."""
+        """Note that a request was refused."""
+        self._refuse(who, {"why": why, "path": path, "status": status})
+
+    def forbade(self, who: Who, verb: str, why: str) -> None:
+        """Note that somebody who may only watch wanted to command, over the API or by a page."""
+        self._refuse(who, {"why": why, "command": verb})
+
+    def _refuse(self, who: Who, data: dict[str, Any]) -> None:
         if self._of_one.take(network_of(who.address)) or self._in_all.take("") or len(self._under_way) >= _WAITING:
             self._left_out += 1
             return
-        data: dict[str, Any] = {"why": why, "path": path, "status": status}
+        log.warning("refused: %s", data["why"], extra={"address": who.address, **data})
         if self._left_out:
             data["left_out"] = self._left_out
             self._left_out = 0
-        log.warning("refused: %s", why, extra={"address": who.address, "path": path, "status": status})
         self._note(who, "refused", data)
 
     def logged_in(self, who: Who) -> None:

@@ -42,6 +42,10 @@ def _require_alone(settings: Settings) -> None:
             f"--host {settings.host} reaches beyond this machine; "
             "expected --tokens FILE (muster serve --new-token NAME makes one)"
         )
-    for name, given in (("--user-header", settings.user_header), ("--public-origin", settings.public_origins)):
+    for name, given in (
+        ("--user-header", settings.user_header),
+        ("--trusted-proxy", settings.trusted_proxies),
+        ("--public-origin", settings.public_origins),
+    ):
         if given:
             raise ParameterError(f"{name} given without --tokens FILE, which says who may command; expected both")

@@ -70,7 +70,7 @@ def line_of(name: str, role: Role, token: str) -> str:
 
 
 def read_holders(file: Path) -> tuple[Holder, ...]:
-    """Everyone whom the file names.
+    """Everyone whom the file names; an empty one names nobody.
 
     Raises
     ------
@@ -94,10 +94,6 @@ def read_holders(file: Path) -> tuple[Holder, ...]:
         if holder.name in holders:
             raise InputError([Finding(str(file), number, "name", f"{holder.name} again", "each name once")])
         holders[holder.name] = holder
-    if not holders:
-        raise InputError(
-            [Finding(str(file), None, "", "no token", "a line ROLE NAME DIGEST (muster serve --new-token)")]
-        )
     return tuple(holders.values())
 
 
@@ -127,8 +123,16 @@ class Tokens:
     file
         is read at once, and again when it has changed; while a change cannot be read what held before holds on,
         `trouble` says why, and so does the log, again and again: a token that was to be taken away still counts.
+        One whose last line was deleted can be read: nobody is let in any more.
     clock
         seconds that never go back.
+
+    Raises
+    ------
+    InputError
+        if at the beginning a line is none or there is none at all, or anybody on this machine may write the file.
+    OSError
+        if it cannot be read then.
     """
 
     def __init__(self, file: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -137,6 +141,10 @@ class Tokens:
         self._looked_at = clock()
         self._stamp = self._stamp_now()
         self._holders = read_holders(file)
+        if not self._holders:
+            raise InputError(
+                [Finding(str(file), None, "", "no token", "a line ROLE NAME DIGEST (muster serve --new-token)")]
+            )
         self._said_at = self._looked_at
         self.trouble = ""
 
@@ -171,6 +179,8 @@ class Tokens:
         try:
             self._holders = read_holders(self._file)
             self.trouble = ""
+            if not self._holders:
+                log.warning("%s: no token; nobody is let in", self._file)
         except (InputError, OSError) as error:
             self.trouble = f"the tokens are as before: {error}"
             self._say(now)

@@ -31,6 +31,11 @@ class ActionTable:
             there = None if run is None or at is None else _of_that_time(connection, run, at)
             return there or add_action(connection, who, verb, data, run, at=at)
 
+    def refused(self, who: Who, verb: str, data: Mapping[str, Any], why: str) -> Action:
+        """A new action that was refused; of no run, as that of which it was asked may not be there."""
+        with self._database.writing() as connection:
+            return add_action(connection, who, verb, data, None, why)
+
     def keep(self, action: Action) -> Action:
         """Write down late what the database refused, or took without a word, when it was asked for in a run.
 
@@ -88,6 +93,7 @@ def add_action(
     run: int | None,
     outcome: str = "",
     at: datetime | None = None,
+    applied_s: float | None = None,
 ) -> Action:
     """A new action, within a transaction."""
     row = {
@@ -98,7 +104,7 @@ def add_action(
         "verb": verb,
         "data": dict(data),
         "run": run,
-        "applied_s": 0.0 if outcome else None,
+        "applied_s": applied_s,
         "outcome": outcome,
     }
     return Action(**connection.execute(insert(actions).values(row).returning(actions)).one()._mapping)

@@ -7,8 +7,9 @@ that writes takes the lock at its beginning (BEGIN IMMEDIATE), so it cannot fail
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -142,11 +143,21 @@ def _postgresql(address: Any) -> Engine:
     return engine
 
 
-def make_folder(file: Path) -> None:
-    """The folder of a new database, for this user alone."""
+def make_file(file: Path) -> None:
+    """A new database with its folder, for this user alone; what is there keeps its mode.
+
+    SQLite gives what it writes beside a file the mode of that file.
+
+    Raises
+    ------
+    StoreError
+        if the folder cannot be made.
+    """
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(
             f"{file.parent}: {error.strerror or error}; expected a folder that can be made for the database"
         ) from None
+    with suppress(OSError):  # SQLite cannot open it either, and says why
+        os.close(os.open(file, os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC, 0o600))

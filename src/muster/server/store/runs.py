@@ -50,7 +50,7 @@ class RunTable:
             run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
             if by is not None:
                 said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
-                add_action(connection, by, "run.start", said, run.id, "done")
+                add_action(connection, by, "run.start", said, run.id, "done", applied_s=0.0)
             return run
 
     def get(self, run: int) -> Run:

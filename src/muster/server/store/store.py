@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sqlalchemy import text
 
 from muster.server.store.actions import ActionTable
-from muster.server.store.database import Database, make_folder
+from muster.server.store.database import Database, make_file
 from muster.server.store.jobs import JobTable
 from muster.server.store.log import LogTable
 from muster.server.store.migrate import migrate, revision
@@ -35,7 +35,9 @@ class Store:
 
     @classmethod
     def open(cls, url: str) -> Store:
-        """Open a database; make it, with its folder, or bring it to the newest tables where that is due.
+        """Open a database; make it, or bring it to the newest tables where that is due.
+
+        A new file of SQLite, and its folder, are for this user alone.
 
         Parameters
         ----------
@@ -51,7 +53,7 @@ class Store:
         """
         database = Database(url)
         if database.file is not None:
-            make_folder(database.file)
+            make_file(database.file)
         try:
             migrate(database)
         except BaseException:

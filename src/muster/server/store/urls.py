@@ -9,6 +9,7 @@ from sqlalchemy.exc import ArgumentError
 
 from muster.mission.errors import ParameterError
 
+_PORT = 5432  # of PostgreSQL, where none is given
 _EXPECTED = "expected sqlite:///FILE or postgresql://USER@HOST/NAME"
 
 
@@ -54,6 +55,15 @@ def shown(url: URL) -> str:
     """What messages call the database: its file, or its name and server."""
     if url.get_backend_name() == "sqlite":
         return str(url.database)
+    return f"PostgreSQL {url.database or ''} at {_host(url)}{'' if url.port is None else f':{url.port}'}"
+
+
+def whereabouts(url: URL) -> str:
+    """Server and name of a database of PostgreSQL, the same for all spellings of its URL that can be told from it."""
+    port = url.port or url.query.get("port") or _PORT
+    return f"{_host(url).lower()}:{port}/{url.database or url.username or ''}"  # which has the user's name by default
+
+
+def _host(url: URL) -> str:
     host = url.host or url.query.get("host") or "localhost"
-    server = host if isinstance(host, str) else ", ".join(host)
-    return f"PostgreSQL {url.database or ''} at {server}{'' if url.port is None else f':{url.port}'}"
+    return host if isinstance(host, str) else ", ".join(host)
