@@ -263,7 +263,7 @@ def test_a_runner_is_started_again_while_the_database_is_gone(store, monkeypatch
 
 
 def test_who_asks_for_what_cannot_be_is_told(store):
-    plan = planned(store, muster.load("31T-6R50"))
+    plan = planned(store, muster.load("yard"))  # in space, which only the runner finds out
 
     async def story():
         async with opened(store, runs=1) as runs:
@@ -276,11 +276,12 @@ def test_who_asks_for_what_cannot_be_is_told(store):
                 ({"speed": 0}, "speed: 0; expected a number above 0"),
                 ({"colour": "red"}, "colour: no setting"),
                 ({"dt_s": 7}, "dt_s: 7; expected"),
+                ({"avoidance": "no such"}, "avoidance: no such; expected orca"),
             )
             for how, why in wrong:
                 with pytest.raises(ParameterError, match=why):
                     await runs.start(ADA, plan, **how)
-            run = (await runs.start(ADA, plan, speed=1.0, avoidance="no such")).id
+            run = (await runs.start(ADA, plan, speed=1.0, avoidance="rvo")).id
             with pytest.raises(BusyError, match="expected fewer than 1"):
                 await runs.start(ADA, plan)
             await gone(runs, run)
@@ -291,7 +292,7 @@ def test_who_asks_for_what_cannot_be_is_told(store):
             return await runs.get(run)
 
     found = asyncio.run(story())
-    assert (found.state, "no such" in found.remark) == ("failed", True)
+    assert (found.state, "the mission is in space" in found.remark) == ("failed", True)
 
 
 def test_what_is_refused_is_written_down(store):
