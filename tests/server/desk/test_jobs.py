@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from sqlalchemy import delete
 from tests.server.desk.opened import TINY, WATCHER, WHO, opened, over, told
 
 from muster.mission.errors import ParameterError
+from muster.server.store.schema import plans
 from muster.server.words import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.server.work import WorkerDied
 
@@ -79,6 +81,20 @@ def test_a_plan_to_go_on_from(in_desk):
         ]
         with pytest.raises(NotFoundError):
             await desk.jobs.ask_plan(WHO, "tiny", start=99)
+
+    in_desk(story)
+
+
+def test_a_job_whose_start_is_gone_fails_with_a_line(in_desk):
+    async def story(desk):
+        first = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].result["plan"]
+        holds = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+        waits = await desk.jobs.ask_plan(WHO, "tiny", start=first, **SHORT)
+        with desk.store.database.writing() as connection:
+            connection.execute(delete(plans).where(plans.c.id == first))
+        await desk.jobs.cancel(WHO, holds.id)
+        last = (await over(desk.jobs, waits))[-1]
+        assert (last.state, last.error) == ("failed", f"no plan {first}")
 
     in_desk(story)
 

@@ -29,6 +29,7 @@ from muster.server.store.schema import (
 from muster.server.words import OVER
 
 _OVER_JOBS = ("done", "failed", "cancelled")
+_START = jobs.c.arguments["start"].as_integer()  # the plan that a job goes on from
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,7 @@ class _Old:
             plans.c.at < before,
             exists(select(later.c.id).where(later.c.mission == plans.c.mission, later.c.version > plans.c.version)),
             ~exists(select(runs.c.id).where(runs.c.plan == plans.c.id, not_(self.runs))),
+            plans.c.id.not_in(select(_START).where(_START.is_not(None), not_(self.jobs))),
         )
         self.mission_versions = and_(
             mission_versions.c.at < before,
