@@ -111,6 +111,8 @@ def test_a_job_is_followed_and_cancelled(http, yard):
     job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()
     assert job["state"] in ("queued", "running")
     assert job["id"] in [listed["id"] for listed in http.get("/jobs").json()]
+    assert [listed["id"] for listed in http.get("/jobs", params={"mission": yard, "limit": 1}).json()] == [job["id"]]
+    assert http.get("/jobs", params={"mission": "31T-6R50"}).json() == []
     assert http.delete(f"/jobs/{job['id']}").json()["state"] == "cancelled"
     assert http.delete(f"/jobs/{job['id']}").status_code == 409
     assert [listed["id"] for listed in http.get("/jobs", params={"state": "running"}).json()] == []

@@ -112,6 +112,20 @@ def test_two_hundred_requests_are_queued_and_done_in_order(in_desk):
     in_desk(story)
 
 
+def test_a_job_is_found_behind_many_others(in_desk):
+    async def story(desk):
+        running = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+        seen = await under_way(desk, running)
+        desk.store.missions.create("other", TINY, {}, {"name": "other"}, "ann")
+        for _ in range(210):
+            desk.store.jobs.add("plan", "other", 1, {}, "ann")
+        assert [(job.id, job.progress is None) for job in await desk.jobs.list("running")] == [(seen.id, False)]
+        assert [job.id for job in await desk.jobs.list(mission="tiny")] == [seen.id]
+        assert [len(await desk.jobs.list(limit=limit)) for limit in (1000, 10)] == [211, 10]
+
+    in_desk(story)
+
+
 def test_the_queue_has_an_end(in_desk):
     async def story(desk):
         running = await desk.jobs.ask_plan(WHO, "tiny", **LONG)

@@ -86,6 +86,16 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
     assert set(log) == {"log.json"}
 
 
+def test_a_record_is_found_behind_many_runs(store):
+    plan = planned(store, muster.load("6T-2R"))
+    first, *others = (store.runs.add("6T-2R", 1, plan, "kinematic", {}, 1.0, "ada").id for _ in range(3))
+    store.runs.set(first, state="ended")
+    records = Records(store, None, Runs(store, Settings()))
+    assert [run.id for run in asyncio.run(records.list(limit=1))] == [first]
+    store.runs.set(others[0], state="failed")
+    assert [run.id for run in asyncio.run(records.list())] == [others[0], first]
+
+
 def test_a_runner_that_is_killed_goes_on_where_it_was(store):
     plan = planned(store, muster.load("31T-6R50"))
 

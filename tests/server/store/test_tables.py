@@ -195,6 +195,10 @@ def test_jobs_go_on_after_a_restart(filled):
     ]
     assert [job.id for job in jobs.list("cancelled")] == [ids[2]]
     assert [job.id for job in jobs.list(limit=2)] == [ids[3], ids[2]]
+    filled.store.missions.create("Other", "", {}, SUMMARY, "ann")
+    other = jobs.add("plan", "Other", 1, {}, "ann").id
+    assert [job.id for job in jobs.list(mission="Other")] == [other]
+    assert [job.id for job in jobs.list("queued", "Yard", 1)] == [ids[3]]
 
 
 def test_a_run_from_beginning_to_end(filled):
@@ -204,6 +208,7 @@ def test_a_run_from_beginning_to_end(filled):
     assert isinstance(run.time_s, float)
     assert runs.set(run.id, state="running", speed=2.0, resumed=1).speed == 2.0
     assert [r.id for r in runs.unfinished()] == [run.id]
+    assert runs.list(over=True) == []
     ended = runs.set(run.id, state="ended")
     assert ended.ended_at >= run.at
     assert runs.unfinished() == []
@@ -214,7 +219,7 @@ def test_a_run_from_beginning_to_end(filled):
     assert runs.set(run.id, ended_at=at).ended_at == at
     with pytest.raises(TypeError, match="plan"):
         runs.set(run.id, plan=2)
-    assert runs.list() == [runs.get(run.id)]
+    assert runs.list() == runs.list(over=True) == [runs.get(run.id)]
 
 
 def test_times_of_other_zones_are_the_same_moment(filled):

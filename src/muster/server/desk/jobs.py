@@ -58,9 +58,10 @@ class Jobs:
             task.cancel()
         await asyncio.gather(*self._hands, *self._tasks, return_exceptions=True)
 
-    async def list(self) -> list[Job]:
-        """The newest jobs, the newest first."""
-        return [self._newest.get(job.id, job) for job in await asyncio.to_thread(self._store.jobs.list)]
+    async def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
+        """Jobs, of one state and one mission or of all, the newest first."""
+        found = await asyncio.to_thread(self._store.jobs.list, state, mission, limit)
+        return [self._newest.get(job.id, job) for job in found]
 
     async def get(self, job: int) -> Job:
         """One job, with its newest progress.

@@ -30,7 +30,7 @@ class Records:
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
         """Runs that are over, the newest first."""
-        return [run for run in await self._runs.list(limit) if run.state in OVER]
+        return await self._runs.over(limit)
 
     async def page(self, run: int) -> str:
         """The page that `muster replay --html` writes.
