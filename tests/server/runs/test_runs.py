@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager, closing
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import create_engine, event
@@ -84,6 +85,18 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
     assert mcap.startswith(b"\x89MCAP0")
     assert set(tables) == {"tracks.csv", "events.csv"}
     assert set(log) == {"log.json"}
+
+
+def test_a_record_that_is_refused_reads_nothing(store, monkeypatch):
+    run = store.runs.add("6T-2R", 1, planned(store, muster.load("6T-2R")), "kinematic", {}, 1.0, "ada").id
+    store.runs.set(run, state="ended")
+    monkeypatch.setattr(store.log, "entries", lambda *_: pytest.fail("a log is read"))
+
+    async def busy(*_, **__):
+        raise BusyError("64 requests wait")
+
+    with pytest.raises(BusyError):
+        asyncio.run(Records(store, SimpleNamespace(run=busy), Runs(store, Settings())).page(run))
 
 
 def test_a_record_is_found_behind_many_runs(store):

@@ -5,9 +5,9 @@ A record is made from the log by a worker when somebody asks for it: nothing is 
 
 from __future__ import annotations
 
-import asyncio
 import base64
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
@@ -78,7 +78,7 @@ class Records:
         if state not in OVER:
             raise ConflictError(f"run {run} is {state}; expected one that is over")
         await self._runs.kept(run)
-        return await self._pool.run("record", await asyncio.to_thread(self._given, run, to))
+        return await self._pool.run("record", partial(self._given, run, to))
 
     def _given(self, number: int, to: str) -> dict[str, Any]:
         """What the worker needs, from the database."""
