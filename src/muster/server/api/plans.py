@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response
 from pydantic import Field
 
-from muster.server.api.answers import a_file, errors, file_answer, parcel, with_location
+from muster.server.api.answers import a_file, errors, file_answer, parcel_answer, with_location
 from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.checked import (
@@ -127,7 +127,7 @@ async def export(
     """As `muster export` writes it."""
     options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
     files = await desk.plans.export(plan, to, {name: value for name, value in options.items() if value is not None})
-    return parcel(files, f"plan-{plan}")
+    return await parcel_answer(files, f"plan-{plan}")
 
 
 @router.get(
