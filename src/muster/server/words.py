@@ -84,6 +84,17 @@ class MissionVersion:
 
 
 @dataclass(frozen=True, kw_only=True)
+class VersionEntry:
+    """A version of a mission in the list of them: who saved it, and when."""
+
+    mission: str
+    version: int
+    author: str
+    at: datetime | None
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlanEntry:
     """A plan of one version of a mission; `version` counts the plans of the mission; `plan` is as in a plan file."""
 

@@ -97,7 +97,9 @@ def test_versions_follow_each_other(filled):
     assert (second.version, dict(second.files)) == (2, {})
     with pytest.raises(ConflictError, match="newest version is 2, yours was made from 1"):
         missions.save("Yard", "c", {}, SUMMARY, "ann", "", 1)
-    assert [v.version for v in missions.versions("Yard")] == [2, 1]
+    assert [(v.version, v.author, v.note) for v in missions.versions("Yard")] == [(2, "bo", "one more"), (1, "ann", "")]
+    assert [v.version for v in missions.versions("Yard", limit=1)] == [2]
+    assert [[v.version for v in missions.versions("Yard", before=k)] for k in (2, 1)] == [[1], []]
     assert dict(missions.get("Yard", 1).files) == {"map.png": b"\x00\x89"}
     entry = missions.entry("Yard")
     assert (entry.version, entry.tasks, entry.changed_at) == (2, 4, second.at)
@@ -160,6 +162,8 @@ def test_plans_are_numbered_within_their_mission_and_listed_without_their_bulk(f
     first = filled.store.plans.add(other, 1, "planned", "bo", plan)
     assert (second.version, first.version) == (2, 1)
     assert [p.id for p in filled.store.plans.list()] == [first.id, second.id, filled.plan]
+    assert [p.id for p in filled.store.plans.list(limit=1)] == [first.id]
+    assert [p.id for p in filled.store.plans.list("Yard", limit=1, before=second.id)] == [filled.plan]
     assert [p.plan for p in filled.store.plans.list("Yard")] == [{"weight": 1.0, "seed": 3}, {"weight": 2.5}]
     assert second.plan == plan
 

@@ -49,6 +49,7 @@ After = Annotated[int, Query(ge=0, le=LARGEST, description="Only what has a grea
 MissionQuery = Annotated[str | None, Query(max_length=200, pattern=_ID, description="Only those of this mission.")]
 RunQuery = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only those of this run.")]
 Before = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only what has a smaller `id`.")]
+BeforeVersion = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only what has a smaller `version`.")]
 TaskQuery = Annotated[
     str | None, Query(min_length=1, max_length=200, pattern=_WITHOUT_CONTROLS, description="The id of a task.")
 ]

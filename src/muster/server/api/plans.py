@@ -12,9 +12,11 @@ from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.checked import (
     LARGEST,
+    Before,
     Body,
     Count,
     Ignored,
+    Limit,
     MissionId,
     MissionQuery,
     Name,
@@ -84,9 +86,11 @@ async def upload(
 
 
 @router.get("/plans", summary="List plans")
-async def plans(desk: TheDesk, mission: MissionQuery = None) -> list[PlanEntry]:
-    """Without their routes, histories and books; those of one mission, or of all."""
-    return list(await desk.plans.list(mission))
+async def plans(
+    desk: TheDesk, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
+) -> list[PlanEntry]:
+    """Newest first, without their routes, histories and books; ask again with `before` the last `id` for more."""
+    return list(await desk.plans.list(mission, limit, before))
 
 
 @router.get("/plans/{plan}", summary="Read a plan")

@@ -215,9 +215,10 @@ class Plans:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
-    def list(self, mission: str | None = None) -> Sequence[PlanEntry]:
-        """Without their routes; of one mission, or of all."""
-        return [read(PlanEntry, entry) for entry in self._connection.get("/plans", mission=mission)]
+    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> Sequence[PlanEntry]:
+        """Without their routes; of one mission, or of all; newest first, with ids below `before`, if given."""
+        found = self._connection.get("/plans", mission=mission, limit=limit, before=before)
+        return [read(PlanEntry, entry) for entry in found]
 
     def get(self, plan: int) -> PlanEntry:
         return read(PlanEntry, self._connection.get(f"/plans/{plan}"))

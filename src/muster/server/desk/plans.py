@@ -128,9 +128,12 @@ class Plans:
             raise ParameterError(f"plan {b} is of {second.mission}; expected one of {first.mission}, as plan {a}")
         return compared(first, await self.verdict(a), second, await self.verdict(b))
 
-    async def list(self, mission: str | None = None) -> list[PlanEntry]:
-        """The plans of a mission, or all, the newest first, without routes, histories and books."""
-        return await asyncio.to_thread(self._store.plans.list, mission)
+    async def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+        """Plans, of one mission or all, the newest first, without routes, histories and books.
+
+        With ids below `before`, if given.
+        """
+        return await asyncio.to_thread(self._store.plans.list, mission, limit, before)
 
     async def _asked(self, what: str, plan: int, /, **arguments: Any) -> dict[str, Any]:
         """What a worker says of a plan and its mission."""
