@@ -51,7 +51,7 @@ async def stop(desk: TheDesk, who: Asker, job: JobId) -> Job:
 
 
 @router.websocket("/{job}/stream")
-async def stream(socket: WebSocket, desk: TheDesk, who: Asker, job: JobId) -> None:
+async def stream(socket: WebSocket, desk: TheDesk, job: JobId) -> None:
     """Each change of a job as `{"type": "job", ...}`, beginning with how it is, until it is over."""
     await tell(socket, _changes(desk.jobs, job))
 

@@ -23,20 +23,6 @@ class MissionTable:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def entry(self, mission: str) -> MissionEntry:
-        """What the list has of one mission.
-
-        Raises
-        ------
-        NotFoundError
-            if there is none, or it was deleted.
-        """
-        with self._database.reading() as connection:
-            row = connection.execute(_ENTRIES.where(missions.c.id == mission, ~missions.c.hidden)).one_or_none()
-        if row is None:
-            raise NotFoundError(f"no mission {mission}")
-        return _entry(row)
-
     def get(self, mission: str, version: int | None = None) -> MissionVersion:
         """One version with its files; without a number the newest. A deleted mission's versions are there by number.
 
