@@ -20,6 +20,8 @@ World = Literal["kinematic", "physics", "ros1", "ros2", "mavlink"]
 
 OVER = ("ended", "cancelled", "failed")
 """States of a run after which nothing more happens in it."""
+JOB_OVER = ("done", "failed", "cancelled")
+"""States of a job after which nothing more happens in it."""
 
 
 class NotFoundError(MusterError):

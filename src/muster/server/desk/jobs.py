@@ -16,10 +16,9 @@ from muster.server.desk.uploads import for_work
 from muster.server.desk.wishes import checked_wishes
 from muster.server.settings import Settings
 from muster.server.store import Store
-from muster.server.words import BusyError, ConflictError, Job, JobState, NotFoundError, StoreError, Who
+from muster.server.words import JOB_OVER, BusyError, ConflictError, Job, JobState, NotFoundError, StoreError, Who
 from muster.server.work import Halt, Pool, WorkerDied, WorkError
 
-_OVER = ("done", "failed", "cancelled")
 _AGAIN_S = 2.0  # until a database that refuses is asked again
 _TOLD_EVERY_S = 0.1  # followers, at most
 
@@ -163,7 +162,7 @@ class Jobs:
                 changed.clear()
                 newest = await self.get(job)
                 yield newest
-                if newest.state in _OVER:
+                if newest.state in JOB_OVER:
                     return
                 await asyncio.sleep(_TOLD_EVERY_S)
                 await changed.wait()
