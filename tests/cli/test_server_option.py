@@ -55,6 +55,14 @@ def test_a_mission_is_kept_once_and_a_changed_one_as_its_next_version(folder, mu
     assert said() == "the server has it as mission kept, version 2"
 
 
+def test_plans_and_jobs_are_listed_from_the_newest_on(url):
+    with Client(url) as control:
+        first, second = (control.plan("6T-2R", iterations=1).wait().id for _ in range(2))
+        assert [plan.id for plan in control.plans.list("6T-2R", limit=1)] == [second]
+        assert [plan.id for plan in control.plans.list("6T-2R", limit=1, before=second)] == [first]
+        assert [job.result for job in control.jobs("done", "6T-2R", limit=1)] == [{"plan": second, "why": ""}]
+
+
 def test_a_shipped_mission_is_planned_as_it_is(muster, url):
     assert muster("solve", "6T-2R", "--iterations", 1, "--server", url) == muster("solve", "6T-2R", "--iterations", 1)
     with Client(url) as control:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from muster.cli.tables import counted, number, print_table, sequence
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, gap
 from muster.verification import Verdict
 
 OPTIMAL = 1e-6
@@ -39,10 +39,10 @@ def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
     value = verdict.value()
     if bound is None or value is None:
         return
-    gap = (value - bound) / value if value > 0 else 0.0
+    off = gap(value, bound)
     unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
-    said = "the plan is optimal" if abs(gap) < OPTIMAL else f"gap {100 * gap:.2f} %"
-    if gap <= -OPTIMAL:
+    said = "the plan is optimal" if abs(off) < OPTIMAL else f"gap {100 * off:.2f} %"
+    if off <= -OPTIMAL:
         said = "above the objective"
     click.echo(f"lower bound       {number(bound, unit)}  ({said}{note})")
 

@@ -106,6 +106,11 @@ class Plan:
             raise OSError(error.errno, error.strerror, str(path)) from None
 
 
+def gap(value: float, bound: float) -> float:
+    """How far a plan with that objective may be from the best one at most, as a share: (value - bound) / value."""
+    return (value - bound) / value if value > 0 else 0.0
+
+
 def json_text(data: Mapping[str, Any]) -> str:
     """A mapping as JSON: a line for each key, and for each item of a list of records."""
     lines = []

@@ -96,7 +96,7 @@ def _of_database(found: Figures) -> Iterator[Metric]:
     yield _by("muster_runs", "Runs by state.", "state", {**dict.fromkeys(get_args(RunState), 0), **found.runs})
     means = (
         ("muster_job_seconds_mean", "How long the newest 20 jobs took.", found.job_s),
-        ("muster_plan_gap_mean", "(objective - bound) / objective of the newest 20 plans.", found.gap),
+        ("muster_plan_gap_mean", "(objective - bound) / objective of the newest 20 plans made here.", found.gap),
         ("muster_run_flown_mean", "Measured objective over the planned one, of the newest 20 runs.", found.flown),
     )
     for name, what, value in means:

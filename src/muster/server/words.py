@@ -20,6 +20,8 @@ World = Literal["kinematic", "physics", "ros1", "ros2", "mavlink"]
 
 OVER = ("ended", "cancelled", "failed")
 """States of a run after which nothing more happens in it."""
+JOB_OVER = ("done", "failed", "cancelled")
+"""States of a job after which nothing more happens in it."""
 
 
 class NotFoundError(MusterError):
@@ -81,6 +83,17 @@ class MissionVersion:
     at: datetime | None
     note: str = ""
     files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class VersionEntry:
+    """A version of a mission in the list of them: who saved it, and when."""
+
+    mission: str
+    version: int
+    author: str
+    at: datetime | None
+    note: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,11 @@ def test_missions_are_listed_made_changed_and_deleted(http):
     changed = http.put(where, json={"text": MISSION + "# more\n", "base_version": 1, "note": "a comment"})
     assert (changed.status_code, changed.json()["version"], changed.headers["etag"]) == (200, 2, '"2"')
     assert http.get(f"{where}/versions/1").json()["text"] == MISSION
-    assert [version["version"] for version in http.get(f"{where}/versions").json()] == [2, 1]
+    listed = http.get(f"{where}/versions").json()
+    assert [(version["version"], version["note"]) for version in listed] == [(2, "a comment"), (1, "")]
+    assert "text" not in listed[0]
+    assert http.get(f"{where}/versions", params={"limit": 1}).json() == listed[:1]
+    assert http.get(f"{where}/versions", params={"before": 2}).json() == listed[1:]
     assert made.json()["mission"] in [entry["id"] for entry in http.get("/missions").json()]
     assert http.delete(where).status_code == 204
     assert made.json()["mission"] not in [entry["id"] for entry in http.get("/missions").json()]
@@ -68,6 +72,8 @@ def test_a_plan_is_made_judged_explained_and_drawn(http, yard, plan):
     entry = http.get(f"/plans/{plan}").json()
     assert entry["plan"]["schema"] == "muster-plan/1"
     assert plan in [listed["id"] for listed in http.get("/plans", params={"mission": yard}).json()]
+    assert len(http.get("/plans", params={"limit": 1}).json()) == 1
+    assert http.get("/plans", params={"mission": yard, "before": plan}).json() == []
     verdict = http.get(f"/plans/{plan}/verdict").json()
     assert (verdict["valid"], verdict["tasks_completed"]) == (True, 3)
     assert [item["task"] for item in http.get(f"/plans/{plan}/explain").json()["unassigned"]] == ["lift"]
@@ -111,6 +117,8 @@ def test_a_job_is_followed_and_cancelled(http, yard):
     job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()
     assert job["state"] in ("queued", "running")
     assert job["id"] in [listed["id"] for listed in http.get("/jobs").json()]
+    assert [listed["id"] for listed in http.get("/jobs", params={"mission": yard, "limit": 1}).json()] == [job["id"]]
+    assert http.get("/jobs", params={"mission": "31T-6R50"}).json() == []
     assert http.delete(f"/jobs/{job['id']}").json()["state"] == "cancelled"
     assert http.delete(f"/jobs/{job['id']}").status_code == 409
     assert [listed["id"] for listed in http.get("/jobs", params={"state": "running"}).json()] == []

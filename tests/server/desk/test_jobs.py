@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from sqlalchemy import delete
 from tests.server.desk.opened import TINY, WATCHER, WHO, opened, over, told
 
 from muster.mission.errors import ParameterError
+from muster.server.store.schema import plans
 from muster.server.words import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.server.work import WorkerDied
 
@@ -83,6 +85,20 @@ def test_a_plan_to_go_on_from(in_desk):
     in_desk(story)
 
 
+def test_a_job_whose_start_is_gone_fails_with_a_line(in_desk):
+    async def story(desk):
+        first = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].result["plan"]
+        holds = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+        waits = await desk.jobs.ask_plan(WHO, "tiny", start=first, **SHORT)
+        with desk.store.database.writing() as connection:
+            connection.execute(delete(plans).where(plans.c.id == first))
+        await desk.jobs.cancel(WHO, holds.id)
+        last = (await over(desk.jobs, waits))[-1]
+        assert (last.state, last.error) == ("failed", f"no plan {first}")
+
+    in_desk(story)
+
+
 def test_two_hundred_requests_are_queued_and_done_in_order(in_desk):
     async def story(desk):
         asked = [await desk.jobs.ask_plan(WHO, "tiny", allocator="greedy") for _ in range(200)]
@@ -92,6 +108,20 @@ def test_two_hundred_requests_are_queued_and_done_in_order(in_desk):
         ends = [job.ended_at for job in done]
         assert ends == sorted(ends, reverse=True)
         assert len({job.result["plan"] for job in done}) == 200
+
+    in_desk(story)
+
+
+def test_a_job_is_found_behind_many_others(in_desk):
+    async def story(desk):
+        running = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+        seen = await under_way(desk, running)
+        desk.store.missions.create("other", TINY, {}, {"name": "other"}, "ann")
+        for _ in range(210):
+            desk.store.jobs.add("plan", "other", 1, {}, "ann")
+        assert [(job.id, job.progress is None) for job in await desk.jobs.list("running")] == [(seen.id, False)]
+        assert [job.id for job in await desk.jobs.list(mission="tiny")] == [seen.id]
+        assert [len(await desk.jobs.list(limit=limit)) for limit in (1000, 10)] == [211, 10]
 
     in_desk(story)
 

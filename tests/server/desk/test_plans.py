@@ -11,7 +11,7 @@ from tests.server.desk.opened import TINY, WATCHER, WHO, told
 import muster
 from muster.cli.main import run as command
 from muster.mission.errors import ParameterError
-from muster.server.words import ForbiddenError, NotFoundError
+from muster.server.words import BusyError, ForbiddenError, NotFoundError
 from muster.server.work import Pool, WorkError
 
 ROUTES = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["a", "b"]}, {"robot": "r_1", "tasks": []}]}
@@ -108,6 +108,20 @@ def test_explanations_are_those_of_the_command(in_desk, files, capsys, task):
     assert tables
     assert words
     assert all(line.endswith(".") for line in words)
+
+
+@pytest.mark.parametrize("ask", ["verdict", "explain"])
+def test_what_is_refused_reads_nothing(in_desk, monkeypatch, ask):
+    async def story(desk):
+        async def busy(*_, **__):
+            raise BusyError("64 requests wait")
+
+        monkeypatch.setattr(desk.pool, "run", busy)
+        monkeypatch.setattr(desk.store.plans, "get", lambda plan: pytest.fail("a plan is read"))
+        with pytest.raises(BusyError):
+            await getattr(desk.plans, ask)(1)
+
+    in_desk(story)
 
 
 def test_explanations_in_words(in_desk):

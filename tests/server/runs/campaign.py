@@ -82,10 +82,10 @@ class Campaign:
                 self._server = Serving(self.database, log=self._log)
         self._leave(self._met(run, watcher), hurry=True)
         until(lambda: self._over(run), WITHIN_S)
-        watcher.leave(self._store.log.last_seq(run))
+        watcher.leave(len(self._store.log.entries(run)))
         judge(self._store, run, watcher.seen)
         self.counted["runs"] += 1
-        self.counted["entries"] += self._store.log.last_seq(run)
+        self.counted["entries"] += len(self._store.log.entries(run))
         self.counted["actions"] += len(self._store.actions.list(run=run, limit=10_000))
 
     def _met(self, run, watcher):

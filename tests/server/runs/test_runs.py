@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager, closing
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import create_engine, event
@@ -86,6 +87,28 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
     assert set(log) == {"log.json"}
 
 
+def test_a_record_that_is_refused_reads_nothing(store, monkeypatch):
+    run = store.runs.add("6T-2R", 1, planned(store, muster.load("6T-2R")), "kinematic", {}, 1.0, "ada").id
+    store.runs.set(run, state="ended")
+    monkeypatch.setattr(store.log, "entries", lambda *_: pytest.fail("a log is read"))
+
+    async def busy(*_, **__):
+        raise BusyError("64 requests wait")
+
+    with pytest.raises(BusyError):
+        asyncio.run(Records(store, SimpleNamespace(run=busy), Runs(store, Settings())).page(run))
+
+
+def test_a_record_is_found_behind_many_runs(store):
+    plan = planned(store, muster.load("6T-2R"))
+    first, *others = (store.runs.add("6T-2R", 1, plan, "kinematic", {}, 1.0, "ada").id for _ in range(3))
+    store.runs.set(first, state="ended")
+    records = Records(store, None, Runs(store, Settings()))
+    assert [run.id for run in asyncio.run(records.list(limit=1))] == [first]
+    store.runs.set(others[0], state="failed")
+    assert [run.id for run in asyncio.run(records.list())] == [others[0], first]
+
+
 def test_a_runner_that_is_killed_goes_on_where_it_was(store):
     plan = planned(store, muster.load("31T-6R50"))
 
@@ -158,7 +181,7 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
             action = await runs.act(ADA, run, "speed", {"speed": None})
             await runs.act(ADA, run, "resume")
             messages = await watched(runs, run)
-            during = await runs.get(run), len(await runs.entries(run)), store.log.last_seq(run)
+            during = await runs.get(run), len(await runs.entries(run)), len(store.log.entries(run))
             with pytest.raises(StoreError, match="is not kept yet"):
                 await Records(store, None, runs).mcap(run)
             pragma.statements = WORKS

@@ -55,7 +55,7 @@ def test_plain_data_comes_back_as_it_was(filled, data, arguments):
     assert store.jobs.get(job.id).arguments == arguments
     action = store.actions.add(Who("bo", "command", "::1"), "run.event", data, filled.run)
     assert store.actions.list(filled.run, limit=1) == [action]
-    seq = store.log.last_seq(filled.run) + 1
+    seq = len(store.log.entries(filled.run)) + 1
     entry = filled.entry(seq, **{f"k{key}": value for key, value in data.items()})
     store.log.append(filled.run, 0.0, [entry])
     [kept] = store.log.entries(filled.run, after=seq - 1)
@@ -97,9 +97,11 @@ def test_versions_follow_each_other(filled):
     assert (second.version, dict(second.files)) == (2, {})
     with pytest.raises(ConflictError, match="newest version is 2, yours was made from 1"):
         missions.save("Yard", "c", {}, SUMMARY, "ann", "", 1)
-    assert [v.version for v in missions.versions("Yard")] == [2, 1]
+    assert [(v.version, v.author, v.note) for v in missions.versions("Yard")] == [(2, "bo", "one more"), (1, "ann", "")]
+    assert [v.version for v in missions.versions("Yard", limit=1)] == [2]
+    assert [[v.version for v in missions.versions("Yard", before=k)] for k in (2, 1)] == [[1], []]
     assert dict(missions.get("Yard", 1).files) == {"map.png": b"\x00\x89"}
-    entry = missions.entry("Yard")
+    [entry] = missions.list()
     assert (entry.version, entry.tasks, entry.changed_at) == (2, 4, second.at)
 
 
@@ -110,7 +112,6 @@ def test_a_deleted_mission_stays_for_its_plans(filled):
     for call in (
         lambda: missions.get("Yard"),
         lambda: missions.delete("Yard"),
-        lambda: missions.entry("Yard"),
         lambda: missions.save("Yard", "", {}, SUMMARY, "ann", "", 1),
     ):
         with pytest.raises(NotFoundError, match="no mission Yard"):
@@ -118,7 +119,7 @@ def test_a_deleted_mission_stays_for_its_plans(filled):
     assert missions.get("Yard", 1).text == "a: 1\n"
     assert filled.store.plans.get(filled.plan).mission == "Yard"
     missions.restore("Yard")
-    assert missions.get("Yard").version == missions.entry("Yard").version == 1
+    assert [missions.get("Yard").version, *(entry.version for entry in missions.list())] == [1, 1]
     with pytest.raises(NotFoundError, match="no mission Mill"):
         missions.restore("Mill")
 
@@ -160,6 +161,8 @@ def test_plans_are_numbered_within_their_mission_and_listed_without_their_bulk(f
     first = filled.store.plans.add(other, 1, "planned", "bo", plan)
     assert (second.version, first.version) == (2, 1)
     assert [p.id for p in filled.store.plans.list()] == [first.id, second.id, filled.plan]
+    assert [p.id for p in filled.store.plans.list(limit=1)] == [first.id]
+    assert [p.id for p in filled.store.plans.list("Yard", limit=1, before=second.id)] == [filled.plan]
     assert [p.plan for p in filled.store.plans.list("Yard")] == [{"weight": 1.0, "seed": 3}, {"weight": 2.5}]
     assert second.plan == plan
 
@@ -195,6 +198,10 @@ def test_jobs_go_on_after_a_restart(filled):
     ]
     assert [job.id for job in jobs.list("cancelled")] == [ids[2]]
     assert [job.id for job in jobs.list(limit=2)] == [ids[3], ids[2]]
+    filled.store.missions.create("Other", "", {}, SUMMARY, "ann")
+    other = jobs.add("plan", "Other", 1, {}, "ann").id
+    assert [job.id for job in jobs.list(mission="Other")] == [other]
+    assert [job.id for job in jobs.list("queued", "Yard", 1)] == [ids[3]]
 
 
 def test_a_run_from_beginning_to_end(filled):
@@ -204,6 +211,7 @@ def test_a_run_from_beginning_to_end(filled):
     assert isinstance(run.time_s, float)
     assert runs.set(run.id, state="running", speed=2.0, resumed=1).speed == 2.0
     assert [r.id for r in runs.unfinished()] == [run.id]
+    assert runs.list(over=True) == []
     ended = runs.set(run.id, state="ended")
     assert ended.ended_at >= run.at
     assert runs.unfinished() == []
@@ -214,7 +222,7 @@ def test_a_run_from_beginning_to_end(filled):
     assert runs.set(run.id, ended_at=at).ended_at == at
     with pytest.raises(TypeError, match="plan"):
         runs.set(run.id, plan=2)
-    assert runs.list() == [runs.get(run.id)]
+    assert runs.list() == runs.list(over=True) == [runs.get(run.id)]
 
 
 def test_times_of_other_zones_are_the_same_moment(filled):

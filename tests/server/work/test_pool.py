@@ -5,12 +5,14 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
 
+from muster.server.words import BusyError, NotFoundError
 from muster.server.work import Halt, OutOfMemory, Pool, TimedOut, WorkerDied, WorkError
 
 PROGRAM = (sys.executable, str(Path(__file__).with_name("odd_worker.py")))
@@ -118,6 +120,58 @@ def test_no_more_than_so_many_at_once_and_the_others_in_order():
         return done
 
     assert in_pool(story) == list(range(20))
+
+
+def test_arguments_are_read_when_the_turn_has_come():
+    async def story(pool):
+        read = []
+
+        def reading():
+            read.append(threading.current_thread() is threading.main_thread())
+            return {"a": 1}
+
+        work, _, _ = await sleeping(pool)
+        asked = asyncio.create_task(pool.run("echo", reading))
+        await until(lambda: pool.waiting == 1)
+        assert read == []
+        work.cancel()
+        assert await asked == {"a": 1}
+        assert read == [False]
+
+    in_pool(story)
+
+
+def test_arguments_that_cannot_be_read_keep_no_place():
+    async def story(pool):
+        def broken():
+            raise NotFoundError("no plan 9")
+
+        with pytest.raises(NotFoundError, match="no plan 9"):
+            await pool.run("echo", broken)
+        assert await pool.run("echo", {"a": 1}) == {"a": 1}
+
+    in_pool(story)
+
+
+def test_only_so_much_short_work_waits(monkeypatch):
+    from muster.server.work import pool as module
+    from muster.server.work.tasks import Task
+
+    monkeypatch.setattr(module, "MOST_WAITING", 2)
+    monkeypatch.setattr(module, "TASKS", {"counts": Task("", None, long=True)})
+
+    async def story(pool):
+        work, _, _ = await sleeping(pool)
+        waiting = [asyncio.create_task(pool.run("echo", {"k": k})) for k in range(2)]
+        await until(lambda: pool.waiting == 2)
+        with pytest.raises(BusyError, match=r"^2 requests wait, the most that may; expected [^\n]*$"):
+            await pool.run("echo", {})
+        assert await pool.run("counts", {"times": 0}) == {}  # long work waits elsewhere
+        work.cancel()
+        assert await asyncio.gather(*waiting) == [{"k": 0}, {"k": 1}]
+        assert await pool.run("echo", {"k": 2}) == {"k": 2}
+
+    in_pool(story)
 
 
 def test_long_work_does_not_keep_short_work_waiting(monkeypatch):

@@ -47,7 +47,7 @@ class Me:
 
 
 @router.get("/about", summary="See what this server is")
-async def about(desk: TheDesk, who: Asker) -> About:
+async def about(desk: TheDesk) -> About:
     """Versions and limits."""
     worlds = ["kinematic", "physics", *desk.settings.bridges]
     return About(muster=_version(), api=API, worlds=worlds, upload_bytes=desk.settings.upload_bytes)

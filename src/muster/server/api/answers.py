@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
-from base64 import b64decode
 from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote
@@ -12,6 +9,7 @@ from urllib.parse import quote
 from starlette.responses import Response
 
 from muster.server.api.problems import MEDIA_TYPE
+from muster.server.desk.parcels import parcel
 
 Responses = dict[int | str, dict[str, Any]]
 
@@ -68,14 +66,7 @@ def file_answer(data: bytes, name: str, kind: str, *, shown_in_place: bool = Fal
     return Response(data, headers=headers, media_type=kind)
 
 
-def parcel(files: Mapping[str, str], name: str) -> Response:
+async def parcel_answer(files: Mapping[str, str], name: str) -> Response:
     """Files by their names, in base64, as one answer: as it is if it is one, otherwise packed into a ZIP."""
-    unpacked = {each: b64decode(data) for each, data in files.items()}
-    if len(unpacked) == 1:
-        ((only, data),) = unpacked.items()
-        return file_answer(data, only, "application/octet-stream")
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for each, data in unpacked.items():
-            archive.writestr(each, data)
-    return file_answer(packed.getvalue(), f"{name}.zip", "application/zip")
+    data, called = await parcel(files, name)
+    return file_answer(data, called, "application/octet-stream" if len(files) == 1 else "application/zip")

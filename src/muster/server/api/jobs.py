@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, WebSocket
 from muster.server.api.answers import errors
 from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import JobId, Limit
+from muster.server.api.checked import JobId, Limit, MissionQuery
 from muster.server.api.sockets import message, tell
 from muster.server.desk.jobs import Jobs
 from muster.server.words import Job, JobState
@@ -20,10 +20,13 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 
 @router.get("", summary="List jobs")
 async def jobs(
-    desk: TheDesk, state: Annotated[JobState | None, Query(description="Only those.")] = None, limit: Limit = 200
+    desk: TheDesk,
+    state: Annotated[JobState | None, Query(description="Only those.")] = None,
+    mission: MissionQuery = None,
+    limit: Limit = 200,
 ) -> list[Job]:
     """Newest first."""
-    return [job for job in await desk.jobs.list() if state in (None, job.state)][:limit]
+    return list(await desk.jobs.list(state, mission, limit))
 
 
 @router.get("/{job}", summary="See how far a job is")
@@ -48,7 +51,7 @@ async def stop(desk: TheDesk, who: Asker, job: JobId) -> Job:
 
 
 @router.websocket("/{job}/stream")
-async def stream(socket: WebSocket, desk: TheDesk, who: Asker, job: JobId) -> None:
+async def stream(socket: WebSocket, desk: TheDesk, job: JobId) -> None:
     """Each change of a job as `{"type": "job", ...}`, beginning with how it is, until it is over."""
     await tell(socket, _changes(desk.jobs, job))
 

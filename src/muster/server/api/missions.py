@@ -16,10 +16,12 @@ from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.checked import (
     LARGEST,
+    BeforeVersion,
     Body,
     FileName,
     Files,
     Ignored,
+    Limit,
     MissionId,
     Name,
     Note,
@@ -27,7 +29,7 @@ from muster.server.api.checked import (
     Text,
     VersionNumber,
 )
-from muster.server.words import MissionEntry, MissionVersion, NotFoundError
+from muster.server.words import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
 
@@ -103,7 +105,7 @@ class MissionToCheck(Body):
 
 @router.get("", summary="List missions")
 async def missions(desk: TheDesk) -> list[MissionEntry]:
-    """Those that ship with Muster, and those that were made here."""
+    """All of them: those that were made here, and those that ship with Muster."""
     return list(await desk.missions.list())
 
 
@@ -175,9 +177,11 @@ async def delete(desk: TheDesk, who: Asker, mission: MissionId) -> None:
 
 
 @router.get("/{mission}/versions", summary="List the versions of a mission")
-async def versions(desk: TheDesk, mission: MissionId) -> list[MissionText]:
-    """Newest first, without their files."""
-    return [_text(version) for version in await desk.missions.versions(mission)]
+async def versions(
+    desk: TheDesk, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
+) -> list[VersionEntry]:
+    """Newest first; ask again with `before` the last `version` for more."""
+    return list(await desk.missions.versions(mission, limit, before))
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")

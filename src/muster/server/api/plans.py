@@ -7,14 +7,16 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response
 from pydantic import Field
 
-from muster.server.api.answers import a_file, errors, file_answer, parcel, with_location
+from muster.server.api.answers import a_file, errors, file_answer, parcel_answer, with_location
 from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.checked import (
     LARGEST,
+    Before,
     Body,
     Count,
     Ignored,
+    Limit,
     MissionId,
     MissionQuery,
     Name,
@@ -84,9 +86,11 @@ async def upload(
 
 
 @router.get("/plans", summary="List plans")
-async def plans(desk: TheDesk, mission: MissionQuery = None) -> list[PlanEntry]:
-    """Without their routes, histories and books; those of one mission, or of all."""
-    return list(await desk.plans.list(mission))
+async def plans(
+    desk: TheDesk, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
+) -> list[PlanEntry]:
+    """Newest first, without their routes, histories and books; ask again with `before` the last `id` for more."""
+    return list(await desk.plans.list(mission, limit, before))
 
 
 @router.get("/plans/{plan}", summary="Read a plan")
@@ -127,7 +131,7 @@ async def export(
     """As `muster export` writes it."""
     options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
     files = await desk.plans.export(plan, to, {name: value for name, value in options.items() if value is not None})
-    return parcel(files, f"plan-{plan}")
+    return await parcel_answer(files, f"plan-{plan}")
 
 
 @router.get(

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Response
 
-from muster.server.api.answers import a_file, errors, file_answer, parcel
+from muster.server.api.answers import a_file, errors, file_answer, parcel_answer
 from muster.server.api.asking import TheDesk
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.checked import Limit, RunId
@@ -61,4 +61,4 @@ async def flown(desk: TheDesk, run: RunId) -> dict[str, Any]:
 )
 async def export(desk: TheDesk, run: RunId, to: ExportTo) -> Response:
     """Tracks and events for spreadsheets and maps."""
-    return parcel(await desk.records.export(run, to), f"run-{run}")
+    return await parcel_answer(await desk.records.export(run, to), f"run-{run}")

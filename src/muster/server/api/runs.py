@@ -96,7 +96,7 @@ async def report(desk: TheDesk, run: RunId) -> dict[str, Any]:
 
 @router.websocket("/{run}/stream")
 async def stream(
-    socket: WebSocket, desk: TheDesk, who: Asker, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
+    socket: WebSocket, desk: TheDesk, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
 ) -> None:
     """What happens, as it happens: docs/mission-control-api.md describes the messages."""
     feed = desk.runs.feed(run)

@@ -13,7 +13,7 @@ from muster.mission.errors import NetworkError
 from muster.server.client.connection import Connection
 from muster.server.client.handles import RunningJob, RunningRun
 from muster.server.client.reading import read
-from muster.server.words import Action, Job, MissionEntry, PlanEntry, Run, World
+from muster.server.words import Action, Job, JobState, MissionEntry, PlanEntry, Run, World
 
 API = 1
 """What this client speaks."""
@@ -115,9 +115,10 @@ class Client:
         """A job that was asked for before."""
         return RunningJob(self._connection, read(Job, self._connection.get(f"/jobs/{job}")))
 
-    def jobs(self) -> list[Job]:
-        """Newest first."""
-        return [read(Job, job) for job in self._connection.get("/jobs")]
+    def jobs(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
+        """Of one state and one mission or of all, newest first."""
+        found = self._connection.get("/jobs", state=state, mission=mission, limit=limit)
+        return [read(Job, job) for job in found]
 
     def start(
         self, plan: int | PlanEntry, *, world: World = "kinematic", speed: float | None = 1.0, **settings: Any
@@ -214,9 +215,10 @@ class Plans:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
-    def list(self, mission: str | None = None) -> Sequence[PlanEntry]:
-        """Without their routes; of one mission, or of all."""
-        return [read(PlanEntry, entry) for entry in self._connection.get("/plans", mission=mission)]
+    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> Sequence[PlanEntry]:
+        """Without their routes; of one mission, or of all; newest first, with ids below `before`, if given."""
+        found = self._connection.get("/plans", mission=mission, limit=limit, before=before)
+        return [read(PlanEntry, entry) for entry in found]
 
     def get(self, plan: int) -> PlanEntry:
         return read(PlanEntry, self._connection.get(f"/plans/{plan}"))

@@ -9,7 +9,7 @@ from typing import Any
 from muster.mission.errors import MusterError
 from muster.server.client.connection import Connection
 from muster.server.client.reading import read
-from muster.server.words import OVER, Action, Entry, Job, PlanEntry, Run
+from muster.server.words import JOB_OVER, OVER, Action, Entry, Job, PlanEntry, Run
 
 _FIRST_LOOK_S, _LONGEST_LOOK_S = 0.02, 0.5
 _AT_ONCE = 1000
@@ -29,7 +29,7 @@ class RunningJob:
     @property
     def over(self) -> bool:
         """Whether nothing more happens in it."""
-        return self.seen.state in ("done", "failed", "cancelled")
+        return self.seen.state in JOB_OVER
 
     def look(self) -> Job:
         """See how far it is."""

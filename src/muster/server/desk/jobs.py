@@ -16,10 +16,9 @@ from muster.server.desk.uploads import for_work
 from muster.server.desk.wishes import checked_wishes
 from muster.server.settings import Settings
 from muster.server.store import Store
-from muster.server.words import BusyError, ConflictError, Job, JobState, NotFoundError, StoreError, Who
+from muster.server.words import JOB_OVER, BusyError, ConflictError, Job, JobState, NotFoundError, StoreError, Who
 from muster.server.work import Halt, Pool, WorkerDied, WorkError
 
-_OVER = ("done", "failed", "cancelled")
 _AGAIN_S = 2.0  # until a database that refuses is asked again
 _TOLD_EVERY_S = 0.1  # followers, at most
 
@@ -58,9 +57,10 @@ class Jobs:
             task.cancel()
         await asyncio.gather(*self._hands, *self._tasks, return_exceptions=True)
 
-    async def list(self) -> list[Job]:
-        """The newest jobs, the newest first."""
-        return [self._newest.get(job.id, job) for job in await asyncio.to_thread(self._store.jobs.list)]
+    async def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
+        """Jobs, of one state and one mission or of all, the newest first."""
+        found = await asyncio.to_thread(self._store.jobs.list, state, mission, limit)
+        return [self._newest.get(job.id, job) for job in found]
 
     async def get(self, job: int) -> Job:
         """One job, with its newest progress.
@@ -162,7 +162,7 @@ class Jobs:
                 changed.clear()
                 newest = await self.get(job)
                 yield newest
-                if newest.state in _OVER:
+                if newest.state in JOB_OVER:
                     return
                 await asyncio.sleep(_TOLD_EVERY_S)
                 await changed.wait()
@@ -197,14 +197,13 @@ class Jobs:
     async def _do(self, number: int, halt: Halt) -> None:
         """Do a job, and say what came of it."""
         try:
-            job = await self._patiently(number, self._store.jobs.begin, number)
-            self._learn(job)
-            done = await self._planned(job, halt)
-            self._at_work.pop(number, None)  # what is written down now is not to be broken off
-            progress = self._newest[number].progress
-            await self._patiently(number, self._store.jobs.end_with_plan, number, done["plan"], done["why"], progress)
-            self._forget(number)
-        except (ConflictError, NotFoundError):  # cancelled meanwhile
+            job = await self._moved(self._store.jobs.begin, number)
+            if job is not None:
+                self._learn(job)
+                done = await self._planned(job, halt)
+                self._at_work.pop(number, None)  # what is written down now is not to be broken off
+                progress = self._newest[number].progress
+                await self._moved(self._store.jobs.end_with_plan, number, done["plan"], done["why"], progress)
             self._forget(number)
         except StoreError as why:  # the server closes: it begins anew when that is back
             _log.error("job %d: %s", number, why)
@@ -237,13 +236,18 @@ class Jobs:
     async def _end(self, number: int, state: JobState, error: str = "") -> None:
         """Write down how a job ended, with its last progress; one that was cancelled meanwhile stays so."""
         newest = self._newest.get(number)
-        try:
-            if newest is not None and newest.progress is not None:
-                await self._patiently(number, self._store.jobs.progress, number, newest.progress)
-            await self._patiently(number, self._store.jobs.end, number, state, None, error)
-        except (ConflictError, NotFoundError):
-            pass
+        if newest is not None and newest.progress is not None:
+            await self._patiently(number, self._store.jobs.progress, number, newest.progress)
+        await self._moved(self._store.jobs.end, number, state, None, error)
         self._forget(number)
+
+    async def _moved(self, move: Callable[..., Job], number: int, *arguments: Any) -> Job | None:
+        """A job in its next state; None where it was cancelled meanwhile."""
+        try:
+            moved: Job = await self._patiently(number, move, number, *arguments)
+        except (ConflictError, NotFoundError):
+            return None
+        return moved
 
     async def _patiently(self, number: int, ask: Callable[..., Any], *arguments: Any) -> Any:
         """Ask the database for something of a job, however long it refuses; the job says so meanwhile."""

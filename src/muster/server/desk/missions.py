@@ -16,7 +16,7 @@ from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.desk.uploads import as_text, check_sizes, findings_of, for_work, require_file_name
 from muster.server.store import Store
-from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError, Who
+from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry, Who
 
 _READ_AS_THEY_ARE = (".yaml", ".yml")
 _CONVERTED = (".csv", ".tsp", ".plan")
@@ -56,15 +56,15 @@ class Missions:
         """
         return await asyncio.to_thread(self._stored, mission)
 
-    async def versions(self, mission: str) -> list[MissionVersion]:
-        """All versions without their files, the newest first.
+    async def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+        """Versions, the newest first; those below `before`, if given.
 
         Raises
         ------
         NotFoundError
             if there is no such mission.
         """
-        return await asyncio.to_thread(self._versions, mission)
+        return await asyncio.to_thread(self._versions, mission, limit, before)
 
     async def check(
         self, text: str, files: Mapping[str, bytes], *, ignore: Sequence[str] = (), time_limit: float | None = None
@@ -251,14 +251,13 @@ class Missions:
         except ConflictError:  # somebody else was quicker
             return self._table.get(mission)
 
-    def _versions(self, mission: str) -> list[MissionVersion]:
+    def _versions(self, mission: str, limit: int, before: int | None) -> list[VersionEntry]:
         try:
-            return self._table.versions(mission)
+            return self._table.versions(mission, limit, before)
         except NotFoundError:
             if mission not in shipped_entries():
                 raise
-            first = shipped_version(mission)
-            return [MissionVersion(mission=mission, version=0, text=first.text, author=first.author, at=None)]
+            return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
 
     async def list(self) -> list[MissionEntry]:
         """Missions that were made here, the last changed first, then those that come with Muster."""

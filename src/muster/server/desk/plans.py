@@ -6,6 +6,7 @@ import asyncio
 import base64
 from collections import OrderedDict
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from muster.mission.errors import ParameterError
@@ -127,13 +128,19 @@ class Plans:
             raise ParameterError(f"plan {b} is of {second.mission}; expected one of {first.mission}, as plan {a}")
         return compared(first, await self.verdict(a), second, await self.verdict(b))
 
-    async def list(self, mission: str | None = None) -> list[PlanEntry]:
-        """The plans of a mission, or all, the newest first, without routes, histories and books."""
-        return await asyncio.to_thread(self._store.plans.list, mission)
+    async def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+        """Plans, of one mission or all, the newest first, without routes, histories and books.
+
+        With ids below `before`, if given.
+        """
+        return await asyncio.to_thread(self._store.plans.list, mission, limit, before)
 
     async def _asked(self, what: str, plan: int, /, **arguments: Any) -> dict[str, Any]:
         """What a worker says of a plan and its mission."""
-        entry = await self.get(plan)
-        mission = await asyncio.to_thread(self._store.missions.get, entry.mission, entry.mission_version)
-        given = for_work(mission.text, mission.files, entry.mission)
-        return await self._pool.run(what, {"mission": given, "plan": entry.plan, **arguments})
+        return await self._pool.run(what, partial(self._given, plan, arguments))
+
+    def _given(self, plan: int, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """What the worker needs, from the database."""
+        entry = self._store.plans.get(plan)
+        mission = self._store.missions.get(entry.mission, entry.mission_version)
+        return {"mission": for_work(mission.text, mission.files, entry.mission), "plan": entry.plan, **arguments}

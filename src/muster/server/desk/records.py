@@ -5,9 +5,9 @@ A record is made from the log by a worker when somebody asks for it: nothing is 
 
 from __future__ import annotations
 
-import asyncio
 import base64
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
@@ -30,7 +30,7 @@ class Records:
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
         """Runs that are over, the newest first."""
-        return [run for run in await self._runs.list(limit) if run.state in OVER]
+        return await self._runs.over(limit)
 
     async def page(self, run: int) -> str:
         """The page that `muster replay --html` writes.
@@ -78,7 +78,7 @@ class Records:
         if state not in OVER:
             raise ConflictError(f"run {run} is {state}; expected one that is over")
         await self._runs.kept(run)
-        return await self._pool.run("record", await asyncio.to_thread(self._given, run, to))
+        return await self._pool.run("record", partial(self._given, run, to))
 
     def _given(self, number: int, to: str) -> dict[str, Any]:
         """What the worker needs, from the database."""

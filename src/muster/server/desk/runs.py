@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 from muster.mission.errors import MusterError, ParameterError
@@ -95,6 +96,13 @@ class Runs:
         """The newest first."""
         runs = await asyncio.to_thread(self._store.runs.list, limit)
         return [self._newest(run) for run in runs]
+
+    async def over(self, limit: int = 200) -> Sequence[Run]:
+        """Runs that are over, the newest first; also those of which the database does not know it yet."""
+        ended = {run: carrying.run for run, carrying in self._live.items() if carrying.over}
+        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
+        found = {run.id: run for run in kept} | ended
+        return [found[run] for run in sorted(found, reverse=True)[:limit]]
 
     async def get(self, run: int) -> Run:
         """One run, as it is now.

@@ -13,9 +13,9 @@ from muster.mission.kinds import shown
 LONGEST_TEXT = 16 * 2**20
 LARGEST_FILES = 32 * 2**20
 MOST_FILES = 64
-_LONGEST_NAME = 120
-_NAME = re.compile(r"[^\W_][\w. ()+-]*")
-_EXPECTED_NAME = f"letters, digits, and ._-+() or spaces between, at most {_LONGEST_NAME}, no folders"
+LONGEST_FILE_NAME = 120
+FILE_NAME = r"[^\W_][\w. ()+-]*"
+_EXPECTED_NAME = f"letters, digits, and ._-+() or spaces between, at most {LONGEST_FILE_NAME}, no folders"
 
 
 def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
@@ -39,7 +39,12 @@ def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
 
 def require_file_name(name: str) -> None:
     """Raise ParameterError unless it may be the name of a file beside a mission."""
-    if len(name) > _LONGEST_NAME or not _NAME.fullmatch(name) or name.endswith((".", " ")) or not name.isprintable():
+    if (
+        len(name) > LONGEST_FILE_NAME
+        or not re.fullmatch(FILE_NAME, name)
+        or name.endswith((".", " "))
+        or not name.isprintable()
+    ):
         raise ParameterError(f"a file called {shown(name)}; expected {_EXPECTED_NAME}")
 
 

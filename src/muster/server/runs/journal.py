@@ -64,6 +64,7 @@ class Journal:
         self._late: list[Callable[[], object]] = []
         self._given = 0
         self._last_stretch: int | None = None
+        self._dropped = 0
         self._wake, self._drained = asyncio.Event(), asyncio.Event()
         self._drained.set()
         self._closing = False
@@ -81,7 +82,7 @@ class Journal:
         """Keep a stretch of tracks; those that cannot be kept for long are lost, the oldest first."""
         self._stretches.append(Stretch(run=self._run, seq=0, from_s=from_s, until_s=until_s, data=data))
         while self.trouble and sum(len(one.data) for one in self._stretches) > TRACKS_MOST:
-            self._stretches.pop(0)
+            self._drop_stretch()
         self._ask()
 
     def set(self, **fields: Any) -> None:
@@ -166,9 +167,7 @@ class Journal:
         trouble = ""
         try:
             if entries or stretches:
-                await self._patiently(self._append, entries, stretches)
-                del self._entries[: len(entries)]
-                del self._stretches[: len(stretches)]
+                await self._append_patiently(entries, stretches)
             for write in late if whole else ():
                 await self._patiently(write)
                 self._late.remove(write)
@@ -191,6 +190,16 @@ class Journal:
             self._wake.set()
         return not trouble
 
+    async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
+        """Write the first entries and stretches; none of these is dropped meanwhile, nor another in its place."""
+        del self._stretches[: len(stretches)]
+        try:
+            await self._patiently(self._append, entries, stretches)
+        except BaseException:
+            self._stretches[:0] = stretches
+            raise
+        del self._entries[: len(entries)]
+
     async def _patiently(self, write: Callable[..., object], *arguments: Any) -> None:
         """Write in a thread; where that takes its time, what waits is given on meanwhile."""
         writing = asyncio.create_task(asyncio.to_thread(write, *arguments))
@@ -204,8 +213,19 @@ class Journal:
         """Why the database refuses; empty: it works."""
         if why != self.trouble:
             self.trouble = why
-            _log.warning("run %d: %s", self._run, why or "the database works again; all is kept")
+            _log.warning("run %d: %s", self._run, why or f"the database works again; {self._kept()}")
+            self._dropped = 0
             self._on_trouble(why)
+
+    def _drop_stretch(self) -> None:
+        """Lose the oldest tracks."""
+        if not self._dropped:
+            _log.warning("run %d: more than %d bytes of tracks wait; the oldest are lost", self._run, TRACKS_MOST)
+        del self._stretches[0]
+        self._dropped += 1
+
+    def _kept(self) -> str:
+        return f"all is kept but {self._dropped} stretches of tracks" if self._dropped else "all is kept"
 
     def _forget(self) -> None:
         """What is not written will not be."""

@@ -8,7 +8,8 @@ from typing import Any
 
 from sqlalchemy import func, select
 
-from muster.server.store.schema import jobs, runs
+from muster.mission.plan import gap
+from muster.server.store.schema import jobs, plans, runs
 from muster.server.store.store import Store
 
 _NEWEST = 20
@@ -23,7 +24,7 @@ class Figures:
     job_s
         how long jobs took, from their beginning.
     gap
-        how far plans may be from the best one: (objective - bound) / objective.
+        how far plans that were made here may be from the best one: see `muster.mission.plan.gap`.
     flown
         the objective as measured over the planned one.
     """
@@ -37,27 +38,30 @@ class Figures:
 
 def figures(store: Store) -> Figures:
     """The figures as they are now; raises StoreError."""
-    done = select(jobs).where(jobs.c.state == "done").order_by(jobs.c.id.desc()).limit(_NEWEST)
+    took = select(jobs.c.begun_at, jobs.c.ended_at).where(jobs.c.state == "done", jobs.c.begun_at.is_not(None))
+    done = took.order_by(jobs.c.id.desc()).limit(_NEWEST)
+    made = select(plans.c.head).where(plans.c.origin == "planned").order_by(plans.c.id.desc()).limit(_NEWEST)
     ended = select(runs.c.report).where(runs.c.state == "ended").order_by(runs.c.id.desc()).limit(_NEWEST)
     with store.database.reading() as connection:
         of_jobs, of_runs = (
             {row[0]: row[1] for row in connection.execute(select(table.c.state, func.count()).group_by(table.c.state))}
             for table in (jobs, runs)
         )
-        newest = [row._mapping for row in connection.execute(done)]
+        times = connection.execute(done).all()
+        heads = [row.head for row in connection.execute(made)]
         reports = [row.report for row in connection.execute(ended)]
     return Figures(
         jobs=of_jobs,
         runs=of_runs,
-        job_s=_mean((job["ended_at"] - job["begun_at"]).total_seconds() for job in newest if job["begun_at"]),
-        gap=_mean(_gap(job["progress"] or {}) for job in newest),
+        job_s=_mean((ended_at - begun_at).total_seconds() for begun_at, ended_at in times),
+        gap=_mean(_gap(head) for head in heads),
         flown=_mean(_flown(report or {}) for report in reports),
     )
 
 
-def _gap(progress: Mapping[str, Any]) -> float | None:
-    objective, bound = progress.get("objective"), progress.get("bound")
-    return (objective - bound) / objective if objective and bound is not None else None
+def _gap(head: Mapping[str, Any]) -> float | None:
+    value, bound = (head.get("objective") or {}).get("value"), head.get("lower_bound")
+    return None if value is None or bound is None else gap(value, bound)
 
 
 def _flown(report: Mapping[str, Any]) -> float | None:

@@ -105,11 +105,13 @@ class JobTable:
         with self._database.writing() as connection:
             return _move(connection, job, states, **values)
 
-    def list(self, state: JobState | None = None, limit: int = 200) -> list[Job]:
-        """The newest jobs, of one state or of all, the newest first."""
+    def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
+        """Jobs, of one state and one mission or of all, the newest first."""
         query = select(jobs).order_by(jobs.c.id.desc()).limit(limit)
         if state is not None:
             query = query.where(jobs.c.state == state)
+        if mission is not None:
+            query = query.where(jobs.c.mission == mission)
         with self._database.reading() as connection:
             return [Job(**row._mapping) for row in connection.execute(query)]
 

@@ -71,11 +71,6 @@ class LogTable:
         with self._database.reading() as connection:
             return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
 
-    def last_seq(self, run: int) -> int:
-        """The `seq` of the last entry, 0 without any."""
-        with self._database.reading() as connection:
-            return _last(connection, entry_table, run)
-
     def stretches(self, run: int) -> Iterator[Stretch]:
         """The tracks, in order; read in portions, so that no transaction waits for whoever takes them."""
         query = select(stretch_table).where(stretch_table.c.run == run).order_by(stretch_table.c.seq).limit(_AT_ONCE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Collection, Mapping
+from dataclasses import fields
 from datetime import UTC, datetime
 from hashlib import sha256
 from typing import Any
@@ -13,7 +14,7 @@ from sqlalchemy import Connection, Row, and_, insert, select, update
 
 from muster.server.store.database import Database
 from muster.server.store.schema import blobs, mission_files, mission_versions, missions
-from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError
+from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry
 
 _LONGEST_ID = 80
 
@@ -21,20 +22,6 @@ _LONGEST_ID = 80
 class MissionTable:
     def __init__(self, database: Database) -> None:
         self._database = database
-
-    def entry(self, mission: str) -> MissionEntry:
-        """What the list has of one mission.
-
-        Raises
-        ------
-        NotFoundError
-            if there is none, or it was deleted.
-        """
-        with self._database.reading() as connection:
-            row = connection.execute(_ENTRIES.where(missions.c.id == mission, ~missions.c.hidden)).one_or_none()
-        if row is None:
-            raise NotFoundError(f"no mission {mission}")
-        return _entry(row)
 
     def get(self, mission: str, version: int | None = None) -> MissionVersion:
         """One version with its files; without a number the newest. A deleted mission's versions are there by number.
@@ -47,20 +34,21 @@ class MissionTable:
         with self._database.reading() as connection:
             return _version(connection, mission, _newest(connection, mission) if version is None else version)
 
-    def versions(self, mission: str) -> list[MissionVersion]:
-        """All versions without their files, the newest first.
+    def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+        """Versions, the newest first; those below `before`, if given.
 
         Raises
         ------
         NotFoundError
             if there is no such mission.
         """
-        query = select(mission_versions).where(mission_versions.c.mission == mission)
+        query = _VERSIONS.where(mission_versions.c.mission == mission).limit(limit)
+        if before is not None:
+            query = query.where(mission_versions.c.version < before)
         with self._database.reading() as connection:
-            rows = connection.execute(query.order_by(mission_versions.c.version.desc())).all()
-        if not rows:
-            raise NotFoundError(f"no mission {mission}")
-        return [_without_files(row) for row in rows]
+            if not _is_taken(connection, mission):
+                raise NotFoundError(f"no mission {mission}")
+            return [VersionEntry(**row._mapping) for row in connection.execute(query)]
 
     def create(
         self,
@@ -158,6 +146,10 @@ class MissionTable:
 
 _ENTRIES = select(missions, mission_versions.c.summary, mission_versions.c.at).join(
     mission_versions, and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
+)
+
+_VERSIONS = select(*(mission_versions.c[each.name] for each in fields(VersionEntry))).order_by(
+    mission_versions.c.version.desc()
 )
 
 

@@ -51,13 +51,21 @@ class PlanTable:
             raise NotFoundError(f"no plan {plan}")
         return _entry(row)
 
-    def list(self, mission: str | None = None) -> list[PlanEntry]:
-        """The plans of a mission, or all, the newest first, each without routes, history, unassigned and book."""
-        query = select(*(column for column in plans.c if column.name != "body")).order_by(plans.c.id.desc())
+    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+        """Plans, of one mission or all, the newest first; with ids below `before`, if given.
+
+        Each without routes, history, unassigned and book.
+        """
+        query = _HEADS.order_by(plans.c.id.desc()).limit(limit)
         if mission is not None:
             query = query.where(plans.c.mission == mission)
+        if before is not None:
+            query = query.where(plans.c.id < before)
         with self._database.reading() as connection:
             return [_entry(row) for row in connection.execute(query)]
+
+
+_HEADS = select(*(column for column in plans.c if column.name != "body"))
 
 
 def add_plan(

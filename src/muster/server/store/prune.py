@@ -26,9 +26,9 @@ from muster.server.store.schema import (
     runs,
     stretches,
 )
-from muster.server.words import OVER
+from muster.server.words import JOB_OVER, OVER
 
-_OVER_JOBS = ("done", "failed", "cancelled")
+_START = jobs.c.arguments["start"].as_integer()  # the plan that a job goes on from
 
 
 @dataclass(frozen=True)
@@ -83,12 +83,13 @@ class _Old:
     def __init__(self, before: datetime) -> None:
         self.runs = and_(runs.c.state.in_(OVER), runs.c.ended_at < before)
         self.actions = and_(actions.c.run.is_(None), actions.c.at < before)
-        self.jobs = and_(jobs.c.state.in_(_OVER_JOBS), jobs.c.ended_at < before)
+        self.jobs = and_(jobs.c.state.in_(JOB_OVER), jobs.c.ended_at < before)
         later = plans.alias("later")
         self.plans = and_(
             plans.c.at < before,
             exists(select(later.c.id).where(later.c.mission == plans.c.mission, later.c.version > plans.c.version)),
             ~exists(select(runs.c.id).where(runs.c.plan == plans.c.id, not_(self.runs))),
+            plans.c.id.not_in(select(_START).where(_START.is_not(None), not_(self.jobs))),
         )
         self.mission_versions = and_(
             mission_versions.c.at < before,

@@ -96,13 +96,13 @@ class RunTable:
             changed = connection.execute(update(runs).where(runs.c.id == run).values(fields).returning(runs)).one()
             return Run(**changed._mapping)
 
-    def list(self, limit: int = 200) -> list[Run]:
-        """The newest runs, the newest first."""
+    def list(self, limit: int = 200, *, over: bool = False) -> list[Run]:
+        """Runs, or those alone that are over, the newest first."""
+        query = select(runs).order_by(runs.c.id.desc()).limit(limit)
+        if over:
+            query = query.where(runs.c.state.in_(OVER))
         with self._database.reading() as connection:
-            return [Run(**row._mapping) for row in connection.execute(_NEWEST_FIRST.limit(limit))]
-
-
-_NEWEST_FIRST = select(runs).order_by(runs.c.id.desc())
+            return [Run(**row._mapping) for row in connection.execute(query)]
 
 
 def _get(connection: Connection, run: int, *, to_write: bool = False) -> Run:

@@ -6,18 +6,23 @@ import asyncio
 import os
 import shutil
 import tempfile
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+from muster.server.words import BusyError
 from muster.server.work.errors import TimedOut, WorkError
 from muster.server.work.folders import OF_WORK, sweep
 from muster.server.work.halt import Halt
 from muster.server.work.process import PROGRAM, Progress, Worker
 from muster.server.work.tasks import TASKS, Task
 
+MOST_WAITING = 64
+"""Pieces of short work that wait; what each was sent with is held meanwhile."""
 _ANY = Task("", limit_s=None)
+
+Arguments = Mapping[str, Any] | Callable[[], Mapping[str, Any]]
 
 
 class Pool:
@@ -54,7 +59,7 @@ class Pool:
     async def run(
         self,
         task: str,
-        arguments: Mapping[str, Any],
+        arguments: Arguments,
         *,
         on_progress: Progress | None = None,
         limit_s: float | None = None,
@@ -67,7 +72,7 @@ class Pool:
         task
             one of TASKS.
         arguments
-            plain data.
+            plain data; or what reads them, called in a thread when its turn has come, so that nothing large waits.
         on_progress
             is told how far it is.
         limit_s
@@ -79,15 +84,21 @@ class Pool:
         ------
         WorkError
             OutOfMemory, TimedOut, WorkerDied; with `.findings` of arguments that are wrong.
+        BusyError
+            if as much short work waits as may.
         """
         known = TASKS.get(task, _ANY)
         limit_s = known.limit_s if limit_s is None else limit_s
-        async with self._place(self._places[known.long]), self._worker() as worker:
-            try:
-                async with asyncio.timeout(limit_s):
-                    return await worker.ask(task, arguments, on_progress, halt or Halt())
-            except TimeoutError:
-                raise TimedOut(f"it took longer than {limit_s:g} s, and was stopped") from None
+        if not known.long and self.waiting >= MOST_WAITING:
+            raise BusyError(f"{self.waiting} requests wait, the most that may; expected to be asked again later")
+        async with self._place(self._places[known.long]):
+            given = arguments if isinstance(arguments, Mapping) else await asyncio.to_thread(arguments)
+            async with self._worker() as worker:
+                try:
+                    async with asyncio.timeout(limit_s):
+                        return await worker.ask(task, given, on_progress, halt or Halt())
+                except TimeoutError:
+                    raise TimedOut(f"it took longer than {limit_s:g} s, and was stopped") from None
 
     async def close(self) -> None:
         """End all processes; who waits for work hears that its worker died."""

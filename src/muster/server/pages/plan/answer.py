@@ -18,6 +18,8 @@ from muster.server.pages.plan.taking import Taking
 from muster.server.pages.plan.why import Why
 from muster.server.words import PlanEntry
 
+MOST_PLANS = 1000  # that are listed to choose from
+
 
 class Answer:
     """Shows one plan of a mission: on the map, as figures and tables, in time."""
@@ -54,7 +56,7 @@ class Answer:
 
     @property
     def entries(self) -> Sequence[PlanEntry]:
-        """All plans of the mission, the newest first."""
+        """The newest plans of the mission, and the one that was asked for; the newest first."""
         return self._entries
 
     @property
@@ -64,18 +66,22 @@ class Answer:
 
     async def begin(self, plan: int | None) -> None:
         """Show a plan, or the newest if there is one."""
-        await self._list()
+        await self._list(plan)
         known = [entry.id for entry in self._entries]
         if known:
             self._choice.set_value(plan if plan in known else known[0])
 
     async def show_newest(self, plan: int) -> None:
         """Show a plan that has just been made."""
-        await self._list()
+        await self._list(plan)
         self._choice.set_value(plan)
 
-    async def _list(self) -> None:
-        self._entries = sorted(await the_desk().plans.list(self._draft.id), key=lambda entry: -entry.id)
+    async def _list(self, plan: int | None) -> None:
+        """List the newest plans, and one that may be older."""
+        entries = await the_desk().plans.list(self._draft.id, MOST_PLANS)
+        if plan is not None and entries and plan < entries[-1].id:
+            entries += await the_desk().plans.list(self._draft.id, 1, before=plan + 1)
+        self._entries = entries
         self._choice.set_options({entry.id: title_of(entry) for entry in self._entries}, value=self._choice.value)
         self._choice.set_visibility(bool(self._entries))
         self._none.set_visibility(not self._entries)

@@ -12,7 +12,7 @@ from muster.server.pages.asking import the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
 from muster.server.pages.notices import told
-from muster.server.pages.plan.answer import title_of
+from muster.server.pages.plan.answer import MOST_PLANS, title_of
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
 from muster.server.pages.plan.ground import ground_of
 from muster.server.words import PlanEntry
@@ -36,8 +36,9 @@ async def compare(mission: str, a: int, b: int) -> None:
 
 async def _build(mission: str, a: int, b: int) -> None:
     desk = the_desk()
-    titles = {entry.id: title_of(entry) for entry in await desk.plans.list(mission)}
     entries = [await desk.plans.get(one) for one in (a, b)]
+    listed = await desk.plans.list(mission, MOST_PLANS)
+    titles = {entry.id: title_of(entry) for entry in (*listed, *entries)}
     verdicts = [await desk.plans.verdict(entry.id) for entry in entries]
     scenes = [await _scene(entry) for entry in entries]
     chosen = [a, b]

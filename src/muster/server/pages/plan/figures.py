@@ -8,6 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
+from muster.mission.plan import gap
+
 Choose = Callable[[str, str], None]
 """Told `robot` or `task` and an id, when somebody clicks it."""
 
@@ -138,8 +140,7 @@ def _number(value: object, unit: str) -> str:
 def _bound(value: object, bound: object, unit: str) -> str:
     if not isinstance(bound, (int, float)):
         return "none was found"
-    gap = (value - bound) / bound if isinstance(value, (int, float)) and bound else None
-    return _number(bound, unit) + (f" (gap {gap:.1%})" if gap is not None else "")
+    return _number(bound, unit) + (f" (gap {gap(value, bound):.1%})" if isinstance(value, (int, float)) else "")
 
 
 def _wrong(violations: Sequence[Mapping[str, Any]]) -> str:

@@ -14,9 +14,9 @@ from muster.server.pages.charts import Curve
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import say, told
 from muster.server.pages.pressing import once
-from muster.server.words import Job
+from muster.server.words import Job, JobState
 
-_WAITING = ("queued", "running")
+_WAITING: tuple[JobState, ...] = ("queued", "running")
 _BOUNDS = {"": "none", "quick": "quick", "exact": "exact (may take long)"}
 
 
@@ -72,9 +72,7 @@ class Ordering:
             found = await the_desk().plans.allocators()
             names = {a["name"]: a["name"] for a in found}
             self._allocator.set_options(names, value=next((a["name"] for a in found if a["default"]), None))
-            jobs = [
-                job for job in await the_desk().jobs.list() if job.mission == self._draft.id and job.state in _WAITING
-            ]
+            jobs = [job for state in _WAITING for job in await the_desk().jobs.list(state, self._draft.id, limit=1)]
             if jobs:
                 await self._follow(max(jobs, key=lambda job: job.id))
 

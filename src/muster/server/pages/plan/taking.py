@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import json
-import zipfile
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from nicegui import events, ui
 
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
+from muster.server.desk.parcels import parcel
 from muster.server.pages.asking import may_command, on_the_wall, the_asker, the_desk
 from muster.server.pages.notices import say, told
 from muster.server.pages.plan.starting import open_start
@@ -75,7 +72,7 @@ class Taking:
         with told():
             plans = the_desk().plans
             if form:
-                content, name = parcel(await plans.export(plan, form), f"plan-{plan}-{form}")
+                content, name = await parcel(await plans.export(plan, form), f"plan-{plan}-{form}")
             else:
                 content, name = json_text((await plans.get(plan)).plan).encode(), f"plan-{plan}.json"
             ui.download.content(content, name)
@@ -114,16 +111,3 @@ class Taking:
             with ui.element("div").classes("dialog-buttons"):
                 ui.button("Close", on_click=dialog.close).props("flat")
         dialog.open()
-
-
-def parcel(files: Mapping[str, str], name: str) -> tuple[bytes, str]:
-    """Files in base64, by their names, as one file to download and its name: several are put into a ZIP."""
-    contents = {file: base64.b64decode(data) for file, data in files.items()}
-    if len(contents) == 1:
-        file, content = next(iter(contents.items()))
-        return content, file
-    memory = io.BytesIO()
-    with zipfile.ZipFile(memory, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file, content in contents.items():
-            archive.writestr(file, content)
-    return memory.getvalue(), f"{name}.zip"

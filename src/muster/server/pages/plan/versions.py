@@ -14,14 +14,15 @@ from muster.server.pages.editing.draft import Draft
 from muster.server.pages.missions.view import ago
 from muster.server.pages.notices import told
 
+_MOST_VERSIONS = 1000  # that are listed
 _MOST_LINES = 20_000  # of two texts that are compared
 _CLASSES = {"+": "added", "-": "removed", "@": "quiet"}
 
 
 async def open_versions(draft: Draft, save: Callable[[str], Awaitable[bool]]) -> None:
-    """List all versions; one can be compared with the text as it is, and restored as a new version."""
+    """List the newest versions; one can be compared with the text as it is, and restored as a new version."""
     with told():
-        versions = sorted(await the_desk().missions.versions(draft.id), key=lambda v: v.version, reverse=True)
+        versions = await the_desk().missions.versions(draft.id, _MOST_VERSIONS)
         with ui.dialog() as dialog, ui.card().classes("making versions"):
             ui.label(f"Versions of {draft.id}").classes("dialog-title")
 

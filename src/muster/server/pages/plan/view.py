@@ -12,7 +12,7 @@ from muster.server.pages.asking import may_command, on_the_wall, the_desk
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told
-from muster.server.pages.plan.answer import Answer
+from muster.server.pages.plan.answer import MOST_PLANS, Answer
 from muster.server.pages.plan.ordering import Ordering
 from muster.server.pages.plan.title import Title
 from muster.server.pages.plan.workshop import Workshop
@@ -36,7 +36,7 @@ _KEYS = {
 async def choose() -> None:
     """Without a mission: those that were planned last, or the way to the list."""
     with frame("Plan"), told():
-        recent = list(dict.fromkeys(entry.mission for entry in await the_desk().plans.list()))[:8]
+        recent = list(dict.fromkeys(entry.mission for entry in await the_desk().plans.list(limit=MOST_PLANS)))[:8]
         with ui.element("div").classes("panel narrow"):
             ui.label("Which mission?").classes("dialog-title")
             ui.label(
