@@ -20,7 +20,7 @@ from muster.server.security.login import login_routes
 from muster.server.security.refusals import Audit, Keep
 from muster.server.security.rules import require_safe
 from muster.server.settings import Settings
-from muster.server.words import OVER, Who
+from muster.server.words import Who
 
 
 def make_app(settings: Settings) -> FastAPI:
@@ -44,7 +44,7 @@ def make_app(settings: Settings) -> FastAPI:
             try:
                 yield
             finally:
-                app.state.left = sum(run.state not in OVER for run in await desk.runs.list())
+                app.state.left = desk.runs.under_way
                 await shield.audit.settle()
                 app.state.desk = None
 

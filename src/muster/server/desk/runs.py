@@ -97,6 +97,10 @@ class Runs:
         runs = await asyncio.to_thread(self._store.runs.list, limit)
         return [self._newest(run) for run in runs]
 
+    def present(self) -> Sequence[Run]:
+        """Those under way, the newest first; the database is not asked."""
+        return [self._live[run].run for run in sorted(self._live, reverse=True) if not self._live[run].over]
+
     async def over(self, limit: int = 200) -> Sequence[Run]:
         """Runs that are over, the newest first; also those of which the database does not know it yet."""
         ended = {run: carrying.run for run, carrying in self._live.items() if carrying.over}
@@ -178,7 +182,7 @@ class Runs:
     @property
     def under_way(self) -> int:
         """How many runs are under way."""
-        return sum(not carrying.over for carrying in self._live.values())
+        return len(self.present())
 
     @property
     def watchers(self) -> int:

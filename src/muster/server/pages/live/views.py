@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from nicegui import ui
@@ -39,16 +40,15 @@ async def runs_page() -> None:
         @ui.refreshable
         async def listed() -> None:
             with told():
-                runs = await the_desk().runs.list()
-                _under_way([run for run in runs if run.state not in OVER])
-                _over([run for run in runs if run.state in OVER][:_ENDED])
+                _under_way(the_desk().runs.present())
+                _over(await the_desk().runs.over(_ENDED))
 
         if await is_seen():
             await listed()
             ui.timer(_REFRESH_S, listed.refresh, immediate=False)
 
 
-def _under_way(runs: list[Run]) -> None:
+def _under_way(runs: Sequence[Run]) -> None:
     _heading("Under way")
     if runs:
         table(_HEADS, [((f"Run {run.id}", f"/live/{run.id}"), *_facts(run)) for run in runs], label="Runs under way")
@@ -58,7 +58,7 @@ def _under_way(runs: list[Run]) -> None:
         )
 
 
-def _over(runs: list[Run]) -> None:
+def _over(runs: Sequence[Run]) -> None:
     if not runs:
         return
     _heading("Ended")
