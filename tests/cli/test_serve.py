@@ -19,6 +19,11 @@ from muster.server.security.tokens import read_holders
 _PATIENCE_S = 60
 
 
+def got(url, **how):
+    """What is answered there."""
+    return httpx.get(url, timeout=_PATIENCE_S, **how)
+
+
 class Served:
     """A server that runs: its address, and its process."""
 
@@ -55,10 +60,10 @@ def served(folder, *words):
 def test_from_start_to_end(tmp_path):
     with served(tmp_path) as server:
         assert re.fullmatch(r"mission control: http://127\.0\.0\.1:\d+/\n", server.line)
-        page = httpx.get(f"{server.address}/")
+        page = got(f"{server.address}/")
         assert page.status_code == 200
         assert "<title>" in page.text
-        assert httpx.get(f"{server.address}/healthz").json() == {"status": "ok"}
+        assert got(f"{server.address}/healthz").json() == {"status": "ok"}
         with served(tmp_path) as second:  # one server a database
             assert second.line == ""
             _, said = second.process.communicate(timeout=_PATIENCE_S)
@@ -71,7 +76,7 @@ def test_from_start_to_end(tmp_path):
     for mission, page in (("yard.yaml", "court"), ("yard.yaml", "court"), ("6T-2R", "6T-2R")):  # it is uploaded once
         with served(tmp_path, mission) as again:
             assert again.address.endswith(f"/plan/{page}")
-            assert httpx.get(again.address).status_code == 200
+            assert got(again.address).status_code == 200
 
 
 def test_for_others(tmp_path):
@@ -84,10 +89,10 @@ def test_for_others(tmp_path):
     words = ("--host", "0.0.0.0", "--tokens", str(tmp_path / "tokens"), "--insecure-http", "--log-format", "json")
     with served(tmp_path, *words) as server:
         token = "muster_" + "x" * 43
-        answer = httpx.get(f"{server.address}/api/v1/me", headers={"authorization": f"Bearer {token}"})
+        answer = got(f"{server.address}/api/v1/me", headers={"authorization": f"Bearer {token}"})
         assert answer.status_code == 401
-        assert httpx.get(f"{server.address}/metrics?token={token}").status_code == 401
-        assert httpx.get(f"{server.address}/", headers={"accept": "text/html"}).status_code == 303
+        assert got(f"{server.address}/metrics?token={token}").status_code == 401
+        assert got(f"{server.address}/", headers={"accept": "text/html"}).status_code == 303
         with socket.create_connection(("127.0.0.1", int(server.address.rpartition(":")[2]))) as flood:
             _flood(flood)
         code, said = server.end()

@@ -48,6 +48,21 @@ def test_planning_that_takes_its_time_ends_no_offboard_flight(fleet, drone):
     assert fleet.faults == []
 
 
+def test_a_simulator_that_stood_still_has_not_lost_its_link(drone, monkeypatch):
+    """The fleet's words may be on their way when it goes on; one that stays silent is noticed all the same."""
+    told, turns = [], iter((0.0, 1.5, 0.0, None))
+    monkeypatch.setattr(drone, "advance", lambda now: told.append(now) or [])
+
+    def over():
+        stands_s = next(turns)
+        time.sleep(stands_s or 0.0)
+        return stands_s is None
+
+    serve(drone, ("127.0.0.1", 9), until=over)
+    assert told == sorted(told)
+    assert 0.2 <= told[-1] < 0.7
+
+
 def test_what_ends_the_thread_is_raised_and_drones_can_be_told_to_hover_all_the_same(fleet, drone):
     fleet.ports["r_0"].send([Waypoint((80.0, 0.0, 10.0))])
     fleet.advance(fleet.time_s + 5.0)

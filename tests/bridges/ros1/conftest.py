@@ -19,6 +19,13 @@ from muster.mission.errors import MissingExtraError
 
 GUARD_S = 120.0
 """No process of these tests takes so long."""
+ENDLESS = ("odom", "pose", "tf", "clock")
+"""The last parts of topics on which simulated robots, and their clock, go on for as long as they live."""
+
+
+def own_words(err):
+    """Standard error without the lines in which rospy warns of what it met on its own."""
+    return "".join(line for line in err.splitlines(keepends=True) if not line.startswith("[WARN] "))
 
 
 class Ros:
@@ -122,9 +129,25 @@ class Listener:
 
     def heard(self):
         """All of it, by (topic, data) in order; the listener ends with that."""
+        self._until_quiet()
         self._process.send_signal(signal.SIGTERM)
         self._process.communicate(timeout=10)
         return [json.loads(line) for line in self._file.read_text(encoding="utf-8").splitlines()]
+
+    def _until_quiet(self, quiet_s=0.5, within_s=5.0):
+        """What was said last may still be on its way to a busy listener."""
+        heard, since = self._ending(), time.monotonic()
+        until = since + within_s
+        while time.monotonic() < min(since + quiet_s, until):
+            time.sleep(0.05)
+            before, heard = heard, self._ending()
+            if heard != before:
+                since = time.monotonic()
+
+    def _ending(self):
+        """How many words it has heard on topics that come to an end."""
+        topics = (line.partition('", ')[0] for line in self._file.read_text(encoding="utf-8").splitlines())
+        return sum(not topic.endswith(ENDLESS) for topic in topics)
 
 
 @pytest.fixture(scope="session")

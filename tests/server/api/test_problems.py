@@ -143,7 +143,8 @@ def test_watchers_change_nothing(guarded, http):
         "/runs/{run}/actions": {"verb": "pause"},
     }
     asked = 0
-    with httpx.Client(base_url=f"{url}/api/v1", headers={"authorization": f"Bearer {tokens['watch']}"}) as watcher:
+    who = {"authorization": f"Bearer {tokens['watch']}"}
+    with httpx.Client(base_url=f"{url}/api/v1", headers=who, timeout=60) as watcher:
         for path, methods in described["paths"].items():
             for method in set(methods) - {"get"}:
                 if path == "/missions/check":
@@ -161,7 +162,7 @@ def test_watchers_change_nothing(guarded, http):
                 asked += 1
         assert asked >= 9
         assert watcher.get("/missions").status_code == 200
-    assert httpx.get(f"{url}/api/v1/missions").status_code == 401
+    assert httpx.get(f"{url}/api/v1/missions", timeout=60).status_code == 401
 
 
 def test_messages_fit_into_a_line_each(http):

@@ -5,6 +5,7 @@ import threading
 import time
 from contextlib import contextmanager
 
+import httpx
 import pytest
 from nicegui import Client as PageClient
 from nicegui import core, ui
@@ -108,6 +109,13 @@ def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client,
     assert run.plan == newer
     client.run(run.id).cancel()
     watched.require_clean()
+
+
+def test_a_page_waits_for_a_database_that_takes_its_time(served, hold):
+    """Beyond the three seconds after which NiceGUI would by itself show an error page."""
+    held = hold(Missions, "list")
+    threading.Timer(4.0, held.let_go).start()
+    assert httpx.get(served, timeout=60).status_code == 200
 
 
 @contextmanager

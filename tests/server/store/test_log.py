@@ -61,7 +61,7 @@ def test_many_stretches_are_read_in_portions(filled):
     assert [stretch.seq for stretch in filled.store.log.stretches(filled.run)] == list(range(1, 151))
 
 
-@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(st.lists(st.tuples(st.integers(1, 12), st.integers(1, 12)), max_size=8))
 def test_whatever_is_written_again_the_log_is_one_sequence(filled, spans):
     """A model: a batch from `a` to `b` is taken where it joins the log, and refused where it does not."""

@@ -84,7 +84,7 @@ def bomb(first, levels):
     ],
 )
 def test_a_text_that_means_harm_is_refused(asked, text):
-    answer = asked("check", limit_s=10, mission=given(text))
+    answer = asked("check", limit_s=60, mission=given(text))
     assert answer["errors"]
     assert all(len(str(error)) < 1000 for error in answer["errors"])
     assert answer["summary"] is None

@@ -16,6 +16,11 @@ from muster.server.words import Who
 if TYPE_CHECKING:
     from muster.server.desk.desk import Desk
 
+PATIENCE_S = 20.0
+"""For each page: NiceGUI answers with an error page where one is not built, or as far as `is_seen`, within this.
+
+By its own three seconds it did so wherever a busy machine let a page wait for a thread of the database.
+"""
 _KEY = "muster.pages"
 
 
@@ -74,7 +79,7 @@ def on_the_wall() -> bool:
 async def is_seen() -> bool:
     """Wait until the page as it is so far is seen; False: by nobody, so that nothing more is to be built.
 
-    A page that is not built within three seconds is an error page; what takes its time, as a database that does not
+    A page that is not built within PATIENCE_S is an error page; what takes its time, as a database that does not
     answer or workers that are busy, comes after this.
     """
     client = ui.context.client

@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import ui
 
 from muster.mission.errors import MusterError
-from muster.server.pages.asking import is_seen, on_the_wall, the_asker, the_desk
+from muster.server.pages.asking import PATIENCE_S, is_seen, on_the_wall, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import told, words_of
@@ -32,7 +32,7 @@ _REFRESH_S = 2.0
 _ENDED = 10  # runs that are over and still listed
 
 
-@ui.page("/live")
+@ui.page("/live", response_timeout=PATIENCE_S)
 async def runs_page() -> None:
     """The runs under way, and those that have just ended."""
     with frame("Live"):
@@ -75,7 +75,7 @@ def _facts(run: Run) -> tuple[str, ...]:
     return run.mission, state, f"{run.time_s:.0f} s", speed, run.world, run.author, f"{run.at:%Y-%m-%d %H:%M} UTC"
 
 
-@ui.page("/live/{run}")
+@ui.page("/live/{run}", response_timeout=PATIENCE_S)
 async def run_page(run: int) -> None:
     """One run as it is carried out."""
     desk, who, wall = the_desk(), the_asker(), on_the_wall()

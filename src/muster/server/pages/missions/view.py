@@ -9,7 +9,7 @@ from functools import cache
 from nicegui import ui
 
 from muster.library import mission_summary
-from muster.server.pages.asking import may_command, the_asker, the_desk
+from muster.server.pages.asking import PATIENCE_S, may_command, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.missions.making import named, open_making
 from muster.server.pages.notices import offer, say, told
@@ -20,7 +20,7 @@ _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"
 
 
-@ui.page("/")
+@ui.page("/", response_timeout=PATIENCE_S)
 async def view() -> None:
     """All missions, own ones first."""
     with frame("Missions", keys=_KEYS):

@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import the_desk
+from muster.server.pages.asking import PATIENCE_S, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
 from muster.server.pages.notices import told
@@ -18,7 +18,7 @@ from muster.server.pages.plan.ground import ground_of
 from muster.server.words import PlanEntry
 
 
-@ui.page("/plan/{mission}/compare")
+@ui.page("/plan/{mission}/compare", response_timeout=PATIENCE_S)
 async def compare(mission: str, a: int, b: int) -> None:
     """Plans `a` and `b` of a mission."""
     with frame("Plan", f"Two plans of {mission}") as content:

@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import may_command, on_the_wall, the_desk
+from muster.server.pages.asking import PATIENCE_S, may_command, on_the_wall, the_desk
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told
@@ -32,7 +32,7 @@ _KEYS = {
 }
 
 
-@ui.page("/plan")
+@ui.page("/plan", response_timeout=PATIENCE_S)
 async def choose() -> None:
     """Without a mission: those that were planned last, or the way to the list."""
     with frame("Plan"), told():
@@ -52,7 +52,7 @@ async def choose() -> None:
                 ui.link("All missions, and new ones", "/")
 
 
-@ui.page("/plan/{mission}")
+@ui.page("/plan/{mission}", response_timeout=PATIENCE_S)
 async def view(mission: str, plan: int | None = None) -> None:
     """A mission and its plans; `?plan=` chooses one."""
     with frame("Plan", mission, _KEYS) as content:

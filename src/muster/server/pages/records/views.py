@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from muster.mission.errors import MusterError
-from muster.server.pages.asking import is_seen, the_desk
+from muster.server.pages.asking import PATIENCE_S, is_seen, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told, words_of
 from muster.server.pages.records.figures import (
@@ -54,7 +54,7 @@ _MOST_EVENTS = 2000
 ui.add_css(Path(__file__).with_name("records.css"), shared=True)
 
 
-@ui.page("/records")
+@ui.page("/records", response_timeout=PATIENCE_S)
 async def records_page() -> None:
     """Runs that are over, the newest first."""
     with frame("Records"), told():
@@ -75,7 +75,7 @@ def _row(run: Run) -> tuple[Any, ...]:
     return (f"Run {run.id}", f"/records/{run.id}"), run.mission, run.state, *figures, when, run.author
 
 
-@ui.page("/records/{run}")
+@ui.page("/records/{run}", response_timeout=PATIENCE_S)
 async def record_page(run: int) -> None:
     """One run that is over."""
     desk = the_desk()
