@@ -19,7 +19,7 @@ from muster.mission.model import Origin
 
 _STEP_S = 0.02
 _MOST_S = 0.2
-"""So much of our time counts at once: a simulator that stood still has not lost its link meanwhile."""
+"""By so much the drone's time goes on at once: a simulator that stood still has not lost its link meanwhile."""
 
 
 def serve(
@@ -41,7 +41,7 @@ def serve(
             except (BlockingIOError, ConnectionRefusedError):
                 pass
             before_s, seen_s = seen_s, time.monotonic()
-            drone_s += min(_MOST_S, seen_s - before_s) * speed
+            drone_s += min(_MOST_S, (seen_s - before_s) * speed)
             for packet in drone.advance(drone_s):
                 try:
                     end.sendto(packet, address)
