@@ -15,10 +15,11 @@ from tests.server.serving import served
 
 from muster import load
 from muster.cli.remote.sending import parcel
+from muster.cli.remote.simulate import _followed
 from muster.cli.remote.waiting import planned
 from muster.server.client import Client
 from muster.server.security.tokens import line_of, new_token
-from muster.server.words import Job
+from muster.server.words import ConflictError, Job
 
 VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")
 
@@ -175,6 +176,15 @@ def test_a_server_that_is_not_there(verb, server, said, plan, muster):
     assert said in err
 
 
+@pytest.mark.parametrize(("name", "value"), [("ALL_PROXY", "socks9://127.0.0.1:1"), ("SSL_CERT_FILE", "/no/such.pem")])
+def test_an_environment_that_cannot_be_followed(muster, monkeypatch, name, value):
+    monkeypatch.setenv(name, value)
+    code, out, err = muster("missions", "--server", "https://127.0.0.1:9")
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert err.startswith("https://127.0.0.1:9: cannot be reached: ")
+    assert name in err
+
+
 def test_tokens(folder, muster, tmp_path, monkeypatch):
     tokens = {role: new_token() for role in ("watch", "command")}
     lines = [line_of(role, role, token) for role, token in tokens.items()]
@@ -253,6 +263,26 @@ def test_a_second_ctrl_c_or_one_while_it_waits_cancels_the_job_there(capsys, beg
     with pytest.raises(KeyboardInterrupt):
         planned(lambda: job, load("6T-2R"), quiet=True, time_limit=1.0, iterations=None)
     assert (job.told, capsys.readouterr().err) == (told, said)
+
+
+class Carried:
+    """A run at a server that is over when Ctrl-C comes."""
+
+    def stream(self):
+        raise KeyboardInterrupt
+
+    def cancel(self):
+        raise ConflictError("run 3 is over: ended; expected one that is under way")
+
+    def wait(self):
+        self.waited = True
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_ctrl_c_as_a_run_ends_is_no_error(before):
+    carried = Carried()
+    assert _followed(carried, before, telling=False) is True
+    assert carried.waited
 
 
 def test_the_client_imports_no_part_of_the_server_nor_its_libraries():

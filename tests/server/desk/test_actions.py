@@ -1,13 +1,13 @@
 """What users do is written down before it is done."""
 
 import asyncio
-from contextlib import closing
+from contextlib import closing, nullcontext
 
 import pytest
 
 from muster.server.desk.actions import Actions
 from muster.server.store import Store
-from muster.server.words import ConflictError, ForbiddenError, Who
+from muster.server.words import ConflictError, ForbiddenError, StoreError, Who
 
 ANN = Who("ann", "command")
 BO = Who("bo", "watch")
@@ -35,12 +35,24 @@ def test_what_comes_of_it(store):
             with pytest.raises(type(error)):
                 await do(actions, error)
         added = await actions.add(ANN, "login", {})
-        await actions.settle(added.id, "done", 1.5)
+        store.actions.settle(added.id, "done", 1.5)
         found = await actions.list(limit=5)
         assert [a.outcome for a in found] == ["done", "y" * 500, "broken off: ZeroDivisionError", "it is over", "done"]
         assert [a.id for a in await actions.list(before=found[1].id)] == [a.id for a in found[2:]]
 
     asyncio.run(story())
+
+
+@pytest.mark.parametrize("error", [None, ConflictError("it is over"), ZeroDivisionError("x")])
+def test_what_came_of_it_is_told_also_where_it_cannot_be_written(store, monkeypatch, caplog, error):
+    def refuse(*_):
+        raise StoreError("the disk is full")
+
+    monkeypatch.setattr(store.actions, "settle", refuse)
+    with nullcontext() if error is None else pytest.raises(type(error), match=str(error)):
+        asyncio.run(do(Actions(store), error))
+    assert [action.outcome for action in store.actions.list()] == [""]
+    assert "its outcome is not written down" in caplog.text
 
 
 def test_whoever_goes_away_leaves_a_line(store):

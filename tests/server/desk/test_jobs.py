@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -295,6 +296,31 @@ def test_a_job_that_is_cancelled_while_its_plan_is_written_has_none(in_desk):
         with pytest.raises(ConflictError, match="is cancelled"):
             desk.store.jobs.end_with_plan(job.id, {"routes": []}, "", None)
         assert desk.store.plans.list() == []
+
+    in_desk(story)
+
+
+def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(in_desk, monkeypatch):
+    written, go_on = threading.Event(), threading.Event()
+
+    async def story(desk):
+        end = desk.store.jobs.end
+
+        def end_slowly(job, state, *more):
+            ended = end(job, state, *more)
+            if state == "failed":
+                written.set()
+                go_on.wait(60)
+            return ended
+
+        monkeypatch.setattr(desk.store.jobs, "end", end_slowly)
+        job = await desk.jobs.ask_plan(WHO, "tiny", allocator="no such")
+        await asyncio.to_thread(written.wait, 60)
+        with pytest.raises(ConflictError):
+            await desk.jobs.cancel(WHO, job.id)
+        go_on.set()
+        async with asyncio.timeout(30):
+            assert (await over(desk.jobs, job))[-1].state == "failed"
 
     in_desk(story)
 

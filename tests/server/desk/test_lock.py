@@ -65,6 +65,15 @@ def test_of_sqlite(tmp_path):
         assert (tmp_path / "a.db.lock").read_text() == f"{os.getpid()}\n"
 
 
+def test_of_sqlite_by_another_name(tmp_path):
+    """SQLite writes the same file by it."""
+    (tmp_path / "there").mkdir()
+    (tmp_path / "b.db").symlink_to(tmp_path / "a.db")
+    with alone_with(f"sqlite:///{tmp_path}/a.db"):
+        for name in ("b.db", "there/../a.db"):
+            _refused(f"sqlite:///{tmp_path}/{name}", "in use by process")
+
+
 def test_of_postgresql(postgresql_url):
     _hold_and_crash(postgresql_url, "in use by another server; expected one server a database")
 

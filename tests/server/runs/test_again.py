@@ -4,10 +4,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.disturbances.missions import disturbed_mission
-from tests.server.runs.stage import performed, performed_with_crashes, require_same
+from tests.server.runs.stage import Kept, performed, performed_with_crashes, require_same
 
 import muster
-from muster.server.runs.scribe import DivergedError
+from muster.execution import Status
+from muster.server.runs.performance import Performance
+from muster.server.runs.scribe import DivergedError, Scribe
 
 MOMENTS = st.floats(0, 60).map(lambda value: round(value, 2))
 
@@ -98,3 +100,36 @@ def test_a_log_that_does_not_come_about_again_is_refused():
     log[15] = log[15] | {"data": {"robot": "r_9"}}
     with pytest.raises(DivergedError, match="entry 16 of the log"):
         performed(mission, plan, log=log)
+
+
+class Drives:
+    """A course of real robots that never come to an end by themselves."""
+
+    real, done, time_s, next_s = True, False, 5.0, 5.0
+    status = Status(robots={}, tasks={})
+
+    def __init__(self):
+        self.told = []
+
+    def pause(self):
+        self.told.append("pause")
+
+    def break_off(self, reason):
+        self.told.append(reason)
+
+    def go_on(self):
+        raise AssertionError("robots go on")
+
+
+def test_a_cancel_before_a_crash_holds_for_real_robots_also_where_the_log_has_no_report():
+    mission = muster.load("6T-2R")
+    log = [
+        {"seq": 1, "time_s": 3.0, "kind": "command", "data": {"action": 1, "verb": "pause", "outcome": "done"}},
+        {"seq": 2, "time_s": 4.0, "kind": "command", "data": {"action": 2, "verb": "cancel", "outcome": "done"}},
+    ]
+    kept, course = Kept(), Drives()
+    scribe = Scribe(mission, kept, log=log, again=False)
+    performance = Performance(course, scribe, None, kept, speed=1.0, ended=lambda: False)
+    performance.recall(log)
+    performance.perform()
+    assert course.told == ["not done when the run was cancelled"]

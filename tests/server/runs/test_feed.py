@@ -43,6 +43,19 @@ def test_who_is_slow_misses_states_but_no_entry_and_takes_no_memory():
     assert feed.watchers == 0
 
 
+def test_a_watcher_of_a_run_that_ended_waits_for_nothing_that_is_nowhere():
+    """Entries that were told and then not written, as another server went on with the run."""
+
+    async def story():
+        feed, log = feed_of(5)
+        feed._entries.clear()
+        log.clear()
+        feed.end()
+        return [json.loads(text)["type"] async for text in feed.watch(1)]
+
+    assert asyncio.run(asyncio.wait_for(story(), 30)) == ["hello"]
+
+
 def test_a_watcher_wakes_for_each_thing_and_hears_the_end():
     async def story():
         feed, _ = feed_of(0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.halting import ctrl_c_halts
 from muster.cli.keeping import kept_record
 from muster.cli.options import MissionFile, load_plan
 from muster.cli.outputs import require_drawable, require_writable
@@ -20,6 +22,7 @@ from muster.cli.simulate import noise_of
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import json_text
+from muster.server.words import ConflictError
 
 if TYPE_CHECKING:
     from muster.server.client import Client, RunningRun
@@ -56,8 +59,9 @@ def run(
         settings["noise"] = {kind: amount for kind, amount in asdict(noise_of(noises)).items() if amount}
     loaded = mission.load(verbose=verbose)
     number = _plan(control, loaded, plan, seed, time_limit, iterations, quiet=quiet, verbose=verbose)
-    carried = control.start(number, world=world, speed=speed, **settings)
-    interrupted = _followed(carried, telling=speed is not None and not quiet)
+    with ctrl_c_halts() as halt:  # no exception, so that there is no run of which we do not know
+        carried = control.start(number, world=world, speed=speed, **settings)
+    interrupted = _followed(carried, halt.is_set(), telling=speed is not None and not quiet)
     if carried.seen.report is None:
         raise MusterError(carried.seen.remark or f"run {carried.id} {carried.seen.state}, without a report")
     with kept_record(record, html, plot, gantt) as file:
@@ -98,15 +102,17 @@ def _plan(
     return entry.id
 
 
-def _followed(carried: RunningRun, *, telling: bool) -> bool:
+def _followed(carried: RunningRun, interrupted: bool, *, telling: bool) -> bool:
     """Tell what happens until it is over; whether Ctrl-C ended it, which cancels it there."""
-    interrupted = False
     try:
+        if interrupted:
+            raise KeyboardInterrupt
         for message in carried.stream():
             if telling and message["type"] == "entry" and message["line"]:
                 click.echo(f"{message['time_s']:9.1f} s  {message['line']}", err=True)
     except KeyboardInterrupt:
         interrupted = True
-        carried.cancel()
+        with suppress(ConflictError):  # it has just ended
+            carried.cancel()
     carried.wait()
     return interrupted

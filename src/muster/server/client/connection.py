@@ -55,7 +55,10 @@ class Connection:
         if token is not None:
             self._headers["Authorization"] = f"Bearer {token}"
         self._timeout_s = timeout_s
-        self._http = httpx.Client(base_url=self._url + PREFIX, headers=self._headers, timeout=timeout_s)
+        try:
+            self._http = httpx.Client(base_url=self._url + PREFIX, headers=self._headers, timeout=timeout_s)
+        except (ImportError, OSError, ValueError) as error:
+            raise self._no_way(error) from None
 
     def close(self) -> None:
         self._http.close()
@@ -104,8 +107,15 @@ class Connection:
             return
         except InvalidStatus as error:
             raise _error(error.response.status_code, bytes(error.response.body or b"")) from None
+        except ImportError as error:
+            raise self._no_way(error) from None
         except (WebSocketException, OSError) as error:
             raise NetworkError(f"{self._url}: the stream broke off: {_line(error)}; {_goes_on(path)}") from None
+
+    def _no_way(self, error: Exception) -> NetworkError:
+        """What the environment says of proxies and certificates cannot be followed."""
+        expected = "expected other proxies or certificates in the environment (ALL_PROXY, SSL_CERT_FILE)"
+        return NetworkError(f"{self._url}: cannot be reached: {_line(error)}; {expected}")
 
     def _json(self, method: str, path: str, **how: Any) -> Any:
         answer = self._answer(method, path, **how)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
 
 from muster.mission.errors import MusterError
 from muster.server.store import Store
-from muster.server.words import Action, ForbiddenError, Who
+from muster.server.words import Action, ForbiddenError, StoreError, Who
 
 Refused = Callable[[Who, str, str], None]
 """Is told who may only watch, what they wanted to do, and why they may not; floods of that are not all written down."""
 _LONGEST_OUTCOME = 500
+_log = logging.getLogger(__name__)
 
 
 def unheard(who: Who, verb: str, why: str) -> None:
@@ -39,9 +41,12 @@ class Actions:
         """Write down what somebody wants to do; its outcome is not known yet."""
         return await asyncio.to_thread(self._table.add, who, verb, data, run)
 
-    async def settle(self, action: int, outcome: str, applied_s: float | None = None) -> None:
-        """Write down what came of it: `done`, or why it was refused."""
-        await asyncio.to_thread(self._table.settle, action, outcome, applied_s)
+    async def _settle(self, action: int, outcome: str) -> None:
+        """Write down what came of it: `done`, or why not. Whoever asked hears that, whether it is written or not."""
+        try:
+            await asyncio.to_thread(self._table.settle, action, outcome)
+        except StoreError as error:
+            _log.warning("action %d: its outcome is not written down (%s): %s", action, outcome, error)
 
     @asynccontextmanager
     async def of(self, who: Who, verb: str, data: Mapping[str, Any], run: int | None = None) -> AsyncIterator[Action]:
@@ -57,12 +62,12 @@ class Actions:
         try:
             yield action
         except MusterError as error:
-            await self.settle(action.id, outcome_of(error))
+            await self._settle(action.id, outcome_of(error))
             raise
         except BaseException as error:  # a fault of Muster's own, or whoever asked went away
-            await self.settle(action.id, f"broken off: {type(error).__name__}")
+            await self._settle(action.id, f"broken off: {type(error).__name__}")
             raise
-        await self.settle(action.id, "done")
+        await self._settle(action.id, "done")
 
     async def list(self, run: int | None = None, limit: int = 200, before: int | None = None) -> list[Action]:
         """Actions, of one run or all, the newest first; with ids below `before`, if given."""

@@ -235,6 +235,7 @@ class Jobs:
 
     async def _end(self, number: int, state: JobState, error: str = "") -> None:
         """Write down how a job ended, with its last progress; one that was cancelled meanwhile stays so."""
+        self._at_work.pop(number, None)  # what is written down now is not to be broken off
         newest = self._newest.get(number)
         if newest is not None and newest.progress is not None:
             await self._patiently(number, self._store.jobs.progress, number, newest.progress)

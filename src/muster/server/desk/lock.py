@@ -89,6 +89,7 @@ def alone_with(url: str) -> Iterator[Lock]:
 
 @contextmanager
 def _file_locked(file: Path) -> Iterator[None]:
+    file = file.resolve()  # as SQLite does: two names of one file are one database
     lock = file.with_name(f"{file.name}.lock")
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)

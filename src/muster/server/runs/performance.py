@@ -99,10 +99,17 @@ class Performance:
         for entry in log:
             if entry["kind"] == "command":
                 self._obeyed.add(entry["data"]["action"])
-                if entry["data"]["outcome"] == "done" and entry["data"]["verb"] in ("pause", "resume"):
-                    self._paused = entry["data"]["verb"] == "pause"
-        if self._paused:
+                if entry["data"]["outcome"] == "done":
+                    self._recall(entry["data"]["verb"])
+        if self._cancelled:  # the log has no report, or nobody would go on
+            self._course.break_off(CANCELLED)
+        elif self._paused:
             self._course.pause()
+
+    def _recall(self, verb: str) -> None:
+        if verb in ("pause", "resume"):
+            self._paused = verb == "pause"
+        self._cancelled = self._cancelled or verb == "cancel"
 
     def perform(self) -> None:
         """Go on until it is over, or the server is gone."""
