@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -219,3 +220,59 @@ def test_the_command_ends_when_another_server_takes_its_database(postgresql_url,
         "in use by another server; expected one server a database (--db names another)"
     )
     assert "Traceback" not in said
+
+
+def test_closing_waits_for_no_look_that_hangs_with_the_database(postgresql_url, monkeypatch):
+    monkeypatch.setattr("muster.server.desk.desk._LOOK_S", 0.1)
+    looking, answer, ended = threading.Event(), threading.Event(), threading.Event()
+
+    def look(_):
+        looking.set()
+        answer.wait(60)
+        ended.set()
+
+    monkeypatch.setattr("muster.server.desk.lock._SessionLock._look", look)
+
+    async def story():
+        async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
+            plan = await asyncio.to_thread(planned, desk.store, muster.load("31T-6R50"))
+            run = await desk.runs.start(ADA, plan, speed=1.0)
+            while not await desk.runs.entries(run.id):
+                await asyncio.sleep(0.05)
+            await asyncio.to_thread(looking.wait, 60)
+        assert (desk.runs.under_way, desk.runs.pid(run.id)) == (0, None)
+        assert not ended.is_set()
+
+    try:
+        asyncio.run(story())
+        assert not ended.is_set()
+        _refused(postgresql_url, "in use by another server")  # the look has the session yet
+    finally:
+        answer.set()
+    _free(postgresql_url)
+
+
+_HANG = """
+import sys, threading
+from muster.cli.main import run
+from muster.server.desk.lock import _SessionLock
+def look(_):
+    print("looks", flush=True)
+    threading.Event().wait()
+_SessionLock._look = look
+sys.exit(run(["serve", "--port", "0"]))
+"""
+
+
+def test_the_command_ends_while_a_look_hangs(postgresql_url, tmp_path):
+    environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "MUSTER_DB": postgresql_url}
+    with subprocess.Popen(
+        [sys.executable, "-c", _HANG], stdout=subprocess.PIPE, text=True, env=environment, cwd=tmp_path
+    ) as server:
+        try:
+            while server.stdout.readline() not in ("looks\n", ""):
+                pass
+            server.send_signal(signal.SIGTERM)
+            assert server.wait(60) == 0
+        finally:
+            server.kill()

@@ -1,5 +1,7 @@
 """What is thrown away, and what stays."""
 
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import astuple
 from datetime import UTC, datetime, timedelta
 
@@ -8,8 +10,8 @@ from sqlalchemy import select, text, update
 from tests.server.store.conftest import SUMMARY
 
 from muster.server.store import Store
-from muster.server.store.prune import Pruned, prune
-from muster.server.store.schema import actions, jobs, mission_versions, plans, pruning, runs
+from muster.server.store.prune import Pruned, _delete, prune
+from muster.server.store.schema import actions, jobs, mission_files, mission_versions, plans, pruning, runs
 from muster.server.words import NotFoundError, StoreError, Who
 
 LONG_AGO = datetime.now(UTC) - timedelta(days=100)
@@ -120,3 +122,40 @@ def test_a_server_at_work_goes_on(old, database_url):
     old.run = old.under_way
     assert server.log.append(old.under_way, 1.0, [old.entry(1)]) == 1
     server.close()
+
+
+def _until_over_or_waiting(store, writing):
+    """For pruning, which has a lock."""
+    until = time.monotonic() + 30
+    while not writing.done():
+        with store.database.reading() as connection:
+            if connection.execute(text("SELECT 1 FROM pg_locks WHERE NOT granted")).first():
+                return
+        assert time.monotonic() < until
+        time.sleep(0.02)
+
+
+def test_a_version_is_pruned_whole_or_not_at_all_when_a_server_writes_of_it_meanwhile(postgresql_url, monkeypatch):
+    """SQLite has one writer, so nobody can."""
+    store = Store.open(postgresql_url)
+    store.missions.create("Yard", "1", {"old.png": b"old"}, SUMMARY, "ann")
+    store.missions.save("Yard", "2", {}, SUMMARY, "ann", "", 1)
+    make_old(store)
+    writings = []
+
+    def delete(connection, table, condition):
+        deleted = _delete(connection, table, condition)
+        if table is mission_files:
+            writings.append(other.submit(store.jobs.add, "plan", "Yard", 1, {}, "ann"))
+            _until_over_or_waiting(store, writings[0])
+        return deleted
+
+    monkeypatch.setattr("muster.server.store.prune._delete", delete)
+    with ThreadPoolExecutor(1) as other:
+        pruned = prune(postgresql_url, 30)
+    assert (pruned.mission_versions, pruned.files) == (1, 1)
+    with pytest.raises(StoreError):
+        writings[0].result()
+    with pytest.raises(NotFoundError):
+        store.missions.get("Yard", 1)
+    store.close()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
+from threading import Thread
 
 from muster.server.desk.actions import Actions, Refused, unheard
 from muster.server.desk.jobs import Jobs
@@ -93,18 +94,34 @@ async def open_desk(
 
 
 async def _until_taken(lock: Lock, runs: Runs) -> None:
-    """Look after the lock, by a thread of its own as others may all wait for the database.
+    """Look after the lock, by threads of its own as others may all wait for the database.
 
     Raises
     ------
     TakenError
         if another server has the database; nothing is carried out any more then.
     """
-    with ThreadPoolExecutor(1, "muster-lock") as alone:
-        while True:
-            await asyncio.sleep(_LOOK_S)
-            try:
-                await asyncio.get_running_loop().run_in_executor(alone, lock.look)
-            except TakenError:
-                await runs.close()
-                raise
+    while True:
+        await asyncio.sleep(_LOOK_S)
+        try:
+            await _aside(lock.look)
+        except TakenError:
+            await runs.close()
+            raise
+
+
+def _aside(work: Callable[[], None]) -> asyncio.Future[None]:
+    """What a thread does for which nobody waits at the end: no executor's, whose threads the interpreter joins."""
+    done: Future[None] = Future()
+    done.set_running_or_notify_cancel()  # whoever waits may be cancelled, the thread cannot
+
+    def go() -> None:
+        try:
+            work()
+        except BaseException as error:
+            done.set_exception(error)
+        else:
+            done.set_result(None)
+
+    Thread(target=go, name="muster-lock", daemon=True).start()
+    return asyncio.wrap_future(done)

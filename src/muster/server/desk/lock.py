@@ -15,6 +15,7 @@ from __future__ import annotations
 import fcntl
 import os
 import secrets
+import threading
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from hashlib import sha256
@@ -135,6 +136,7 @@ class _SessionLock(Lock):
     def __init__(self, url: URL, name: str) -> None:
         self._url, self._name = url, name
         self._own = secrets.randbits(62)
+        self._looking, self._is_over = threading.Lock(), False
         import psycopg
 
         self._session = self._connected()
@@ -145,6 +147,12 @@ class _SessionLock(Lock):
             raise (error if isinstance(error, StoreError) else connection_error(error, name)) from None
 
     def look(self) -> None:
+        with self._looking:
+            self._look()
+        if self._is_over:
+            self._session.close()
+
+    def _look(self) -> None:
         import psycopg
 
         try:
@@ -152,6 +160,8 @@ class _SessionLock(Lock):
             return
         except psycopg.Error:
             self._session.close()
+        if self._is_over:
+            return
         try:
             self._session = self._connected()
         except StoreError:
@@ -169,7 +179,11 @@ class _SessionLock(Lock):
             raise StoreError(f"{self._name}: it was gone, and another server may have it; wait a moment")
 
     def close(self) -> None:
-        self._session.close()
+        """Wait for no `look`, which may hang with the database: it ends the session itself, or the process does."""
+        self._is_over = True
+        if self._looking.acquire(blocking=False):
+            self._session.close()
+            self._looking.release()
 
     def _connected(self) -> psycopg.Connection[tuple[object, ...]]:
         import psycopg

@@ -19,6 +19,7 @@ _OF_ONE_S = 10.0
 _IN_ALL_S = 10.0
 _AT_ONCE = 100
 _WAITING = 50
+_SETTLES_S = 2.0
 
 
 class Audit:
@@ -82,5 +83,6 @@ class Audit:
             log.error("not in the audit log: %s of %s: %s", verb, who.name, error)
 
     async def settle(self) -> None:
-        """Until everything noted is written."""
-        await asyncio.gather(*self._under_way)
+        """Until everything noted is written; not for long, as robots are told to stand after it."""
+        if self._under_way:
+            await asyncio.wait(self._under_way, timeout=_SETTLES_S)

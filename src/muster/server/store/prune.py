@@ -10,7 +10,21 @@ from dataclasses import dataclass, fields
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, Table, and_, delete, exists, func, insert, not_, or_, select
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Select,
+    Table,
+    and_,
+    delete,
+    exists,
+    func,
+    insert,
+    not_,
+    or_,
+    select,
+    text,
+)
 
 from muster.server.store.backup import existing, require_newest
 from muster.server.store.schema import (
@@ -27,6 +41,9 @@ from muster.server.store.schema import (
     stretches,
 )
 from muster.server.words import JOB_OVER, OVER
+
+_DECIDE = (jobs, runs, missions, mission_versions, plans, blobs, mission_files)
+"""What says which of them go; in the order in which a server writes to them, so that there is no deadlock with one."""
 
 _START = jobs.c.arguments["start"].as_integer()  # the plan that a job goes on from
 
@@ -54,7 +71,7 @@ def prune(url: str, older_than_days: float, *, dry_run: bool = False) -> Pruned:
 
     That are plans and versions of missions, as old, and missions that were deleted, without any versions left.
     The newest plan of a mission stays, and the newest version of one that was not deleted. Each run is a transaction of
-    its own, so a server at work waits for one of them at most.
+    its own, and so is the rest, so a server at work waits for one of them at most.
 
     Raises
     ------
@@ -160,12 +177,20 @@ def _delete_run(connection: Connection, run: int) -> Pruned:
 
 def _delete_others(connection: Connection, old: _Old) -> Pruned:
     """In an order in which nothing is deleted before what refers to it."""
+    _let_nobody_write(connection)
     return Pruned(
         actions=_delete(connection, actions, old.actions),
         jobs=_delete(connection, jobs, old.jobs),
         plans=_delete(connection, plans, old.plans),
         **_delete_missions(connection, old),
     )
+
+
+def _let_nobody_write(connection: Connection) -> None:
+    """Until the transaction ends, as with SQLite: each statement finds what goes anew, and all are to find the same."""
+    if connection.dialect.name == "postgresql":
+        names = ", ".join(table.name for table in _DECIDE)
+        connection.execute(text(f"LOCK TABLE {names} IN SHARE ROW EXCLUSIVE MODE"))
 
 
 def _delete_missions(connection: Connection, old: _Old) -> dict[str, int]:
