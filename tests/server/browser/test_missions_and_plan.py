@@ -196,6 +196,28 @@ def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
     page.click("#undo")
 
 
+def test_focus_is_seen_and_words_on_buttons_are_read_in_the_dark(watched, page):
+    """Quasar says otherwise of both, and that it is important."""
+    plan_view(watched, "6T-2R")
+    page.keyboard.press("Tab")
+    page.locator("#plan").focus()
+    expect(page.locator("#plan")).to_have_css("outline-style", "solid")
+    page.emulate_media(color_scheme="dark")
+    expect(page.locator("#plan")).to_have_css("color", "rgb(23, 24, 27)")
+    page.emulate_media(color_scheme="light")
+    expect(page.locator("#plan")).to_have_css("color", "rgb(255, 255, 255)")
+
+
+def test_a_run_that_failed_before_it_began_has_no_record_to_show(watched, page):
+    with Client(watched.origin) as client:
+        run = client.start(client.plan("yard", iterations=1).wait(), avoidance="rvo")
+        run.wait()
+    watched.open(f"/records/{run.id}")
+    page.get_by_text("the mission is in space").wait_for()
+    page.get_by_text("What users did").wait_for()
+    assert page.locator("iframe, .downloads").count() == 0
+
+
 def test_planning_shows_the_answer_says_why_and_exports(watched, page):
     plan_view(watched, "31T-6R50")
     page.get_by_label("Time limit, s").fill("1")

@@ -239,7 +239,7 @@ def test_it_ends(watched, page):
     page.get_by_role("link", name="Run 1").click()
     page.get_by_role("button", name="Go on").click()
     page.get_by_label("Speed", exact=True).select_option(label="as fast as it goes")
-    page.get_by_text("The run is over (ended)").wait_for(timeout=90_000)
+    page.get_by_text(re.compile(r"The run is over \(ended\): \d+ tasks done, \d+ not\.")).wait_for(timeout=90_000)
     watched.shoot("live-ended")
 
 
@@ -254,6 +254,8 @@ def test_its_record_is_replayed_by_the_slider(watched, page):
     assert page.get_by_role("table", name="Robots, planned against flown").locator("tr").count() == 7
     page.get_by_text("What users did").click()
     assert f"takes {OUT} out" in page.get_by_role("table", name="What users did").inner_text()
+    watched.open("/live/1?wall=1")
+    page.wait_for_url("**/records/1?wall=1")
     watched.open("/records")
     page.get_by_role("link", name="Run 1").wait_for()
     watched.shoot("records")

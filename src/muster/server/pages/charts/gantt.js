@@ -43,7 +43,7 @@ export default {
     height() { return this.rows.length * ROW + FOOT; },
     end() {
       const ends = this.rows.flatMap((row) => [row.back_s ?? 0, ...row.visits.map((visit) => visit.ends_s)]);
-      return Math.max(...ends, 1e-9);
+      return Math.max(...ends, 0) || 1;
     },
     ticks() {
       const rough = this.end / Math.max(this.width / 90, 1);

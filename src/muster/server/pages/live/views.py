@@ -85,8 +85,8 @@ async def run_page(run: int) -> None:
         with frame("Live"), ui.element("p"):
             ui.label(words_of(error))
         return
-    if entry.state in OVER and not wall:
-        ui.navigate.to(f"/records/{run}")
+    if entry.state in OVER:
+        ui.navigate.to(f"/records/{run}{'?wall=1' if wall else ''}")
         return
     with frame("Live", title=f"{entry.mission}, run {run}", keys=KEYS) as content:
         content.classes("live-view")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,6 +17,7 @@ from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import warn, words_of
 from muster.server.pages.plan.table import Column, Table
 
+_AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _PLACE = (Column("x", "number", hint="metres east"), Column("y", "number", hint="metres north"))
 _HEIGHT = Column("z", "number", hint="metres above the ground of the map")
 _ROBOTS = (
@@ -137,14 +140,21 @@ def _value(typed: str, where: str, kind: str) -> object:
     if kind == "words":
         return typed.replace(",", " ").split()
     if kind == "number":
-        try:
-            number = float(typed.replace(",", "."))
-        except ValueError:
-            raise ParameterError(f"{where}: {typed!r}; expected a number") from None
-        return int(number) if number.is_integer() and abs(number) < 1e15 else number
+        return number_of(typed, where)
     if kind == "choice" and typed in ("true", "false"):
         return typed == "true"
     return typed
+
+
+def number_of(typed: str, where: str) -> float:
+    """A number with a point or a comma before what is behind it; 1,000 may be one or a thousand, and is refused."""
+    try:
+        number = math.nan if "_" in typed or _AMBIGUOUS.fullmatch(typed) else float(typed.replace(",", "."))
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ParameterError(f"{where}: {typed!r}; expected a number, as 1000 or 1.5")
+    return int(number) if number.is_integer() and abs(number) < 1e15 else number
 
 
 def _rows(items: object) -> list[dict[str, str]]:

@@ -57,6 +57,7 @@ class Workshop:
             self._tabs = ui.toggle({"map": "Map", "form": "Form", "text": "Text"}, value="map", on_change=self._turn)
             self._tabs.props('no-caps unelevated dense padding="4px 14px" toggle-color=primary').classes("views")
             self._tabs.props["aria-label"] = "How the mission is shown"
+            self._tabs.props["role"] = "group"
             if self._editable:
                 self._mode = ui.select(_MODES, value="select", on_change=lambda e: self.map.set_mode(e.value))
                 self._mode.props('outlined dense options-dense aria-label="What a click on the map does"')

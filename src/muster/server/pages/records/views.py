@@ -88,14 +88,16 @@ async def record_page(run: int) -> None:
     with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), told():
         if not await is_seen():
             return
-        _head(found, on_earth=await _is_on_earth(found))
+        entries = await desk.runs.entries(run)
+        _head(found, _files_of(found, on_earth=await _is_on_earth(found)) if entries else ())
         if found.state not in OVER:
             with ui.element("p"):
                 ui.link("It is still under way: watch it live.", f"/live/{run}")
             return
-        _replay(run)
+        if entries:  # a run that failed before it began has no record
+            _replay(run)
         _compared(found)
-        _events(await desk.runs.entries(run))
+        _events(entries)
         _commands(await desk.actions.list(run=run))
 
 
@@ -105,16 +107,21 @@ async def _is_on_earth(run: Run) -> bool:
     return bool((await the_desk().missions.look(version.text, "origin_wgs84")).get("origin_wgs84"))
 
 
-def _head(run: Run, *, on_earth: bool) -> None:
+def _files_of(run: Run, *, on_earth: bool) -> Sequence[tuple[str, str]]:
+    """What can be downloaded, each with its path."""
+    return (*_FILES, *(_ON_EARTH if on_earth else ())) if run.state in OVER else ()
+
+
+def _head(run: Run, files: Sequence[tuple[str, str]]) -> None:
     with ui.element("header").classes("record-head"):
         with ui.element("div"):
             _heading(f"{run.mission}, run {run.id}", level=2)
             ui.label(_facts(run)).classes("quiet")
             if run.remark:
                 ui.label(run.remark).classes("alarm")
-        if run.state in OVER:
+        if files:
             with ui.element("nav").classes("downloads").props('aria-label="Downloads"'):
-                for name, path in (*_FILES, *(_ON_EARTH if on_earth else ())):
+                for name, path in files:
                     ui.link(f"↓ {name}", f"/api/v1/records/{run.id}/{path}").props(f'download="{_file(run.id, path)}"')
 
 

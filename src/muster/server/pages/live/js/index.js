@@ -99,8 +99,9 @@ export class LiveView {
 
   showOver() {
     const { id, state } = this.team.run;
-    const { done, lost } = this.team.counts();
-    const words = `The run is over (${state}): ${done} tasks done, ${lost} lost. `;
+    const { done, cancelled, ...others } = this.team.counts(); // what is open by now will not be done
+    const not = Object.values(others).reduce((sum, count) => sum + count);
+    const words = `The run is over (${state}): ${done} tasks done, ${not} not. `;
     this.over.replaceChildren(words, html("a", { href: `/records/${id}` }, "Look at its record"));
     this.over.hidden = false;
     this.setAdding(false);
