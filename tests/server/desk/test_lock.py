@@ -172,15 +172,21 @@ def test_what_one_server_has_begun_to_write_ends_before_the_next_one_reads(postg
         lock.look()
 
 
+async def _under_way(desk):
+    """A run of which something has happened."""
+    plan = await asyncio.to_thread(planned, desk.store, muster.load("31T-6R50"))
+    run = await desk.runs.start(ADA, plan, speed=1.0)
+    while not await desk.runs.entries(run.id):
+        await asyncio.sleep(0.05)
+    return run
+
+
 def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(postgresql_url, monkeypatch):
     monkeypatch.setattr("muster.server.desk.desk._LOOK_S", 0.1)
 
     async def story():
         async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
-            plan = await asyncio.to_thread(planned, desk.store, muster.load("31T-6R50"))
-            run = await desk.runs.start(ADA, plan, speed=1.0)
-            while not await desk.runs.entries(run.id):
-                await asyncio.sleep(0.05)
+            run = await _under_way(desk)
             with _next_in_line(postgresql_url) as take:
                 taking = asyncio.create_task(asyncio.to_thread(take))
                 await asyncio.to_thread(_until_somebody_waits, postgresql_url)
@@ -192,7 +198,7 @@ def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(post
                     await asyncio.wait_for(asyncio.shield(desk.taken), 20)
                 assert (desk.runs.under_way, desk.runs.pid(run.id)) == (0, None)
                 with pytest.raises(StoreError):
-                    await desk.runs.start(ADA, plan)
+                    await desk.runs.start(ADA, run.plan)
                 assert len(desk.store.log.entries(run.id)) == last
                 assert desk.store.runs.get(run.id).state in ("starting", "running")
 
@@ -235,10 +241,7 @@ def test_closing_waits_for_no_look_that_hangs_with_the_database(postgresql_url, 
 
     async def story():
         async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
-            plan = await asyncio.to_thread(planned, desk.store, muster.load("31T-6R50"))
-            run = await desk.runs.start(ADA, plan, speed=1.0)
-            while not await desk.runs.entries(run.id):
-                await asyncio.sleep(0.05)
+            run = await _under_way(desk)
             await asyncio.to_thread(looking.wait, 60)
         assert (desk.runs.under_way, desk.runs.pid(run.id)) == (0, None)
         assert not ended.is_set()

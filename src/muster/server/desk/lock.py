@@ -90,10 +90,9 @@ def alone_with(url: str) -> Iterator[Lock]:
 
 @contextmanager
 def _file_locked(file: Path) -> Iterator[None]:
-    file = file.resolve()  # as SQLite does: two names of one file are one database
-    lock = file.with_name(f"{file.name}.lock")
+    lock = _beside(file, ".lock")
     try:
-        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        lock.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     except OSError as error:
         raise StoreError(f"{lock}: {error.strerror}; expected a folder that can be written") from None
@@ -104,7 +103,7 @@ def _file_locked(file: Path) -> Iterator[None]:
             other = os.read(descriptor, 20).decode("ascii", "replace").strip()
             whose = f"process {other}" if other else "another process"
             raise TakenError(
-                f"{file}: in use by {whose}; expected one server a database (--db names another)"
+                f"{file.resolve()}: in use by {whose}; expected one server a database (--db names another)"
             ) from None
         with suppress(OSError):  # on a full disk nobody is told which process it is; whether it can be used shows later
             os.ftruncate(descriptor, 0)
@@ -124,10 +123,15 @@ def lock_of_runs(settings: Settings) -> Path:
     address = database_url(settings.database)
     file = sqlite_file(address)
     if file is not None:
-        whole = file.resolve()
-        return whole.with_name(f"{whole.name}.runs.lock")
+        return _beside(file, ".runs.lock")
     key = sha256(whereabouts(address).encode()).hexdigest()[:16]
     return settings.folder / f"{key}.runs.lock"
+
+
+def _beside(file: Path, ending: str) -> Path:
+    """A file beside that of a database, by which SQLite knows it, too: two names of one file are one database."""
+    whole = file.resolve()
+    return whole.with_name(f"{whole.name}{ending}")
 
 
 class _SessionLock(Lock):
