@@ -12,7 +12,7 @@ import numpy as np
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.tracking import AirTracker, GroundTracker
 from tests.perception.test_tracking import flown, mission
-from tests.test_hearing import watched
+from tests.running.test_state_estimation import watched
 
 SEEDS = range(5)
 ROVER = "position: [0, 0], kinematics: differential-drive, speed_mps: 0.26, yaw_rate_radps: 1.82"

@@ -9,7 +9,6 @@ assert muster.verify(mission, plan).valid
 
 from typing import TYPE_CHECKING, Any
 
-from muster._api import carry_out, load, plot, simulate, solve, verify
 from muster.mission.errors import (
     Finding,
     InputError,
@@ -22,10 +21,13 @@ from muster.mission.errors import (
 )
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route, read_plan
+from muster.planning.loading import load
+from muster.planning.planning import plot, solve, verify
+from muster.running.running import carry_out, simulate
 
 if TYPE_CHECKING:
-    from muster._carrying_out import Simulation
-    from muster._negotiated.simulation import Negotiation
+    from muster.running.negotiated.simulation import Negotiation
+    from muster.running.simulation import Simulation
 
 __all__ = [
     "Event",
@@ -57,11 +59,11 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name == "Simulation":  # carrying out is imported when it is wanted
-        from muster._carrying_out import Simulation
+        from muster.running.simulation import Simulation
 
         return Simulation
     if name == "Negotiation":
-        from muster._negotiated.simulation import Negotiation
+        from muster.running.negotiated.simulation import Negotiation
 
         return Negotiation
     if name == "__version__":

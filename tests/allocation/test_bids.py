@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from muster import ParameterError
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
 from muster.allocation.bids import BID_RULES, FIGURES, Standing, battery_penalty, suitability_penalty, weighted
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS, Terms
 from muster.allocation.winners import WINNER_RULES
 
 

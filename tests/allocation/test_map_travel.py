@@ -16,7 +16,7 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Map, Zone
-from muster.motion.world import World
+from muster.motion.map_world import World
 from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task
 
 

@@ -10,11 +10,11 @@ from tests.random_missions import random_mission
 
 import muster
 from muster.allocation import market
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.market import Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import OBJECTIVES
 
 

@@ -4,9 +4,9 @@ import json
 import re
 
 from muster.mission.errors import MissingExtraError
-from muster.studies import bench
-from muster.studies.bench import BENCHES
-from muster.studies.measurement import Measurement
+from muster_studies import bench
+from muster_studies.bench import BENCHES
+from muster_studies.measurement import Measurement
 
 
 def test_the_help_names_all_benches(muster):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from muster.exchange.mission_control import Who
 from muster.server.store import Store
-from muster.server.words import Who
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}
 

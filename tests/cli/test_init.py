@@ -60,7 +60,7 @@ def test_init_from_a_shipped_mission_with_a_map_copies_the_map_too(muster):
     assert muster("init", "hall", "--from", "floor")[:2] == (0, written)
     pytest.importorskip("shapely")
     from muster import load
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     mission = load("hall.yaml")
     assert mission.map.ros_yaml == "floor-plan.yaml"

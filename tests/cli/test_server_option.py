@@ -14,12 +14,12 @@ from tests.cli.yard import MUSTER, comparable
 from tests.server.serving import served
 
 from muster import load
-from muster.cli.remote.sending import parcel
 from muster.cli.remote.simulate import _followed
+from muster.cli.remote.uploads import parcel
 from muster.cli.remote.waiting import planned
-from muster.server.client import Client
+from muster.client import Client
+from muster.exchange.mission_control import ConflictError, Job
 from muster.server.security.tokens import line_of, new_token
-from muster.server.words import ConflictError, Job
 
 VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")
 
@@ -287,7 +287,7 @@ def test_ctrl_c_as_a_run_ends_is_no_error(before):
 
 def test_the_client_imports_no_part_of_the_server_nor_its_libraries():
     heavy = ("fastapi", "nicegui", "sqlalchemy", "scipy", "shapely", "matplotlib", "muster.server.api")
-    code = f"import sys, muster.server.client; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys, muster.client; print([m for m in {heavy} if m in sys.modules])"
     import sys
 
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"

@@ -7,9 +7,9 @@ import threading
 import numpy as np
 import pytest
 
+from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
 from muster.motion.paths import WayFinder
-from muster.motion.spaces import GridSpace
 
 
 def test_while_a_graph_is_built():

@@ -8,12 +8,12 @@ from collections import Counter
 from dataclasses import dataclass
 
 import muster
-from muster.execution.doing import place
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation
+from muster.execution.task_motion import place
 from muster.execution.travel import travel_of, way_of
 from muster.motion import actions
-from muster.motion.roads import Roads
+from muster.motion.robot_paths import Roads
 from tests import trials
 from tests.disturbances.bodies import Bodies, bodily_mission
 from tests.disturbances.missions import disturbed_mission

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from muster._api import DEFAULT_ALLOCATOR
 from muster.allocation import search
 from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, run
-from muster.mission.kinds import specified
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.value_types import specified
 from muster.mission.yaml_reader import parse_yaml
+from muster.planning.planning import DEFAULT_ALLOCATOR
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -137,7 +137,7 @@ def test_the_examples_of_maps():
     pytest.importorskip("shapely")
     import numpy as np
 
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     text = (ROOT / "docs" / "maps.md").read_text(encoding="utf-8")
     rest = "\nschema: muster/1\nrobots: [{id: r_0, position: [1, 1]}]\ntasks: []\n"

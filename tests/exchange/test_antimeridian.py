@@ -14,10 +14,10 @@ from tests.mission.strategies import examples
 
 from muster.exchange.antimeridian import crosses, cut_line, cut_ring
 from muster.exchange.earth import Earth, Spot
+from muster.exchange.geographic_features import survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.kml import kml_text
-from muster.exchange.survey import survey
 from muster.mission.geodesy import wgs84_to_enu
 
 ACROSS = BAY.replace(f"lon_deg: {LON}", "lon_deg: 179.9995")

@@ -10,11 +10,11 @@ import pytest
 from tests.exchange.bay import ALT, BAY, LAT, LON, ROUTES, bay
 
 from muster.exchange.earth import Earth
+from muster.exchange.geographic_features import survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.kml import kml_text
 from muster.exchange.spreadsheet import csv_text
-from muster.exchange.survey import survey
 from muster.exchange.xml_text import add, text_of
 from muster.mission.geodesy import wgs84_to_enu
 

@@ -14,8 +14,8 @@ import muster
 from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.thinning import thinned
 from muster.mission.model import Robot
-from muster.motion.roads import Roads
-from muster.motion.world import body_of
+from muster.motion.map_world import body_of
+from muster.motion.robot_paths import Roads
 from muster.verification import verify
 
 ARC = [(math.cos(a), math.sin(a), 3.0) for a in np.radians(np.arange(0, 91, 10))]

@@ -9,9 +9,9 @@ import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.changes import FAILED, SILENT, STUCK
 from muster.execution.executor import Executor
-from muster.execution.hand import Activity
 from muster.execution.monitor import Limits
 from muster.execution.report import report_of
+from muster.execution.robot_state import Activity
 from muster.execution.travel import OverMap, way_of
 from muster.library import mission_names
 from muster.mission.errors import ParameterError
@@ -19,7 +19,7 @@ from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
-from muster.motion.roads import Roads
+from muster.motion.robot_paths import Roads
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]
 

@@ -4,8 +4,8 @@ import pytest
 from tests.execution.world import Point
 
 from muster import Robot
-from muster.execution.hand import Activity, Hand
 from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck
+from muster.execution.robot_state import Activity, Hand
 from muster.mission.errors import ParameterError
 from muster.motion.port import Waypoint
 

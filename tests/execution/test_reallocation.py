@@ -12,11 +12,11 @@ from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation, told
-from muster.execution.rest import posed
+from muster.execution.remaining_problem import posed
 from muster.execution.travel import travel_of, way_of
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
-from muster.studies.bench import large_mission
+from muster_studies.bench import large_mission
 
 
 class Kept(Reallocation):

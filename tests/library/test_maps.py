@@ -17,7 +17,7 @@ MAPS = ROOT / "src" / "muster" / "library" / "maps"
 
 
 def checked(name):
-    from muster.motion.places import checked_world
+    from muster.motion.unreachable_places import checked_world
 
     mission = read_yaml(mission_path(name))
     return mission, checked_world(mission)

@@ -6,6 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.motion.paths.spaces import grids, regions
 
+from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.limits import Limits
 from muster.motion.maps import free
@@ -14,7 +15,6 @@ from muster.motion.maps.polygons import free_region
 from muster.motion.path import Path
 from muster.motion.paths import find
 from muster.motion.smoothing import clear_by_points, smoothed
-from muster.motion.spaces import GridSpace, PolygonSpace
 from muster.motion.velocity import timed
 
 LIMITS = Limits(speed_mps=0.8, acceleration_mps2=0.5, yaw_rate_radps=1.0)

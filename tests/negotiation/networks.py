@@ -5,7 +5,7 @@ from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import rules_of
+from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import AuctionValuer
 
 

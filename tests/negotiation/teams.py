@@ -8,10 +8,10 @@ from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.codec import Codec
+from muster.negotiation.encryption import Seal, mission_digest
 from muster.negotiation.members import Patience
 from muster.negotiation.node import Node
-from muster.negotiation.seal import Seal, mission_digest
-from muster.negotiation.taking_part import negotiator_of
+from muster.negotiation.participation import negotiator_of
 
 KEY = bytes(32)
 GUARD_S = 120.0

@@ -8,9 +8,9 @@ from tests.negotiation.networks import line_mission
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import rules_of
+from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import AuctionValuer
-from muster.studies.negotiation.observer import Observer
+from muster_studies.negotiation.observer import Observer
 
 ROBOTS = ("r_0", "r_1", "r_2")
 PROBLEM = Problem.compile(line_mission(robots=3, tasks=4, once=("0",))).ready()

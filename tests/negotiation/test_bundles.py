@@ -11,8 +11,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.methods import method_named
-from muster.negotiation.taking_part import bundler_of, plan_of_bundles
-from muster.negotiation.view import view_of
+from muster.negotiation.participation import bundler_of, plan_of_bundles
+from muster.negotiation.robot_view import view_of
 
 MISSIONS = ("31T-6R50", "auction-1", "24T-5R", "eil51-5", "market-rescue-20", "31T-2R65-4R25", "16T-3R", "floor")
 

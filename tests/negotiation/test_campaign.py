@@ -8,9 +8,9 @@ from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
 
 from muster.negotiation.negotiator import Negotiator
-from muster.studies.negotiation import replay
-from muster.studies.negotiation.observer import Observer
-from muster.studies.negotiation.scene import scene
+from muster_studies.negotiation import replay
+from muster_studies.negotiation.observer import Observer
+from muster_studies.negotiation.scenario import scene
 
 RUNS, CHUNK = 1000, 50
 

@@ -11,8 +11,8 @@ msgpack = pytest.importorskip("msgpack", reason="the extra `net` is not installe
 from tests.negotiation.messages import ROBOTS, TASKS, messages  # noqa: E402
 
 from muster.negotiation.codec import PARTED, PROTOCOL, Codec, OtherVersion  # noqa: E402
-from muster.negotiation.forms import Garbled  # noqa: E402
 from muster.negotiation.messages import Claim, Declaration, Message, Pulse, RoundBids, Sold, Stage  # noqa: E402
+from muster.negotiation.plain_values import Garbled  # noqa: E402
 
 CODEC = Codec(ROBOTS, TASKS)
 BID = Message("r_1", 7, 12, Stage(1, b"12345678", 3), bids=(RoundBids("r_1", 3, (("t_2", 0.1 + 0.2),)),))

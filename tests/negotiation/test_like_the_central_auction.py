@@ -8,9 +8,9 @@ from tests.negotiation.networks import agree, line_mission, network
 
 import muster
 from muster.allocation.auction import AUCTION, Parameters
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
 from muster.library import mission_names, mission_path
 from muster.mission.errors import MissingExtraError
 

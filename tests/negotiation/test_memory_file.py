@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from muster.mission.errors import InputError
-from muster.negotiation.happenings import Memory
+from muster.negotiation.effects import Memory
 from muster.negotiation.memory_file import Kept, kept_in
 from muster.negotiation.messages import Claim, Fact
 

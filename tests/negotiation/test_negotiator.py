@@ -7,11 +7,11 @@ from tests.negotiation.networks import agree, line_mission, network, owners, set
 
 from muster import Task
 from muster.mission.errors import MissionError, ParameterError
-from muster.negotiation.happenings import Happening
+from muster.negotiation.effects import Happening
 from muster.negotiation.messages import Message, Stage
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.tasks import content_of
-from muster.negotiation.view import view_of
+from muster.negotiation.new_tasks import content_of
+from muster.negotiation.robot_view import view_of
 
 ALL = {str(k) for k in range(6)}
 

@@ -2,7 +2,7 @@
 
 from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import TICK_S
-from muster.studies.negotiation import suspicion
+from muster_studies.negotiation import suspicion
 
 
 def expected(loss, beats):

@@ -15,10 +15,10 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
-from muster.negotiation.taking_part import plan_of_view
+from muster.negotiation.participation import plan_of_view
+from muster.negotiation.process_reports import TRANSPORTS, Order
 from muster.negotiation.team import Team, patience_here
-from muster.negotiation.watch import TRANSPORTS, Order
-from muster.studies.uniform import uniform_mission
+from muster_studies.uniform import uniform_mission
 
 GUARD_S = 60.0
 

@@ -117,7 +117,7 @@ def test_the_nearest_thing_on_a_shipped_map_is_as_near_as_the_map_says(name):
     """Of polygons and of an image: no beam is shorter than the clearance, and the shortest is hardly longer."""
     pytest.importorskip("shapely")
     import muster
-    from muster.motion.world import Body, World
+    from muster.motion.map_world import Body, World
     from muster.simulation.walls import faces_and_slabs
 
     mission = muster.load(name)

@@ -12,8 +12,8 @@ from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath
 from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
+from muster.report.path_picture import plot_way
 from muster.report.routes import plot_routes
-from muster.report.way import plot_way
 from muster.verification import verify
 
 BLOCKED = np.array([[True, False, False], [False, False, True]])

@@ -19,10 +19,10 @@ from tests.server.security.shielded import (
 )
 from tests.server.security.shielded import TestClient as Client
 
+from muster.exchange.mission_control import ForbiddenError, Who
 from muster.mission.errors import ParameterError
 from muster.server.app import make_app
 from muster.server.settings import Settings
-from muster.server.words import ForbiddenError, Who
 
 _OPEN = {"/healthz", "/login"}
 _PEER = "10.0.0.9"
@@ -156,7 +156,7 @@ def test_strangers_make_no_metrics(client):
 
 
 def test_health_without_a_database(app, client, monkeypatch):
-    from muster.server.words import StoreError
+    from muster.exchange.mission_control import StoreError
 
     def fails():
         raise StoreError("/data/muster.db: full; expected room")

@@ -10,7 +10,7 @@ import pytest
 import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Map, Mission, Robot, Zone
-from muster.motion.world import World, body_of
+from muster.motion.map_world import World, body_of
 from muster.perception.laser import Scanner, faces_at, points_of
 from muster.perception.spikes import Search, landmarks
 from muster.simulation import KinematicWorld, Laser

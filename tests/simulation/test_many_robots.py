@@ -8,10 +8,10 @@ from tests.simulation.scenes import circle, mission, robot, send_across, states,
 
 import muster
 from muster.mission.model import Map, Zone
+from muster.motion.map_world import World, body_of
 from muster.motion.path import Path
 from muster.motion.port import Waypoint
-from muster.motion.roads import Roads
-from muster.motion.world import World, body_of
+from muster.motion.robot_paths import Roads
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive")

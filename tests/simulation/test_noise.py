@@ -7,11 +7,11 @@ import pytest
 from tests.simulation.scenes import mission, robot, until_idle
 
 import muster
-from muster._carrying_out import carry_out, world_named
 from muster.execution import Executor
 from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.motion.port import Waypoint
+from muster.running.simulation import carry_out, world_named
 from muster.simulation import KinematicWorld, Noise
 
 WORLDS = [

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from tests.action_missions import ARENA
 from tests.simulation.scenes import mission, robot, states, until_idle
 
+from muster.motion.map_world import body_of
 from muster.motion.port import Waypoint
-from muster.motion.roads import Roads
-from muster.motion.world import body_of
+from muster.motion.robot_paths import Roads
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")

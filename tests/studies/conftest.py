@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.studies import Effort, study_named
+from muster_studies import Effort, study_named
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,8 @@ import pytest
 
 from muster.allocation.bids import BID_RULES
 from muster.library import as_corrected, published
-from muster.studies import Effort, study_named
-from muster.studies.auction_5.auctions import BIDS
+from muster_studies import Effort, study_named
+from muster_studies.auction_5.auctions import BIDS
 
 ROWS = {
     "5.2": 2,

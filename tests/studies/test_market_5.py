@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from muster.cli.main import run as muster
+from muster.motion.map_world import World
 from muster.motion.metrics import risk_factor, trajectory_error
-from muster.motion.world import World
-from muster.studies import Effort, study_named
-from muster.studies.market_5.arena import BEACONS, CYLINDER_RADIUS_M, CYLINDERS, SURVIVORS
-from muster.studies.market_5.eyes import raw_estimates
-from muster.studies.market_5.searches import FARTHEST_M, LASER, ODOMETRY, PLACES, TRUE, performed, searches
-from muster.studies.market_5.tracks import SHOWN, measured
-from muster.studies.rescue.metrics import printed_goal_error_m
-from muster.studies.rescue.teams import ARENA, BODY_RADIUS_M, mission_of
-from muster.studies.rescue.tracking import at_same_shares, legs, tracks
+from muster_studies import Effort, study_named
+from muster_studies.market_5.arena import BEACONS, CYLINDER_RADIUS_M, CYLINDERS, SURVIVORS
+from muster_studies.market_5.localisation import raw_estimates
+from muster_studies.market_5.searches import FARTHEST_M, LASER, ODOMETRY, PLACES, TRUE, performed, searches
+from muster_studies.market_5.tracks import SHOWN, measured
+from muster_studies.rescue.metrics import printed_goal_error_m
+from muster_studies.rescue.teams import ARENA, BODY_RADIUS_M, mission_of
+from muster_studies.rescue.tracking import at_same_shares, legs, tracks
 
 if find_spec("mujoco") is None or find_spec("scipy") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from muster.studies import Effort, study_named
-from muster.studies.market_rescue.comparison import BEST_KNOWN, Comparison, best_known_s
-from muster.studies.market_rescue.scenario import chart
+from muster_studies import Effort, study_named
+from muster_studies.market_rescue.comparison import BEST_KNOWN, Comparison, best_known_s
+from muster_studies.market_rescue.scenario import chart
 
 BEST_KNOWN_S = 242.955
 

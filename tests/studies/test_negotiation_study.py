@@ -9,8 +9,8 @@ pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 from muster.allocation.problem import Problem
 from muster.cli.main import run as muster
 from muster.negotiation.methods import METHODS
-from muster.studies.effort import Effort
-from muster.studies.negotiation.cost import Cost, Talk, hold
+from muster_studies.effort import Effort
+from muster_studies.negotiation.cost import Cost, Talk, hold
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -13,14 +13,14 @@ from muster import Mission, Robot, Rules, Task
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.mission.model import OBJECTIVES
-from muster.studies.bench import large_mission
-from muster.studies.effort import Effort
-from muster.studies.peers import Peers
-from muster.studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, perform_all, runs_of
-from muster.studies.peers.instance import Instance
-from muster.studies.peers.peer import Answer
-from muster.studies.peers.sweep import RUNS, Routed, swept
-from muster.studies.tables import Report, Table
+from muster_studies.bench import large_mission
+from muster_studies.effort import Effort
+from muster_studies.peers import Peers
+from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, perform_all, runs_of
+from muster_studies.peers.instance import Instance
+from muster_studies.peers.peer import Answer
+from muster_studies.peers.sweep import RUNS, Routed, swept
+from muster_studies.tables import Report, Table
 
 SECONDS = 0.15
 EXACT = "CP-SAT"
@@ -184,7 +184,7 @@ def test_whole_numbers_are_not_below_the_true_ones():
 @pytest.mark.parametrize("mission", [large_mission(12, 3), muster.load("31T-6R50")], ids=["uniform", "capacities"])
 def test_numbers_too_large_for_vroom_are_divided(monkeypatch, mission):
     mission = replace(mission, tasks=tuple(replace(task, prerequisites=()) for task in mission.tasks))
-    monkeypatch.setattr("muster.studies.peers.vroom_peer._MOST_COST", 10**7)
+    monkeypatch.setattr("muster_studies.peers.vroom_peer._MOST_COST", 10**7)
     checked(mission, "VROOM", "total")
 
 
@@ -235,13 +235,13 @@ class Cheat:
 
 
 def test_an_invalid_plan_is_told(monkeypatch):
-    monkeypatch.setattr("muster.studies.peers.contest.PEERS", dict(PEERS) | {"VROOM": Cheat(None)})
+    monkeypatch.setattr("muster_studies.peers.contest.PEERS", dict(PEERS) | {"VROOM": Cheat(None)})
     result = perform(Run(match=Match(mission="31T-6R50", objective="total"), solver="VROOM", seconds=SECONDS))
     assert result.fault.startswith("invalid: suitability r_0")
 
 
 def test_a_false_claim_is_told(monkeypatch):
-    monkeypatch.setattr("muster.studies.peers.contest.PEERS", dict(PEERS) | {"VROOM": Cheat(1.0)})
+    monkeypatch.setattr("muster_studies.peers.contest.PEERS", dict(PEERS) | {"VROOM": Cheat(1.0)})
     result = perform(Run(match=Match(mission="6T-2R", objective="total"), solver="VROOM", seconds=SECONDS))
     assert result.fault.startswith("claims 1, the judge says")
 
@@ -321,6 +321,6 @@ def test_without_the_packages_the_study_says_so_at_once(monkeypatch):
     def absent(name):
         raise PackageNotFoundError(name)
 
-    monkeypatch.setattr("muster.studies.peers.machine.version", absent)
+    monkeypatch.setattr("muster_studies.peers.machine.version", absent)
     with pytest.raises(muster.MusterError, match=r"needs an optional part: pip install 'muster-robotics\[bench\]'"):
         Peers().run(Effort(quick=True))

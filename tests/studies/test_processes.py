@@ -2,8 +2,8 @@
 
 import pytest
 
-from muster.studies.processes import run_cases
-from muster.studies.runs import Case
+from muster_studies.processes import run_cases
+from muster_studies.runs import Case
 
 SHORT = [
     Case(mission="6T-2R", allocator="greedy"),

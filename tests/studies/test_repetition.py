@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import pytest
 
 from muster.mission.errors import ParameterError
-from muster.studies import Effort, Illustrated, Table
-from muster.studies.repetition import IllustratedRepetition, Repetition, one_by_one
+from muster_studies import Effort, Illustrated, Table
+from muster_studies.repetition import IllustratedRepetition, Repetition, one_by_one
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from muster.cli.main import run as muster
-from muster.studies import Effort, study_named
-from muster.studies.rescue.failures import TEAMS, failing
-from muster.studies.rescue.flights import Flight, repetitions
-from muster.studies.rescue.metrics import METRICS, Metric, noisy
-from muster.studies.rescue.scenario import undisturbed
-from muster.studies.rescue.teams import ARENA, PAIRS, POINTS, RICHER, mission_of, sent, verdict_of
-from muster.studies.rescue.tracking import at_same_shares, deviations, legs, track, tracks
+from muster_studies import Effort, study_named
+from muster_studies.rescue.failures import TEAMS, failing
+from muster_studies.rescue.flights import Flight, repetitions
+from muster_studies.rescue.metrics import METRICS, Metric, noisy
+from muster_studies.rescue.scenario import undisturbed
+from muster_studies.rescue.teams import ARENA, PAIRS, POINTS, RICHER, mission_of, sent, verdict_of
+from muster_studies.rescue.tracking import at_same_shares, deviations, legs, track, tracks
 
 EFFORT = Effort(seeds=2, iterations=100)
 

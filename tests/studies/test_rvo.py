@@ -5,11 +5,11 @@ import pytest
 
 from muster.cli.main import run as muster
 from muster.motion.avoidance import Trajectories
-from muster.studies import Effort, study_named
-from muster.studies.bench_avoidance import Scene
-from muster.studies.rvo.results import Found, verdict
-from muster.studies.rvo.runs import METHODS, Job
-from muster.studies.rvo.scenarios import circle, misprints, scenarios
+from muster_studies import Effort, study_named
+from muster_studies.bench_avoidance import Scene
+from muster_studies.rvo.results import Found, verdict
+from muster_studies.rvo.runs import METHODS, Job
+from muster_studies.rvo.scenarios import circle, misprints, scenarios
 
 
 @pytest.fixture(scope="module")

@@ -10,12 +10,12 @@ import time
 import pytest
 
 from muster.cli.main import run
-from muster.studies import STUDIES
+from muster_studies import STUDIES
 
 WAITING = """
 import sys
 from muster.cli.main import run
-import muster.cli.study, muster.studies
+import muster.cli.study, muster_studies
 print("ready", flush=True)
 sys.exit(run(["study", "thesis-3.3", "--tables", "3.2", "--iterations", "1000000000", "--workers", "2"]))
 """

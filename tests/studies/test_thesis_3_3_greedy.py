@@ -3,8 +3,8 @@
 import pytest
 
 from muster.library import as_corrected, published
-from muster.studies import Effort, study_named
-from muster.studies.marks import TOLERANCE
+from muster_studies import Effort, study_named
+from muster_studies.comparison_marks import TOLERANCE
 
 ROUTES = {
     "3.5": "tcf-unconstrained",

@@ -10,12 +10,12 @@ import muster as package
 from muster.cli.main import run as muster
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.simulation import Noise
-from muster.studies import Effort, study_named
-from muster.studies.marks import EQUAL
-from muster.studies.thesis_6 import physics
-from muster.studies.thesis_6.flights import Flight, fly, mission_with
-from muster.studies.thesis_6.published import excess, plans
-from muster.studies.thesis_6.totals import best_of, search_flights
+from muster_studies import Effort, study_named
+from muster_studies.comparison_marks import EQUAL
+from muster_studies.thesis_6 import physics
+from muster_studies.thesis_6.flights import Flight, fly, mission_with
+from muster_studies.thesis_6.published import excess, plans
+from muster_studies.thesis_6.totals import best_of, search_flights
 
 ROUTES = ("6.2", "6.6", "6.8", "6.9")
 FLOWN_PLANS = [plan for number in ROUTES for plan in plans(number)]

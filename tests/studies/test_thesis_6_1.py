@@ -14,13 +14,13 @@ import muster as package
 from muster.cli.main import run as muster
 from muster.perception.clusters import by_means, inertia
 from muster.perception.estimates import RawEstimates
-from muster.studies import Effort, study_named
-from muster.studies.thesis_6_1 import clusters
-from muster.studies.thesis_6_1.clusters import CALM, METHODS, NOISY, SCATTERED, Clusterings, near, seen_rarely
-from muster.studies.thesis_6_1.errors import TagErrors
-from muster.studies.thesis_6_1.flights import fly
-from muster.studies.thesis_6_1.published import NOISE, points, six, tags, thirty, truth
-from muster.studies.thesis_6_1.usages import DroneTotals, DroneUsages
+from muster_studies import Effort, study_named
+from muster_studies.thesis_6_1 import clusters
+from muster_studies.thesis_6_1.clusters import CALM, METHODS, NOISY, SCATTERED, Clusterings, near, seen_rarely
+from muster_studies.thesis_6_1.errors import TagErrors
+from muster_studies.thesis_6_1.flights import fly
+from muster_studies.thesis_6_1.published import NOISE, points, six, tags, thirty, truth
+from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
 
 if find_spec("mujoco") is None:  # not imported here: first it must be said how it draws
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
@@ -193,7 +193,7 @@ def test_pictures(tmp_path, six_tags, capsys):
 
 
 def test_without_the_extra_one_line_says_so(monkeypatch, capsys):
-    monkeypatch.setattr("muster.perception.extra.find_spec", lambda name: None if name == "mujoco" else True)
+    monkeypatch.setattr("muster.perception.optional_parts.find_spec", lambda name: None if name == "mujoco" else True)
     assert muster(["study", "thesis-6.1", "--quick", "-q"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "muster-robotics[physics]" in line

@@ -9,10 +9,10 @@ import pytest
 import shapely
 from tests.verification.brute_ways import among_polygons, over_cells, random_cells, star
 
+from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace
 from muster.motion.grid import Grid
-from muster.motion.maps.pinches import necks
+from muster.motion.maps.narrow_places import necks
 from muster.motion.maps.polygons import free_region, grown
-from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace
 from muster.verification.air import AirWays
 from muster.verification.ways import PlaneWays
 

@@ -10,11 +10,11 @@ from muster import core
 from muster.allocation.explanations import unassigned
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.book import Book
+from muster.mission.auction_book import Book
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import shown
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Route
+from muster.mission.value_types import shown
 
 Routes = list[list[int]]
 _MOST = 1_000_000  # of anything that a parameter counts

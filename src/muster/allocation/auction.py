@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer, OnRound
-from muster.allocation.bookkeeping import book_of
+from muster.allocation.book_keeper import book_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.terms import Terms
 
 
 @dataclass(frozen=True, kw_only=True)

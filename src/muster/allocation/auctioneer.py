@@ -8,10 +8,10 @@ import numpy as np
 
 from muster import core
 from muster.allocation.allocator import Routes
+from muster.allocation.auction_terms import Terms
 from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty, suitability_penalty, weighted
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.terms import Terms
 from muster.allocation.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
 
 Sales = dict[int, tuple[int, Sale, Floats]]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.problem import Bools, Floats, Indices, Problem
-from muster.mission.book import Award, Bid, Book, TakeBid
+from muster.mission.auction_book import Award, Bid, Book, TakeBid
 
 TOPOLOGIES = ("complete", "ring", "line")
 NOBODY = -1

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from muster import core
 from muster.allocation.feasibility import least_usage
 from muster.allocation.problem import Problem
-from muster.mission.book import Award, Book
+from muster.mission.auction_book import Award, Book
 from muster.mission.plan import Reason, Unassigned
 
 

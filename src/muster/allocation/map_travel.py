@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.doings import Doings
-from muster.allocation.measured import Measured
+from muster.allocation.lengths import Measured
+from muster.allocation.task_geometry import Doings
 from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
+from muster.motion.map_world import Body, body_of
 from muster.motion.path import NoPath
-from muster.motion.roads import Roads
-from muster.motion.world import Body, body_of
+from muster.motion.robot_paths import Roads
 
 Floats = npt.NDArray[np.float64]
 

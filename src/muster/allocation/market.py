@@ -16,11 +16,11 @@ from random import Random
 
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer, OnRound, Sales
-from muster.allocation.bookkeeping import book_of
+from muster.allocation.book_keeper import book_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.terms import Terms
 from muster.mission.errors import ParameterError
 
 _TRADING = 0.9  # share of a time limit; the rest is for the annealing

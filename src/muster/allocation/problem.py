@@ -13,20 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.allocation.cut import cut_down
-from muster.allocation.doings import Doings
-from muster.allocation.measured import Measured
+from muster.allocation.lengths import Measured
+from muster.allocation.subproblem import cut_down
+from muster.allocation.task_geometry import Doings
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
-from muster.mission.supported import require_supported
+from muster.mission.supported_features import require_supported
+from muster.mission.value_types import shown
 from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
-    from muster.motion.roads import Roads
+    from muster.motion.robot_paths import Roads
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -295,7 +295,7 @@ class Problem:
     @cached_property
     def roads(self) -> Roads:
         """Over the mission's map."""
-        from muster.motion.roads import Roads
+        from muster.motion.robot_paths import Roads
 
         return Roads.of(self.mission) if self.mapped is None else self.mapped
 

@@ -16,7 +16,7 @@ from muster.allocation.hill_climbing import HILL_CLIMBING
 from muster.allocation.market import MARKET
 from muster.allocation.search import SEARCH
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
 
 _IMPLEMENTATIONS = (
     GREEDY,

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.attempts import Judge, attempt, bare_plan, closed
 from muster.allocation.feasibility import ROUNDING, impossible
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Before, Capacity, Remedy, Score
 from muster.allocation.usage_bounds import FEW, UsageBounds
+from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
 from muster.mission.model import Robot, Task
 
 _NARROWINGS = 6  # of what is known of the least capacity: each halves what is not known

@@ -15,10 +15,10 @@ from functools import cached_property
 
 import numpy as np
 
-from muster.allocation.attempts import closed
 from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.spanning import spanning_tree
+from muster.allocation.witness_plans import closed
 
 FEW = 10  # tasks, up to which all subsets are looked at
 _MOST_IN_FOREST, _MOST_SHORTCUTS = 1500, 300  # tasks; beyond, the bound is not worth its time

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.agreement import Agreement
 from muster.cli.auction_options import (
     method_options,
     result_options,
@@ -18,6 +17,7 @@ from muster.cli.auction_options import (
     terms_of,
     terms_options,
 )
+from muster.cli.auction_result import Agreement
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
 from muster.cli.options import (
     Finite,
@@ -129,7 +129,7 @@ def _replayed(others: Mapping[str, Any]) -> int:
             raise ParameterError(
                 f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
             )
-    from muster.studies.negotiation.trial import replay
+    from muster_studies.negotiation.trial import replay
 
     report = replay(seed)
     for line in report.lines():

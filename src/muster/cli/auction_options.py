@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options import Finite, settings_of
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement, by_kind
+from muster.cli.auction_result import Agreement, by_kind
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
 from muster.negotiation.joining import node_of
 from muster.negotiation.keys import read_key
 from muster.negotiation.memory_file import kept_of

@@ -8,11 +8,11 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement
+from muster.cli.auction_result import Agreement
 from muster.mission.errors import MusterError, ParameterError
 from muster.negotiation.memory_network import MemoryNetwork, Weather
 from muster.negotiation.methods import Method
-from muster.negotiation.view import view_of
+from muster.negotiation.robot_view import view_of
 
 
 def agree_in_memory(

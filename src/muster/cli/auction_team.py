@@ -10,15 +10,15 @@ from typing import Any
 import click
 
 from muster.allocation.problem import Problem
-from muster.cli.agreement import Agreement, by_kind
+from muster.cli.auction_result import Agreement, by_kind
 from muster.cli.auction_table import auction_table
 from muster.cli.tables import counted
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import Method
+from muster.negotiation.process_reports import Order
+from muster.negotiation.robot_view import View
 from muster.negotiation.team import Team, patience_here
-from muster.negotiation.view import View
-from muster.negotiation.watch import Order
 
 _LOOK_S = 0.05
 

@@ -11,14 +11,14 @@ import click
 from muster.cli import study
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
 
 
 class _Only(click.Option):
     """An option whose help names the benches; they are imported when it is asked for."""
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        from muster.studies.bench import BENCHES
+        from muster_studies.bench import BENCHES
 
         self.help = f"Some of: {', '.join(BENCHES)}."
         return super().get_help_record(ctx)
@@ -38,7 +38,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
     import json
 
     from muster.cli.tables import print_table
-    from muster.studies.bench import BENCHES
+    from muster_studies.bench import BENCHES
 
     if ctx.invoked_subcommand is not None:
         return

@@ -15,15 +15,15 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.remote.option import server_option
+from muster.cli.remote.server_option import server_option
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.plan import Unassigned, json_text
 
 if TYPE_CHECKING:
-    from muster._explaining import Possible
     from muster.allocation.conflicts import Together
+    from muster.planning.explaining import Possible
 
 _MINIMAL = "without any one of them a plan was found that does the others"
 _NOT_MINIMAL = "some of them may already be too many: not without each of them a plan for the others was found"
@@ -57,7 +57,7 @@ def command(
 
     Where no plan can do all the others, name a smallest set of tasks of which one must be left out.
     """
-    from muster._explaining import possible
+    from muster.planning.explaining import possible
 
     try:
         loaded = mission.load(verbose=verbose)
@@ -69,7 +69,7 @@ def command(
 
 def refused(form: str, error: MissionError | NotSupportedError) -> int:
     """Print what is wrong with a mission; the exit code."""
-    from muster._explaining import Possible
+    from muster.planning.explaining import Possible
 
     if form == "json":
         errors = [finding.as_dict() for finding in error.findings]

@@ -47,7 +47,7 @@ def command() -> None:
 @quiet_option
 def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
     """Say what is in the database."""
-    from muster.server.store.contents import contents
+    from muster.server.store.database_info import contents
 
     found = contents(url)
     if form == "json":
@@ -91,7 +91,7 @@ def restore(file: Path, url: str, quiet: bool, verbose: bool) -> int:
     A database that is not there yet is made; of PostgreSQL that is done with createdb.
     """
     from muster.server.store.backup import restore as put_back
-    from muster.server.store.contents import contents
+    from muster.server.store.database_info import contents
 
     put_back(file, url)
     if not quiet:

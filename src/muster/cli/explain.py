@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option, say_of_plan
-from muster.cli.remote.option import server_option
+from muster.cli.remote.server_option import server_option
 from muster.mission.plan import json_text, read_plan
 
 if TYPE_CHECKING:
-    from muster._explaining.tables import Part
+    from muster.planning.explaining.tables import Part
 
 
 @click.command()
@@ -32,8 +32,8 @@ def command(
     verbose: bool,
 ) -> None:
     """Say why tasks are left out of a PLAN; with --task, why a task is done by this robot and not by another."""
-    from muster._explaining import left_out, one_task, require_fit
-    from muster._explaining.tables import tables_on_left_out, tables_on_task
+    from muster.planning.explaining import left_out, one_task, require_fit
+    from muster.planning.explaining.tables import tables_on_left_out, tables_on_task
 
     loaded = mission.load(verbose=verbose)
     given = read_plan(plan)

@@ -13,11 +13,11 @@ from click.core import ParameterSource
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, MissionFile, load_plan, mission_argument, quiet_option, require_admissible
 from muster.cli.outputs import require_folder, require_writable
-from muster.cli.remote.option import server_option
-from muster.exchange.wishes import FORMATS, Wishes
+from muster.cli.remote.server_option import server_option
+from muster.exchange.export_request import FORMATS, Wishes
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
 
 if TYPE_CHECKING:
     from muster.verification import Verdict

@@ -67,7 +67,7 @@ def _template(path: Path) -> tuple[str, list[Path]]:
 def _shipped(shipped: str) -> tuple[str, list[Path]]:
     """The text of a shipped mission, and the files of its map, which go beside it."""
     from muster.library import mission_names, mission_path
-    from muster.mission.hints import did_you_mean
+    from muster.mission.near_matches import did_you_mean
 
     path = mission_path(shipped)
     if path is None:

@@ -69,7 +69,7 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        from muster.mission.hints import did_you_mean
+        from muster.mission.near_matches import did_you_mean
 
         if args and args[0] not in VERBS and not args[0].startswith("-"):
             raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], VERBS)}", ctx)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from muster.cli.options import format_option, quiet_option
-from muster.cli.remote.option import server_option
+from muster.cli.remote.server_option import server_option
 
 
 @click.command()

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import click
 
 from muster.mission.errors import Finding, ParameterError
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, read_plan
+from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
     from muster.verification import Verdict

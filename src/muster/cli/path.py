@@ -12,13 +12,13 @@ from muster.cli.exits import DONE
 from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import json_text
 from muster.motion.path import NoPath, Path
 
 if TYPE_CHECKING:
-    from muster.motion.world import Body, World
+    from muster.motion.map_world import Body, World
 
 _PLANNERS = ("shortest", "theta-star", "a-star", "dijkstra", "rrt-star")
 _STEP_M = 0.1
@@ -78,7 +78,7 @@ def command(
 
 
 def _world(mission: Mission) -> World | None:
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     return None if mission.map is None else World.of(mission)
 
@@ -89,7 +89,7 @@ def _found(
     import numpy as np
 
     from muster.motion.paths import planner_named
-    from muster.motion.roads import Roads, with_heights
+    from muster.motion.robot_paths import Roads, with_heights
 
     start, goal = ends
     if world is None:
@@ -103,7 +103,7 @@ def _found(
 def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
     """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
     from muster.motion.curve import Curve
-    from muster.motion.roads import Roads
+    from muster.motion.robot_paths import Roads
 
     curve = Curve.along(path) if world is None else Roads(world).curve(body, path)
     return Path(curve.sample(_STEP_M)), curve.max_curvature
@@ -121,7 +121,7 @@ def _point(mission: Mission, option: str, text: str) -> list[float]:
 
 
 def _body(mission: Mission, robot: str | None, radius: float | None, kind: str | None) -> Body:
-    from muster.motion.world import Body
+    from muster.motion.map_world import Body
 
     if radius is not None and not (math.isfinite(radius) and radius >= 0):
         raise ParameterError(f"--radius: {radius:g}; expected a finite number of at least 0")
@@ -184,7 +184,7 @@ def _draw(
     file: File,
 ) -> None:
     from muster.report.files import save_figure
-    from muster.report.way import plot_way
+    from muster.report.path_picture import plot_way
 
     start, goal = (tuple(end) for end in ends)
     image = None if world is None else world.image

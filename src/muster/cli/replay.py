@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.keeping import draw_record, drawing_options
 from muster.cli.options import Finite, format_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.record_output import draw_record, drawing_options
 from muster.cli.recordings import errors_against, print_errors, require_recordings, show_recording, write_for_ros
 from muster.cli.report_tables import print_report
 from muster.cli.tables import counted, number, print_table
@@ -116,7 +116,7 @@ def _how_it_ends(recording: Recording) -> str:
 
 
 def _print(recording: Recording, *, all_events: bool) -> None:
-    from muster.mission.event_lines import event_line
+    from muster.mission.event_descriptions import event_line
 
     name, duration = recording.mission.name, f"{recording.duration_s:.1f} s"
     amounts = (counted(len(recording.plans), "plan"), counted(len(recording.events), "event"))

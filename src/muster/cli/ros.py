@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.halting import ctrl_c_halts
+from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
-from muster.cli.real import (
+from muster.cli.real_robots import (
     Wishes,
     carried_out,
     from_here,
@@ -28,9 +28,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
-    from muster.bridges.ros1.children import Children
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
+    from muster.bridges.ros1.node_processes import Children
     from muster.execution import Report
 
 _LEFT = "the robots were told to stand"
@@ -138,9 +138,9 @@ def _with_nodes(
     begins
         whether the mission begins before anybody calls `start`.
     """
-    from muster.bridges.ros1.children import Children
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
+    from muster.bridges.ros1.node_processes import Children
 
     controller = Controller()
     if mission is not None:
@@ -187,7 +187,7 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
 
 def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
     """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
-    from muster._live import wait_for_robots
+    from muster.running.live import wait_for_robots
 
     fleet, wishes = work.fleet_of(mission), work.wishes
     try:

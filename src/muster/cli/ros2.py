@@ -7,9 +7,9 @@ from typing import Any, Literal
 import click
 
 from muster.cli.exits import INTERRUPTED
-from muster.cli.halting import ctrl_c_halts
+from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
-from muster.cli.real import (
+from muster.cli.real_robots import (
     Wishes,
     carried_out,
     from_here,
@@ -58,10 +58,10 @@ def command(
 
     Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are.
     """
-    from muster._live import wait_for_robots
     from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.middleware import open_wire
     from muster.bridges.ros2.port import Arrival
-    from muster.bridges.ros2.wire import open_wire
+    from muster.running.live import wait_for_robots
 
     wishes = Wishes(**asked)
     require_outputs(wishes, mission.files)

@@ -19,7 +19,7 @@ from muster.mission.errors import MusterError
 def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float) -> None:
     """Do a DUTY until standard input ends."""
     from muster.bridges.discovery import topics_in
-    from muster.bridges.ros1.child import live
+    from muster.bridges.ros1.node_lifetime import live
 
     topics = topics_in(namespace)
 

@@ -155,7 +155,7 @@ def _add_line(file: Path, line: str, *, is_new: bool) -> None:
 
 def _require_usable(settings: Settings) -> None:
     """Find out before anything is opened that it cannot be served in this way."""
-    from muster.server.security.rules import require_safe
+    from muster.server.security.serving_rules import require_safe
     from muster.server.serving import require_certificate
 
     require_safe(settings)
@@ -213,8 +213,8 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.mission.hints import did_you_mean
-    from muster.server.words import NotFoundError, Who
+    from muster.exchange.mission_control import NotFoundError, Who
+    from muster.mission.near_matches import did_you_mean
 
     desk, who = app.state.desk, Who("local", "command")
     file = Path(mission)

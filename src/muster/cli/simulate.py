@@ -12,10 +12,9 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.filming import draw_footage, footage_of, require_filmable
-from muster.cli.halting import ctrl_c_halts
-from muster.cli.keeping import drawing_options, kept_record, record_option
-from muster.cli.live import foxglove_option, shown_live, tell
+from muster.cli.film_options import draw_footage, footage_of, require_filmable
+from muster.cli.interrupt import ctrl_c_halts
+from muster.cli.live_output import foxglove_option, shown_live, tell
 from muster.cli.options import (
     Finite,
     MissionFile,
@@ -26,7 +25,8 @@ from muster.cli.options import (
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
-from muster.cli.remote.option import server_option
+from muster.cli.record_output import drawing_options, kept_record, record_option
+from muster.cli.remote.server_option import server_option
 from muster.cli.report_tables import print_report
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -34,7 +34,7 @@ from muster.mission.plan import Plan, json_text, read_plan
 
 if TYPE_CHECKING:
     from muster import Negotiation
-    from muster.report.looks import Looks
+    from muster.report.camera_pictures import Looks
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
@@ -182,7 +182,7 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     """Who keeps what cameras see, where that is wanted."""
     if found is None and cameras is None:
         return None
-    from muster.report.looks import Looks
+    from muster.report.camera_pictures import Looks
 
     option = "--found" if cameras is None else "--cameras"
     if not mission.tags:

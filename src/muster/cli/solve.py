@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster._api import DEFAULT_ALLOCATOR
-from muster.allocation.terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
     MissionFile,
@@ -25,11 +24,12 @@ from muster.cli.options import (
     settings_of,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.remote.option import server_option
+from muster.cli.remote.server_option import server_option
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.plan import Plan, read_plan
+from muster.planning.planning import DEFAULT_ALLOCATOR
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
@@ -175,7 +175,7 @@ def command(
 
 
 def _rewired(problem: Problem, plan: Plan) -> Plan:
-    from muster.execution.rewiring import rewire
+    from muster.allocation.rewiring import rewire
 
     return rewire(problem, plan).plan
 

@@ -18,7 +18,7 @@ from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
-    from muster.studies import Cell, Report, Table
+    from muster_studies import Cell, Report, Table
 
 _SHORT_HEADERS = {"iterations": "iter."}  # what is wider than its numbers
 _LEAST_SECONDS = 0.01
@@ -64,7 +64,7 @@ def command(
 
     All own numbers are the judge's. Without NAME the studies are listed.
     """
-    from muster.studies import Effort, Illustrated, study_named
+    from muster_studies import Effort, Illustrated, study_named
 
     if name is None or list_studies:
         _list(form)
@@ -90,8 +90,8 @@ def command(
 
 def _list(form: str) -> None:
     from muster.cli.tables import print_table
-    from muster.studies import STUDIES
-    from muster.studies.tables import span
+    from muster_studies import STUDIES
+    from muster_studies.tables import span
 
     if form == "json":
         click.echo(_json([{"name": s.name, "summary": s.summary, "tables": s.tables} for s in STUDIES.values()]))
@@ -108,7 +108,7 @@ def _show(report: Report, form: str, output: Path | None) -> None:
     if output is None:
         return
     if output.suffix == ".md":
-        from muster.studies.markdown import as_markdown
+        from muster_studies.markdown import as_markdown
 
         output.write_text(as_markdown(report, f"muster {' '.join(sys.argv[1:])}"), encoding="utf-8")
         return

@@ -8,7 +8,7 @@ import click
 
 from muster.cli.exits import DONE, REJECTED
 from muster.cli.options import MissionFile, format_option, load_plan, mission_argument, quiet_option
-from muster.cli.remote.option import server_option
+from muster.cli.remote.server_option import server_option
 from muster.mission.plan import json_text
 
 

@@ -9,7 +9,9 @@ from functools import partial
 
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
+from muster.exchange.export_request import Wishes
 from muster.exchange.fence import Fence
+from muster.exchange.geographic_features import survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, itineraries
@@ -17,13 +19,11 @@ from muster.exchange.kml import kml_text
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.separation import meetings
 from muster.exchange.spreadsheet import csv_text
-from muster.exchange.survey import survey
 from muster.exchange.thinning import thinned
-from muster.exchange.wishes import Wishes
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.motion.roads import Roads
-from muster.motion.world import body_of
+from muster.motion.map_world import body_of
+from muster.motion.robot_paths import Roads
 from muster.verification import Verdict
 
 

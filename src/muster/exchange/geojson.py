@@ -12,7 +12,7 @@ from typing import Any
 
 from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
-from muster.exchange.survey import AREAS, Feature, Survey
+from muster.exchange.geographic_features import AREAS, Feature, Survey
 
 
 def geojson_text(survey: Survey) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as Tree
 
 from muster.exchange.earth import Spot
-from muster.exchange.survey import Feature, Survey
+from muster.exchange.geographic_features import Feature, Survey
 from muster.exchange.xml_text import add, decimal, text_of
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"

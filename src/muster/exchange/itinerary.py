@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
-from muster.execution.doing import Way, Work, place, work_of
+from muster.execution.task_motion import Way, Work, place, work_of
 from muster.execution.travel import way_of
 from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
 from muster.motion.port import Place
-from muster.motion.roads import Roads
+from muster.motion.robot_paths import Roads
 from muster.verification import RouteFigures, Verdict, Visit
 
 

@@ -13,7 +13,7 @@ from xml.etree import ElementTree as Tree
 
 from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
-from muster.exchange.survey import AREAS, Feature, Survey
+from muster.exchange.geographic_features import AREAS, Feature, Survey
 from muster.exchange.xml_text import add, decimal, text_of
 
 _NAMESPACE = "http://www.opengis.net/kml/2.2"

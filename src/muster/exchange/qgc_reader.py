@@ -16,13 +16,13 @@ from typing import Any, TypeGuard
 from muster.exchange import qgc_format as qgc
 from muster.exchange.qgc_fences import Corner, Fences, map_of
 from muster.mission.errors import Finding, MissionError
+from muster.mission.from_data import mission_from
 from muster.mission.geodesy import wgs84_to_enu
-from muster.mission.kinds import shown
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.plan import tie_order
-from muster.mission.reading import mission_from
 from muster.mission.source import Source
 from muster.mission.text_files import read_text
+from muster.mission.value_types import shown
 
 Degrees = tuple[float, float, float]
 """Latitude and longitude in degrees, and the height in metres in the datum of the planned home."""

@@ -1,12 +1,12 @@
 """Carrying a plan out: dispatch, monitoring, re-allocation. Robots are reached through ports alone."""
 
+from muster.allocation.rewiring import rewire
+from muster.execution.completed_work import Deed, Past
 from muster.execution.executor import Executor, Happening
 from muster.execution.monitor import Limits
-from muster.execution.past import Deed, Past
 from muster.execution.reallocation import Reallocation, Revision
 from muster.execution.record import Observer, Recorder
 from muster.execution.report import Report, broken_off, report_of
-from muster.execution.rewiring import rewire
 from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from muster.execution.doing import place
-from muster.execution.hand import Activity, Hand
-from muster.execution.ledger import Ledger
+from muster.execution.robot_state import Activity, Hand
+from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import place
 from muster.execution.travel import Travel
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.port import RobotPort
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from muster.execution.changes import Change
-from muster.execution.doing import Doer, Way, Work, path_length, work_of
-from muster.execution.hand import Activity, Hand
-from muster.execution.ledger import Ledger
 from muster.execution.monitor import exceeds
+from muster.execution.robot_state import Activity, Hand
+from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import Doer, Way, Work, path_length, work_of
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 

@@ -13,18 +13,18 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_hand
+from muster.execution.completed_work import Past
 from muster.execution.dispatch import Dispatch
-from muster.execution.doing import Doer, Way, straight
-from muster.execution.hand import Activity, Hand
-from muster.execution.ledger import Ledger
 from muster.execution.monitor import Limits
-from muster.execution.overseer import Overseer
-from muster.execution.past import Past
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
 from muster.execution.record import NoObserver, Observer
+from muster.execution.remaining_problem import Rest
 from muster.execution.report import Account
-from muster.execution.rest import Rest
+from muster.execution.robot_state import Activity, Hand
 from muster.execution.situation import required_routes, rest_of, whole_plan
+from muster.execution.supervision import Overseer
+from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import Doer, Way, straight
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot

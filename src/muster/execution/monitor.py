@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.execution.hand import MOVING, Activity, Hand
+from muster.execution.robot_state import MOVING, Activity, Hand
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of

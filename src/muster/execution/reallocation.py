@@ -14,10 +14,10 @@ from muster.allocation.allocator import Routes
 from muster.allocation.explanations import unassigned
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
+from muster.allocation.rewiring import rewired
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
-from muster.execution.rest import Posed, Rest, in_one_line, posed
-from muster.execution.rewiring import rewired
+from muster.execution.remaining_problem import Posed, Rest, in_one_line, posed
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Reason, Unassigned

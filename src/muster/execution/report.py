@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from muster.execution.ledger import Ledger
+from muster.execution.task_ledger import Ledger
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from muster.execution.hand import Activity, Hand
-from muster.execution.ledger import Ledger
-from muster.execution.rest import Rest, Standing
+from muster.execution.remaining_problem import Rest, Standing
+from muster.execution.robot_state import Activity, Hand
+from muster.execution.task_ledger import Ledger
 from muster.execution.travel import Spot
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Reason, Route, Unassigned
+from muster.mission.value_types import shown
 
 
 def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[str, ...]]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from muster.execution.changes import OUT
-from muster.execution.hand import Activity, Hand
-from muster.execution.ledger import Ledger
+from muster.execution.robot_state import Activity, Hand
+from muster.execution.task_ledger import Ledger
 
 if TYPE_CHECKING:
     from muster.execution.executor import Executor

@@ -9,14 +9,14 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.measured import Measured
+from muster.allocation.lengths import Measured
 from muster.allocation.problem import Problem
-from muster.execution.doing import Way, place, straight
+from muster.execution.task_motion import Way, place, straight
 from muster.mission.model import Mission, Robot, TravelTable
+from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
 from muster.motion.port import Place
-from muster.motion.roads import Roads
-from muster.motion.world import body_of
+from muster.motion.robot_paths import Roads
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Missions and published tables that ship with the package, as data and by name."""
 
-from muster.library.shelf import (
+from muster.library.shipped import (
     MissionSummary,
     as_corrected,
     as_printed,

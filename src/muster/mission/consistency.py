@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import Fault, Path, shown
+from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import Fault, Path, shown
 
 if TYPE_CHECKING:
     from muster.mission.model import Found, Mission, Point, Robot, Task, Work

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path as FilePath
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import shown
+from muster.mission.near_matches import did_you_mean
 from muster.mission.text_files import read_text
+from muster.mission.value_types import shown
 
 
 @dataclass(frozen=True)

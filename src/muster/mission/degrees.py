@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.mission.kinds import INVALID, Fault, Path, Record, shown
 from muster.mission.model import Origin
-from muster.mission.places import LatLon
+from muster.mission.place_types import LatLon
+from muster.mission.value_types import INVALID, Fault, Path, Record, shown
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
 _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))

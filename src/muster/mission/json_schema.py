@@ -8,8 +8,8 @@ from __future__ import annotations
 import json
 import sys
 
-from muster.mission.kinds import JsonSchema, Record
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.value_types import JsonSchema, Record
 
 
 def mission_schema() -> JsonSchema:

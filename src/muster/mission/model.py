@@ -12,7 +12,9 @@ from typing import Any
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.consistency import inconsistencies
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import (
+from muster.mission.place_types import LatLon, Place
+from muster.mission.source import IN_PYTHON, Source
+from muster.mission.value_types import (
     Choice,
     Fault,
     Flag,
@@ -29,8 +31,6 @@ from muster.mission.kinds import (
     spec,
     specified,
 )
-from muster.mission.places import LatLon, Place
-from muster.mission.source import IN_PYTHON, Source
 
 SCHEMA = "muster/1"
 OBJECTIVES = ("total+max", "total", "max", "average", "makespan")

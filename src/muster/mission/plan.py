@@ -9,11 +9,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from muster.mission.book import Award, Book
+from muster.mission.auction_book import Award, Book
 from muster.mission.errors import Finding, MissionError, PlanError
-from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES
 from muster.mission.text_files import read_text
+from muster.mission.value_types import shown
 
 PLAN_SCHEMA = "muster-plan/1"
 REASONS = ("skill", "suitability", "lock", "capacity", "prerequisite", "unreachable", "not-chosen")

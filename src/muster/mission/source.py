@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from muster.mission.kinds import Path
+from muster.mission.value_types import Path
 
 Place = tuple[str, int | None]
 """A file and a line of it, from 1; None where there are no lines."""

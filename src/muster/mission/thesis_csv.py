@@ -14,10 +14,10 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import Row, number, read_rows, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, Path, shown
+from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission, Robot, Task
-from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
+from muster.mission.value_types import Fault, Path, shown
 
 TASK_COLUMNS = ("index", "x", "y", "type", "actuation_cost", "prerequisites")
 ROBOT_COLUMNS = ("id", "type", "x", "y", "work_capacity")

@@ -8,9 +8,9 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, shown
 from muster.mission.model import TravelTable
 from muster.mission.source import Source
+from muster.mission.value_types import Fault, shown
 
 
 def read_travel_tables(files: Mapping[str, str], source: Source, faults: list[Fault]) -> dict[str, TravelTable]:

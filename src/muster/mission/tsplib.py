@@ -11,11 +11,11 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, Path, shown
+from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
-from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
 from muster.mission.text_files import read_text
+from muster.mission.value_types import Fault, Path, shown
 
 _MOST_SALESMEN = 100_000
 _NEEDED = {"TYPE": "TSP", "EDGE_WEIGHT_TYPE": "EUC_2D"}

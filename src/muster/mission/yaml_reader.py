@@ -14,11 +14,11 @@ from typing import Any
 import yaml
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, Path, shown
+from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
-from muster.mission.reading import mission_from
 from muster.mission.source import Place, Source
 from muster.mission.text_files import read_text
+from muster.mission.value_types import Fault, Path, shown
 
 _FORBIDDEN = re.compile(r"[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _LINE_END = re.compile(r"\r\n|[\r\n\x85\u2028\u2029]")

@@ -6,8 +6,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from muster.mission.kinds import specified
 from muster.mission.model import Mission
+from muster.mission.value_types import specified
 
 
 def yaml_text(mission: Mission) -> str:

@@ -15,8 +15,9 @@ from collections.abc import Sequence
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
-from muster.negotiation.extra import require_net
-from muster.negotiation.forms import (
+from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
+from muster.negotiation.optional_parts import require_net
+from muster.negotiation.plain_values import (
     COUNT,
     DATA,
     FLAG,
@@ -31,7 +32,6 @@ from muster.negotiation.forms import (
     record,
     rows,
 )
-from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
 
 PROTOCOL = 2
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""

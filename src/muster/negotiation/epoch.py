@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from muster.negotiation.base import Base, Rules, agreed
+from muster.negotiation.epoch_base import Base, Rules, agreed
 from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
 from muster.negotiation.valuation import Opening, Valuer
 

@@ -7,10 +7,10 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.negotiation.codec import Codec
+from muster.negotiation.encryption import Seal
 from muster.negotiation.memory_file import Kept, keeper
 from muster.negotiation.methods import Method
 from muster.negotiation.node import Node
-from muster.negotiation.seal import Seal
 from muster.negotiation.transport import Transport
 
 

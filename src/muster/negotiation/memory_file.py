@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import Finding, InputError
-from muster.negotiation.happenings import Memory
+from muster.negotiation.effects import Memory
 from muster.negotiation.messages import Claim, Fact
 from muster.negotiation.negotiator import Negotiator
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
-from muster.negotiation.happenings import Outgoing
+from muster.negotiation.effects import Outgoing
 from muster.negotiation.messages import Message
 from muster.negotiation.negotiator import Negotiator
 

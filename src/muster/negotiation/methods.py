@@ -11,11 +11,11 @@ from muster.allocation.auction import AUCTION
 from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.taking_part import bundler_of, negotiator_of, plan_of_bundles, plan_of_view
-from muster.negotiation.view import View
+from muster.negotiation.participation import bundler_of, negotiator_of, plan_of_bundles, plan_of_view
+from muster.negotiation.robot_view import View
 
 
 @dataclass(frozen=True, kw_only=True)

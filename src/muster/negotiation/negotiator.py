@@ -7,12 +7,12 @@ How it agrees with the others who owns which is told in `participant`. What is s
 from __future__ import annotations
 
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Task
-from muster.negotiation.happenings import Memory
+from muster.mission.value_types import shown
+from muster.negotiation.effects import Memory
 from muster.negotiation.messages import Claim, Fact
+from muster.negotiation.new_tasks import content_of
 from muster.negotiation.participant import Participant
-from muster.negotiation.tasks import content_of
 
 
 class Negotiator(Participant):

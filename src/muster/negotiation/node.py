@@ -9,13 +9,13 @@ from types import TracebackType
 from typing import Self
 
 from muster.mission.clock import Clock, SystemClock
-from muster.negotiation.acquaintance import Acquaintance
 from muster.negotiation.codec import Codec, OtherVersion
-from muster.negotiation.forms import Garbled
-from muster.negotiation.happenings import Outgoing
+from muster.negotiation.effects import Outgoing
+from muster.negotiation.encryption import OVERHEAD, Seal
 from muster.negotiation.messages import RoundBids, Sold
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.seal import OVERHEAD, Seal
+from muster.negotiation.peer_sessions import Acquaintance
+from muster.negotiation.plain_values import Garbled
 from muster.negotiation.transport import Transport
 
 _LOOK_S = 0.25

@@ -10,7 +10,7 @@ from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.node import Node, NodeStatus
-from muster.negotiation.view import View, view_of
+from muster.negotiation.robot_view import View, view_of
 
 _STEP_S = 0.05
 _NAMES_SHOWN = 5

@@ -17,18 +17,18 @@ from dataclasses import dataclass, field
 from itertools import repeat
 from typing import Any
 
-from muster.negotiation.agreement import Agreement
-from muster.negotiation.base import Base, Rules
+from muster.negotiation.effects import Counts, Diary, Happening, Memory, Outgoing
 from muster.negotiation.epoch import Epoch
-from muster.negotiation.happenings import Counts, Diary, Happening, Memory, Outgoing
+from muster.negotiation.epoch_base import Base, Rules
 from muster.negotiation.identity import Identity
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.members import Members, Patience
 from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, Stage
+from muster.negotiation.owned_tasks import Work
+from muster.negotiation.peer_progress import Agreement
 from muster.negotiation.repairs import Repairs
+from muster.negotiation.stalled_members import Waiting
 from muster.negotiation.valuation import Valuer
-from muster.negotiation.waiting import Waiting
-from muster.negotiation.work import Work
 
 
 @dataclass

@@ -16,10 +16,10 @@ from types import TracebackType
 
 from muster.mission.errors import MusterError
 from muster.mission.interrupts import ctrl_c_held_back
-from muster.negotiation.extra import require_net
 from muster.negotiation.members import Patience
-from muster.negotiation.view import View
-from muster.negotiation.watch import GO, SHOW, Born, Failed, Gone, News, Order, Ready
+from muster.negotiation.optional_parts import require_net
+from muster.negotiation.process_reports import GO, SHOW, Born, Failed, Gone, News, Order, Ready
+from muster.negotiation.robot_view import View
 
 _ENDING_S = 3.0
 _BORN_S = 0.05
@@ -70,7 +70,8 @@ class Team:
         descriptors = [end.fileno() for end in ends]
         with ctrl_c_held_back():
             self._nursery = subprocess.Popen(
-                [sys.executable, "-m", "muster.negotiation.nursery", *map(str, descriptors)], pass_fds=descriptors
+                [sys.executable, "-m", "muster.negotiation.process_factory", *map(str, descriptors)],
+                pass_fds=descriptors,
             )
         for end in ends:
             end.close()

@@ -15,14 +15,14 @@ from typing import Protocol
 import numpy as np
 
 from muster.allocation.allocator import Routes
+from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.fixed import admissible_part, with_past
 from muster.allocation.problem import Problem
-from muster.allocation.terms import Terms
 from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
 from muster.mission.model import Task
 from muster.negotiation.messages import Bid, RoundBids, Sold
-from muster.negotiation.tasks import content_of, with_tasks
+from muster.negotiation.new_tasks import content_of, with_tasks
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from muster.mission.errors import NetworkError, ParameterError
-from muster.negotiation.extra import require_net
+from muster.negotiation.optional_parts import require_net
 
 if TYPE_CHECKING:
     import zenoh

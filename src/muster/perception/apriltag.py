@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 
 FAMILY = "tag36h11"
 

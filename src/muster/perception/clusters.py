@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.perception.estimates import NO_TAG, RawEstimates
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 
 Floats = npt.NDArray[np.float64]
 Labels = npt.NDArray[np.int64]

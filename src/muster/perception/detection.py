@@ -16,8 +16,8 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError
 from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
-from muster.perception.extra import require_physics
 from muster.perception.images import Image, grey
+from muster.perception.optional_parts import require_physics
 
 Floats = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import Finding, InputError, ParameterError
 from muster.perception.camera import Intrinsics
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 
 Image = npt.NDArray[np.uint8]
 

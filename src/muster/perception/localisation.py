@@ -19,7 +19,7 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError
 from muster.motion.frames import moved, transform
 from muster.perception.camera import View
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 from muster.perception.tags import CORNERS
 
 Floats = npt.NDArray[np.float64]

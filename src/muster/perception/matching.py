@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.perception.detection import Sightings
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 
 _OUTLINE, _UPPER_EDGE, _REPEATED = (0, 190, 90), (60, 120, 255), (220, 30, 30)
 

@@ -8,7 +8,7 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.report.canvas import add_legend, add_title, alarm_of, note_entries
 from muster.report.fonts import Names
-from muster.report.ground import drawn_prerequisites
+from muster.report.route_ground import drawn_prerequisites
 from muster.report.time_chart import Row, Span, TimeChart, Work, duration, lasting, new_chart_axes
 from muster.verification import RouteFigures, Verdict
 

@@ -13,9 +13,9 @@ from typing import Any, Self
 
 from muster.mission.errors import MissingExtraError, NetworkError
 from muster.mission.model import Mission
-from muster.report.record import messages, scene
+from muster.report.record import json_messages, scene
+from muster.report.record.publisher import Teller
 from muster.report.record.schemas import SCHEMAS, TOPICS
-from muster.report.record.teller import Teller
 
 _LASTING = ("/map", "/muster/plan")
 """Topics whose last message holds until the next."""
@@ -103,10 +103,10 @@ class FoxgloveServer(Teller):
             asked, self._asked = self._asked, set()
         holds = {**self._last, "/scene": scene.update(list(self._entities.values()))}
         for topic in sorted(asked & holds.keys()):
-            self._log(topic, now, messages.json_bytes(holds[topic]))
+            self._log(topic, now, json_messages.json_bytes(holds[topic]))
 
     def _log(self, topic: str, now: float, data: bytes) -> None:
-        self._channels[topic].log(data, log_time=messages.nanoseconds(now))
+        self._channels[topic].log(data, log_time=json_messages.nanoseconds(now))
 
 
 class _Listener:
@@ -130,7 +130,7 @@ def _foxglove() -> Any:
 
 def _channel(foxglove: Any, context: Any, topic: str) -> Any:
     name = TOPICS[topic]
-    schema = foxglove.Schema(name=name, encoding="jsonschema", data=messages.json_bytes(SCHEMAS[name]))
+    schema = foxglove.Schema(name=name, encoding="jsonschema", data=json_messages.json_bytes(SCHEMAS[name]))
     return foxglove.Channel(topic, schema=schema, message_encoding="json", context=context)
 
 

@@ -29,10 +29,10 @@ from muster.report.canvas import (
 )
 from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
 from muster.report.fonts import Names
-from muster.report.ground import draw_prerequisites, draw_stems, drawn_prerequisites
 from muster.report.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.route_ground import draw_prerequisites, draw_stems, drawn_prerequisites
+from muster.report.route_lines import Places, Trace, left_out, places, traces
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
-from muster.report.traces import Places, Trace, left_out, places, traces
 from muster.verification import Verdict
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None
 
 def _image(mission: Mission) -> Grid | None:
     """Read the image of the mission's map, where it is one."""
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 

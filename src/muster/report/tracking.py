@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.model import Map
 from muster.report.canvas import quiet_frame, require_matplotlib
 from muster.report.floor import draw_map
+from muster.report.route_lines import Places
 from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
-from muster.report.traces import Places
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,17 +10,17 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from muster.server.desk.desk import Desk, open_desk
+from muster.exchange.mission_control import Who
 from muster.server.health import health_route
 from muster.server.logs import log_answered
 from muster.server.metrics import Metrics
-from muster.server.security.asking import Asking, who_of
+from muster.server.security.authentication import Asking, who_of
 from muster.server.security.guard import Answered, Guard, Shield
 from muster.server.security.login import login_routes
-from muster.server.security.refusals import Audit, Keep
-from muster.server.security.rules import require_safe
+from muster.server.security.refusal_log import Audit, Keep
+from muster.server.security.serving_rules import require_safe
+from muster.server.services.services import Desk, open_desk
 from muster.server.settings import Settings
-from muster.server.words import Who
 
 
 def make_app(settings: Settings) -> FastAPI:

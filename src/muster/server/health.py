@@ -13,10 +13,10 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from muster.server.desk.desk import Desk
-from muster.server.security.asking import who_of
+from muster.exchange.mission_control import StoreError
+from muster.server.security.authentication import who_of
+from muster.server.services.services import Desk
 from muster.server.store.store import Store
-from muster.server.words import StoreError
 
 _PATIENCE_S = 2.0
 """Less than who asks waits: a container's check ends after 5 s."""

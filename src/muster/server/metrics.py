@@ -17,10 +17,10 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from muster.server.desk.desk import Desk
+from muster.exchange.mission_control import JobState, RunState, StoreError
 from muster.server.security.guard import Answered, Shield
-from muster.server.store.figures import Figures, figures
-from muster.server.words import JobState, RunState, StoreError
+from muster.server.services.services import Desk
+from muster.server.store.statistics import Figures, figures
 
 _SECONDS = (0.005, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
 _APPEND_S = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)

@@ -16,13 +16,13 @@ import numpy as np
 from muster import core
 from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
 from muster.mission.model import Mission, Robot
+from muster.mission.near_matches import did_you_mean
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.limits import Limits
-from muster.motion.world import Body, World, body_of
+from muster.motion.map_world import Body, World, body_of
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.motion.world import body_of
+from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner, faces_at
 from muster.simulation.crowded_world import CrowdedWorld, Event
 from muster.simulation.lasers import discs_at, mounted_m

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from muster.motion.grid import Bools, Floats, Grid
-from muster.motion.world import Body, World
+from muster.motion.map_world import Body, World
 
 Slab = tuple[list[tuple[float, float]], float, float]
 """Corners, lowest and highest z of a zone over or under which robots fly."""

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from muster.mission.model import Point
+from muster.motion.free_space import PrismSpace
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.maps.inside import free
-from muster.motion.spaces import PrismSpace
+from muster.motion.maps.free_points import free
 from muster.verification.roads import Roads
 
 if TYPE_CHECKING:

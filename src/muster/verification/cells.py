@@ -12,10 +12,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from muster.motion.free_space import GridSpace
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.maps.inside import free as is_free
-from muster.motion.maps.inside import slack_m
-from muster.motion.spaces import GridSpace
+from muster.motion.maps.free_points import free as is_free
+from muster.motion.maps.free_points import slack_m
 
 _CLOSE = 1e-6  # of a cell: less than cones between lattice points can be apart, more than rounding
 _ROUNDED = 1e-9  # of a cell: what is this near to a lattice line is on it

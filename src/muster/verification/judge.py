@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster.mission.errors import Finding, PlanError
-from muster.mission.kinds import shown
 from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
 from muster.mission.plan import Plan
-from muster.mission.supported import require_supported
+from muster.mission.supported_features import require_supported
+from muster.mission.value_types import shown
 from muster.verification.admissibility import broken_rules, capacity_of, known_routes
 from muster.verification.measure import MeasuredRoute, equality_index, measured
 from muster.verification.schedule import Deadlock, Times, awaited_in, schedule

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster.motion.free_space import PolygonSpace
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.maps.inside import free as is_free
-from muster.motion.spaces import PolygonSpace
+from muster.motion.maps.free_points import free as is_free
 
 if TYPE_CHECKING:
     import shapely

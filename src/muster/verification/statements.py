@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
-from muster.mission.book import Book
+from muster.mission.auction_book import Book
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification.verdict import Verdict, Violation

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
+from muster.mission.value_types import shown
 
 KINDS = (
     "unknown-robot",

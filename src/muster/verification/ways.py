@@ -14,9 +14,9 @@ from typing import Protocol
 import numpy as np
 
 from muster.mission.model import Mission, Point, Robot
+from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Bools, Floats, Indices
-from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
-from muster.motion.world import World
+from muster.motion.map_world import World
 from muster.verification.air import AirWays
 from muster.verification.cells import Cells
 from muster.verification.regions import Regions

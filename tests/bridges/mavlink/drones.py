@@ -3,7 +3,6 @@
 import socket
 
 import muster
-from muster._live import carry_out_live
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.settings import Settings
@@ -13,6 +12,7 @@ from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission, Origin, Robot, Rules, Task
+from muster.running.live import carry_out_live
 
 ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06, alt_m=100.0)
 

@@ -1,13 +1,13 @@
 """A session that is spoken to, message by message, in the words of a drone."""
 
 from muster.bridges.mavlink.autopilots import PX4
-from muster.bridges.mavlink.craft import Craft
 from muster.bridges.mavlink.dialect import mavlink
+from muster.bridges.mavlink.drone import Craft
 from muster.bridges.mavlink.fence import no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
-from muster.bridges.mavlink.seen import Seen
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
+from muster.bridges.mavlink.telemetry import Seen
 from muster.mission.model import Origin, Robot
 from muster.motion.port import Waypoint
 

@@ -8,11 +8,11 @@ import pytest
 from tests.bridges.mavlink.drones import Sky, mission
 
 import muster
-from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Task
+from muster.running.live import carry_out_live
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
 FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(2))

@@ -6,7 +6,6 @@ import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, flown, mission
 
 import muster
-from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
@@ -15,6 +14,7 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Map, Robot, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
+from muster.running.live import carry_out_live
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 

@@ -12,7 +12,7 @@ import time
 import pytest
 
 from muster.bridges.mavlink.autopilots import PX4
-from muster.bridges.mavlink.simulated import faults_of, serve
+from muster.bridges.mavlink.simulated_autopilot import faults_of, serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.bridges.mavlink.simulated_faults import Faults

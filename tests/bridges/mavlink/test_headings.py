@@ -10,7 +10,7 @@ from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.follower import Follower
 from muster.bridges.mavlink.frames import GlobalFrame
-from muster.bridges.mavlink.items import route_of
+from muster.bridges.mavlink.mission_items import route_of
 from muster.motion.port import Waypoint
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)

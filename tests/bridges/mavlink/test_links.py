@@ -10,7 +10,6 @@ import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, mission
 
 import muster
-from muster._live import carry_out_live
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
@@ -20,6 +19,7 @@ from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import NetworkError, ParameterError
+from muster.running.live import carry_out_live
 
 
 class Router(Sky):

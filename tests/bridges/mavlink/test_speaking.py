@@ -10,7 +10,7 @@ from tests.bridges.mavlink.drones import ORIGIN, mission
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.simulated import serve
+from muster.bridges.mavlink.simulated_autopilot import serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.motion.port import Waypoint
 

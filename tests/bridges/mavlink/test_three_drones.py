@@ -6,12 +6,12 @@ import pytest
 from tests.bridges.mavlink.drones import Sky, mission
 
 import muster
-from muster._live import carry_out_live
 from muster.bridges.mavlink import Kind
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.model import Task
+from muster.running.live import carry_out_live
 
 HARMLESS = {"HEARTBEAT", "SET_MESSAGE_INTERVAL"}
 TASKS = tuple(Task(id=f"t_{k}", position=(25.0 + 25.0 * (k // 3), 6.0 * (k % 3), 10.0)) for k in range(9))

@@ -67,7 +67,7 @@ class Ros:
 
     def robot(self, name, x, y, *more):
         own = ("--kinematics", "differential-drive", "--speed", 3, "--yaw-rate", 6, *more)
-        return self.start("-m", "muster.bridges.ros1.simulated", name, "--at", x, y, *own)
+        return self.start("-m", "muster.bridges.ros1.simulated_robot", name, "--at", x, y, *own)
 
     def call(self, *asked):
         """Calls services, and publishes tasks, in turn; prints what services answer."""

@@ -10,7 +10,7 @@ from itertools import pairwise
 import pytest
 
 from muster import load
-from muster.library.shelf import mission_path
+from muster.library.shipped import mission_path
 
 SPEED, YAW_RATE, RADIUS = 1.2, 6.0, 0.3
 ROBOTS = {"r_0": (-2.021, 1.461, "beta"), "r_1": (-2.023, -0.661, "epsilon"), "r_2": (-2.0, 0.4, "tau")}
@@ -36,7 +36,7 @@ def said(heard, topic):
 def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
     own = ("--speed", SPEED, "--yaw-rate", YAW_RATE, "--radius", RADIUS)
     robots = {
-        name: ros.start("-m", "muster.bridges.ros1.simulated", name, "--at", x, y, "--type", kind, *own)
+        name: ros.start("-m", "muster.bridges.ros1.simulated_robot", name, "--at", x, y, "--type", kind, *own)
         for name, (x, y, kind) in ROBOTS.items()
     }
     listener = ros.listener(

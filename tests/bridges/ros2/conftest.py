@@ -41,6 +41,8 @@ def simulated(start):
 
     def robot(name, x, y, *more):
         quick = ("--kinematics", "holonomic", "--speed", 3, "--yaw-rate", 6)
-        return start("-m", "muster.bridges.ros2.simulated", name, "--by", "dds", "--at", x, y, *quick, *more)
+        return start(
+            "-m", "muster.bridges.ros2.simulated_participant", name, "--by", "dds", "--at", x, y, *quick, *more
+        )
 
     return robot

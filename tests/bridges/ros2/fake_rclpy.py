@@ -13,7 +13,7 @@ from collections import deque
 from types import SimpleNamespace
 
 from muster.bridges.ros2.description import ROS2, fields_of
-from muster.bridges.ros2.messages import MESSAGES
+from muster.bridges.ros2.message_types import MESSAGES
 
 
 class Graph:

@@ -2,7 +2,7 @@
 
 import math
 
-from muster.bridges.ros2.messages import (
+from muster.bridges.ros2.message_types import (
     Header,
     Odometry,
     Point,
@@ -14,7 +14,7 @@ from muster.bridges.ros2.messages import (
     TwistWithCovariance,
     Vector3,
 )
-from muster.bridges.ros2.wire import Outcome
+from muster.bridges.ros2.middleware import Outcome
 from muster.mission.errors import NetworkError
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from muster.bridges.ros2.cdr import from_cdr, from_ros1, to_cdr, to_ros1
 from muster.bridges.ros2.description import ROS1, ROS2, definition, fields_of, md5_sum, type_name
-from muster.bridges.ros2.messages import MESSAGES, Header, Odometry, Time
+from muster.bridges.ros2.message_types import MESSAGES, Header, Odometry, Time
 from muster.mission.errors import ParameterError
 
 rosbags = pytest.importorskip("rosbags.typesys")

@@ -6,17 +6,17 @@ from pathlib import Path
 import pytest
 
 import muster
-from muster._live import carry_out_live
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.port import Waypoint
+from muster.running.live import carry_out_live
 
 pytest.importorskip("cyclonedds")
 
 from muster.bridges.ros2.dds import Participant
 from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
-from muster.bridges.ros2.messages import MESSAGES, PoseStamped
+from muster.bridges.ros2.message_types import MESSAGES, PoseStamped
 
 pytestmark = pytest.mark.usefixtures("loopback")
 

@@ -6,8 +6,8 @@ import pytest
 from tests.bridges.ros2.fake_wire import Navigator, Told, Wire, moved, posed
 
 from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
+from muster.bridges.ros2.middleware import Outcome
 from muster.bridges.ros2.port import Arrival, Ros2Port, yaw_of
-from muster.bridges.ros2.wire import Outcome
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint

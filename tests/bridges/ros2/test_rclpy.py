@@ -6,16 +6,16 @@ import threading
 import pytest
 from tests.bridges.ros2 import fake_rclpy
 
-from muster._live import carry_out_live
 from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
-from muster.bridges.ros2.messages import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
-from muster.bridges.ros2.rclpy_wire import RclpyWire, _class_of
-from muster.bridges.ros2.wire import open_wire
+from muster.bridges.ros2.message_types import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
+from muster.bridges.ros2.middleware import open_wire
+from muster.bridges.ros2.rclpy_middleware import RclpyWire, _class_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
+from muster.running.live import carry_out_live
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from muster.cli.main import run
 pytest.importorskip("cyclonedds")
 
 from muster.bridges.ros2.dds import Participant
-from muster.bridges.ros2.messages import Odometry, PoseStamped
+from muster.bridges.ros2.message_types import Odometry, PoseStamped
 
 pytestmark = pytest.mark.usefixtures("loopback")
 MISSION = """
@@ -124,7 +124,9 @@ def test_what_is_published_is_known_until_its_publisher_leaves():
 
 
 def test_a_simulated_robot_in_no_domain_is_one_line(start):
-    out, err = start("-m", "muster.bridges.ros2.simulated", "r_0", "--domain", "300").communicate(timeout=20)
+    out, err = start("-m", "muster.bridges.ros2.simulated_participant", "r_0", "--domain", "300").communicate(
+        timeout=20
+    )
     assert (out, err) == ("", "domain: '300'; expected a number from 0 to 232\n")
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from muster.core import squared_distances
 from muster.motion.grid import Grid
 from muster.motion.maps import clearance_to_blocked, inflated
-from muster.motion.maps.field import distance_field
+from muster.motion.maps.distance_field import distance_field
 
 shared = settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 

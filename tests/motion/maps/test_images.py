@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 from muster.mission.errors import MissionError
+from muster.motion.map_world import World
 from muster.motion.maps.images import read_shades
-from muster.motion.world import World
 
 GREY = np.array([[0, 100, 255], [205, 254, 12]], dtype=np.uint8)
 

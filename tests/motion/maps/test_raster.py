@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import PolygonSpace
 from muster.motion.maps import default_resolution, grid_of
 from muster.motion.maps.raster import touched
-from muster.motion.spaces import PolygonSpace
 
 
 @st.composite

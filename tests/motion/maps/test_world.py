@@ -8,9 +8,9 @@ import shapely
 from PIL import Image
 
 from muster.mission.errors import MissionError, ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace
+from muster.motion.map_world import World
 from muster.motion.maps import free
-from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace
-from muster.motion.world import World
 
 SQUARE = "boundary: [[0, 0], [10, 0], [10, 10], [0, 10]]"
 ZONE = "polygon: [[4, 4], [6, 4], [6, 6], [4, 6]]"

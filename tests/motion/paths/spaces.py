@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 from hypothesis import strategies as st
 
+from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
-from muster.motion.spaces import GridSpace, PolygonSpace
 
 
 @st.composite

@@ -8,10 +8,10 @@ import shapely
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import Prism, PrismSpace
 from muster.motion.path import Path
 from muster.motion.paths import WayFinder, find, travel_lengths
 from muster.motion.paths.rings import rings_of
-from muster.motion.spaces import Prism, PrismSpace
 
 HALL = shapely.box(0, 0, 20, 20)
 

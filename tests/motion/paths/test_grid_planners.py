@@ -11,11 +11,11 @@ from tests.motion.paths.brute import grid_sees
 from tests.motion.paths.spaces import grids, places_on, regions
 
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import PLANNERS, find
 from muster.motion.paths.on_grid import Parameters
-from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace
 
 ON_GRIDS = ("dijkstra", "a-star", "theta-star", "shortest")
 

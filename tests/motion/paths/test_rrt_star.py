@@ -5,11 +5,11 @@ import pytest
 import shapely
 
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath
 from muster.motion.paths import find
 from muster.motion.paths.rrt_star import Parameters
-from muster.motion.spaces import GridSpace, PolygonSpace, Prism, PrismSpace
 
 ROOM = PolygonSpace(shapely.box(0, 0, 10, 10).difference(shapely.box(4, 2, 6, 10)))
 SHORTEST = 2 * np.hypot(3, 3) + 2

@@ -9,10 +9,10 @@ from tests.motion.paths.brute import grid_lengths, region_lengths
 from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path
 from muster.motion.paths import PLANNERS, WayFinder, find, travel_lengths
-from muster.motion.spaces import GridSpace, PolygonSpace
 
 
 def path_lengths(finder, places):

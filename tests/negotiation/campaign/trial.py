@@ -2,8 +2,8 @@
 
 from tests.trials import Report
 
-from muster.studies.negotiation import replay
-from muster.studies.negotiation.observer import PROMISED_NEVER
+from muster_studies.negotiation import replay
+from muster_studies.negotiation.observer import PROMISED_NEVER
 
 
 def trial(seed):

@@ -66,7 +66,7 @@ def test_a_gif(footage, tmp_path):
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_robots_are_seen_where_they_are_in_their_colors(footage, share):
     """Beside a robot's body, within its ring, the picture has the robot's hue; far away it has not."""
-    from muster.report.film.set import FilmSet
+    from muster.report.film.scenery import FilmSet
 
     with FilmSet(footage, 960, 540) as scene:
         now = share * scene.moments.end_s
@@ -81,7 +81,7 @@ def test_robots_are_seen_where_they_are_in_their_colors(footage, share):
 
 
 def test_tasks_take_the_color_of_who_has_done_them(footage):
-    from muster.report.film.set import FilmSet
+    from muster.report.film.scenery import FilmSet
 
     with FilmSet(footage, 960, 540) as scene:
         x, y = np.round(scene.view.pixels(np.array([(4.0, 2.5, 0.0)]))[0]).astype(int)
@@ -105,7 +105,7 @@ def test_captions_tell_what_happens_and_fade(footage):
 
 def test_what_is_written_is_seen(footage):
     from muster.report.film.film import _write_upon
-    from muster.report.film.set import FilmSet
+    from muster.report.film.scenery import FilmSet
 
     with FilmSet(footage, 960, 540) as scene:
         blank = scene.picture(3.0)
@@ -124,7 +124,7 @@ def test_the_speed_that_is_chosen_makes_no_film_longer_than_24_s():
 
 
 def test_moments_between_two_looks_are_between(footage):
-    from muster.report.film.moments import Moments
+    from muster.report.film.interpolation import Moments
 
     moments = Moments(footage)
     early, late = moments.poses[20], moments.poses[21]
@@ -215,7 +215,7 @@ def test_a_folder_that_is_not_there(footage, tmp_path):
 
 
 def test_a_trail_goes_as_far_as_the_robot_went_and_came_back():
-    from muster.report.film.stage_marks import _bends
+    from muster.report.film.ground_marks import _bends
 
     out = np.linspace(0, 9.3, 94)
     way = np.column_stack([np.concatenate([out, out[::-1]]), np.zeros(188), np.zeros(188)])

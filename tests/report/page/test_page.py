@@ -13,12 +13,12 @@ from tests.report.page.conftest import MORE
 from muster.mission.errors import InputError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.grid import Grid
+from muster.report.activity_spans import Span, spans
 from muster.report.page import data as data_of_page
 from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
 from muster.report.record import Happening, Recording, Tracks
-from muster.report.spans import Span, spans
 
 pytest.importorskip("mcap")
 

@@ -249,7 +249,7 @@ def test_bids_of_an_auction(mission, tmp_path):
 
 
 def test_the_map_is_in_the_record(tmp_path):
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     floor = muster.load("floor")
     with RecordWriter(tmp_path / "f.mcap", floor):

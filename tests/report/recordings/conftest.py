@@ -9,7 +9,7 @@ from tests.report.voyages import carry_out
 import muster
 from muster.bridges.ros2.cdr import to_cdr, to_ros1
 from muster.bridges.ros2.description import ROS1, ROS2, definition, md5_sum, type_name
-from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, PoseWithCovariance, Time
+from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, PoseWithCovariance, Time
 from muster.report.record import RecordWriter, read_record
 
 pytest.importorskip("mcap")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.report.recordings.conftest import odometry, pose, told_of, write
 
-from muster.bridges.ros2.messages import Header, String, TFMessage, Time, Transform, TransformStamped, Vector3
+from muster.bridges.ros2.message_types import Header, String, TFMessage, Time, Transform, TransformStamped, Vector3
 from muster.mission.errors import InputError, ParameterError
 from muster.mission.model import Map
 from muster.motion.grid import Grid

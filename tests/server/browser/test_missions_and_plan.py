@@ -6,7 +6,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from muster.server.client import Client
+from muster.client import Client
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 

@@ -11,11 +11,11 @@ from nicegui import Client as PageClient
 from nicegui import core, ui
 from tests.server.serving import served as serving
 
-from muster.server.client import Client
-from muster.server.desk.missions import Missions
-from muster.server.desk.plans import Plans
+from muster.client import Client
+from muster.exchange.mission_control import StoreError
+from muster.server.services.missions import Missions
+from muster.server.services.plans import Plans
 from muster.server.store.database import Database
-from muster.server.words import StoreError
 
 pytestmark = pytest.mark.xdist_group("slowly")
 

@@ -9,7 +9,7 @@ import re
 
 import pytest
 
-from muster.server.client import Client
+from muster.client import Client
 
 pytestmark = pytest.mark.xdist_group("browser")
 

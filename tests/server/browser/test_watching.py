@@ -8,7 +8,7 @@ import pytest
 from tests.server.browser.conftest import Watched
 from tests.server.security.shielded import COMMANDER, TOKENS, WATCHER
 
-from muster.server.client import Client
+from muster.client import Client
 
 pytestmark = pytest.mark.xdist_group("watching")
 

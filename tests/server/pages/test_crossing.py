@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.server.pages.editing.crossing import applied, merged
+from muster.server.pages.editing.concurrent_edits import applied, merged
 
 TEXTS = st.text(st.sampled_from("ab\n\U0001f916"), max_size=12)
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from muster.exchange.mission_control import ConflictError, MissionVersion, Who
 from muster.mission.errors import NetworkError
 from muster.server.pages.editing.draft import Draft
-from muster.server.words import ConflictError, MissionVersion, Who
 
 WHO = Who("anna", "command")
 FIRST = MissionVersion(mission="yard", version=1, text="name: a\n", author="anna", at=None)

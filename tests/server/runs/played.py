@@ -3,7 +3,7 @@
 import asyncio
 import json
 
-from muster.server.runs import carrying
+from muster.server.runs import run_session as carrying
 
 
 def entry(seq, kind, time_s=0.0, **data):

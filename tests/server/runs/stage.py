@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from muster.mission.clock import VirtualClock
-from muster.server.runs.performance import Performance
-from muster.server.runs.scribe import Scribe
-from muster.server.runs.simulated import SimulatedCourse
+from muster.server.runs.log_recorder import Scribe
+from muster.server.runs.run_loop import Performance
+from muster.server.runs.simulated_run import SimulatedCourse
 from muster.server.runs.tracks import unpacked
 
 

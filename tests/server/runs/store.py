@@ -1,9 +1,9 @@
 """A database with a plan in it, as runs need."""
 
 import muster
+from muster.exchange.mission_control import Who
 from muster.mission.yaml_writer import yaml_text
 from muster.server.settings import Settings
-from muster.server.words import Who
 
 ADA = Who("ada", "command")
 EVE = Who("eve", "watch")

@@ -8,8 +8,8 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 
 import muster
 from muster.execution import Status
-from muster.server.runs.performance import Performance
-from muster.server.runs.scribe import DivergedError, Scribe
+from muster.server.runs.log_recorder import DivergedError, Scribe
+from muster.server.runs.run_loop import Performance
 
 MOMENTS = st.floats(0, 60).map(lambda value: round(value, 2))
 

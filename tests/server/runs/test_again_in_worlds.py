@@ -5,9 +5,9 @@ from importlib.util import find_spec
 from random import Random
 
 import pytest
-from tests import test_looking as looking
 from tests.action_missions import walled
 from tests.random_missions import random_mission
+from tests.running import test_camera_search as looking
 from tests.server.runs.stage import performed, performed_with_crashes, require_same
 
 import muster

@@ -7,12 +7,12 @@ import signal
 from itertools import pairwise
 
 from tests.server.databases import database_url, postgresql, postgresql_url
-from tests.server.desk.opened import TINY
 from tests.server.runs.process import serving, until
 from tests.server.runs.store import ADA, planned
+from tests.server.services.opened import TINY
 
 import muster
-from muster.server.desk.desk import open_desk
+from muster.server.services.services import open_desk
 from muster.server.settings import Settings
 from muster.server.store.store import Store
 

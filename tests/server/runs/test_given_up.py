@@ -5,10 +5,10 @@ import asyncio
 from tests.server.runs.store import ADA, planned
 
 import muster
-from muster.server.desk.runs import Runs
+from muster.exchange.mission_control import Entry
+from muster.server.services.runs import Runs
 from muster.server.settings import Settings
 from muster.server.store import Store
-from muster.server.words import Entry
 
 
 def test_a_run_that_another_server_goes_on_with(tmp_path):

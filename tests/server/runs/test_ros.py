@@ -13,7 +13,7 @@ from tests.bridges.ros2 import conftest as ros2
 from tests.server.runs.store import ADA, planned, settings_of
 
 from muster.mission.model import Mission, Robot, Task
-from muster.server.desk.runs import Runs
+from muster.server.services.runs import Runs
 
 rospy_there, shared_master, ros = ros1.rospy_there, ros1.shared_master, ros1.ros
 loopback, start, simulated = ros2.loopback, ros2.start, ros2.simulated

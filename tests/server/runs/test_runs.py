@@ -17,13 +17,13 @@ from tests.server.runs.stage import performed
 from tests.server.runs.store import ADA, EVE, planned
 
 import muster
+from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
 from muster.mission.plan import plan_from
-from muster.server.desk.records import Records
-from muster.server.desk.runs import Runs
-from muster.server.runs.unkept import number_at
+from muster.server.runs.unsaved_actions import number_at
+from muster.server.services.records import Records
+from muster.server.services.runs import Runs
 from muster.server.settings import Settings
-from muster.server.words import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.server.work.pool import Pool
 
 

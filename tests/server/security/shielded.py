@@ -10,10 +10,10 @@ from pathlib import Path
 from fastapi import FastAPI, Request, WebSocket
 
 from muster.server.security import who_of
-from muster.server.security.asking import Asking
+from muster.server.security.authentication import Asking
 from muster.server.security.guard import Guard, Shield
 from muster.server.security.login import login_routes
-from muster.server.security.refusals import Audit
+from muster.server.security.refusal_log import Audit
 from muster.server.security.tokens import line_of, new_token
 from muster.server.settings import Settings
 

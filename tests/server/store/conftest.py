@@ -3,8 +3,8 @@
 import pytest
 from tests.server.databases import *  # noqa: F403 - its fixtures
 
+from muster.exchange.mission_control import Entry, Stretch
 from muster.server.store import Store
-from muster.server.words import Entry, Stretch
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}
 

@@ -8,12 +8,12 @@ import pytest
 from sqlalchemy import select, text
 from tests.server.store.conftest import SUMMARY, Filled
 
+from muster.exchange.mission_control import StoreError, Who
 from muster.mission.errors import ParameterError
 from muster.server.store import Store
 from muster.server.store.backup import backup, restore
-from muster.server.store.contents import contents
+from muster.server.store.database_info import contents
 from muster.server.store.schema import metadata
-from muster.server.words import StoreError, Who
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

@@ -7,8 +7,8 @@ from contextlib import closing
 import pytest
 from tests.server.store.conftest import Filled
 
-from muster.server.desk.lock import alone_with
 from muster.server.security.sessions import kept_secret
+from muster.server.services.database_lock import alone_with
 from muster.server.store import Store
 from muster.server.store.backup import backup, restore
 

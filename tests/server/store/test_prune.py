@@ -9,10 +9,10 @@ import pytest
 from sqlalchemy import select, text, update
 from tests.server.store.conftest import SUMMARY
 
+from muster.exchange.mission_control import NotFoundError, StoreError, Who
 from muster.server.store import Store
 from muster.server.store.prune import Pruned, _delete, prune
 from muster.server.store.schema import actions, jobs, mission_files, mission_versions, plans, pruning, runs
-from muster.server.words import NotFoundError, StoreError, Who
 
 LONG_AGO = datetime.now(UTC) - timedelta(days=100)
 

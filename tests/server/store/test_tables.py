@@ -8,10 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.server.store.conftest import SUMMARY
 
+from muster.exchange.mission_control import ConflictError, NotFoundError, StoreError, Who
 from muster.mission.errors import ParameterError
 from muster.server.store import Store
 from muster.server.store.missions import slug
-from muster.server.words import ConflictError, NotFoundError, StoreError, Who
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=20)
 NUMBERS = st.one_of(st.integers(-(2**53), 2**53), st.floats(allow_nan=False, allow_infinity=False))

@@ -4,9 +4,9 @@ import asyncio
 import tempfile
 from pathlib import Path
 
-from muster.server.runs.child import Child
+from muster.server.runs.runner_process import Child
 from muster.server.work.environment import without_secrets
-from muster.server.work.folders import OF_RUNS, sweep
+from muster.server.work.temporary_folders import OF_RUNS, sweep
 
 
 def test_secrets_stay_with_the_server():

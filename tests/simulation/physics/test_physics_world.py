@@ -9,10 +9,10 @@ import pytest
 from tests.simulation.scenes import mission, robot, until_idle
 
 import muster
-from muster._carrying_out import carry_out, world_named
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.motion.port import Waypoint
+from muster.running.simulation import carry_out, world_named
 
 if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
@@ -22,7 +22,7 @@ from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build, Rob
 from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import Standing
 from muster.simulation.physics.scenery import Scenery
-from muster.simulation.physics.stage import Stage
+from muster.simulation.physics.simulated_model import Stage
 
 WAFFLE = {"kinematics": "differential-drive", "radius_m": 0.3, "speed_mps": 0.26, "yaw_rate_radps": 1.82}
 DRONE = {"kind": "air", "kinematics": "quadcopter", "radius_m": 0.7, "speed_mps": 0.5, "yaw_rate_radps": 2.5}

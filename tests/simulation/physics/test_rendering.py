@@ -15,7 +15,7 @@ if find_spec("mujoco") is None:  # not imported here: first it must be said how 
 
 from muster.mission.errors import ParameterError
 from muster.simulation.physics import PhysicsWorld
-from muster.simulation.physics.extra import BACKENDS, _is_there
+from muster.simulation.physics.optional_parts import BACKENDS, _is_there
 from muster.simulation.physics.rendering import Lens, Renderer
 
 if not any(map(_is_there, BACKENDS.values())):
@@ -88,7 +88,7 @@ def test_the_backend_is_chosen_before_mujoco_comes():
 
 
 def test_nothing_of_it_comes_with_muster():
-    program = "import sys, muster, muster.simulation, muster._carrying_out; print('mujoco' in sys.modules)"
+    program = "import sys, muster, muster.simulation, muster.running.simulation; print('mujoco' in sys.modules)"
     assert (
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "False\n"
     )

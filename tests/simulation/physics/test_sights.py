@@ -18,8 +18,8 @@ from muster.perception.detection import TagDetector
 from muster.perception.observer import Observer
 from muster.simulation.cameras import GeometricSight
 from muster.simulation.physics import PhysicsWorld
-from muster.simulation.physics.drawn_sight import DrawnSight
-from muster.simulation.physics.extra import BACKENDS, _is_there
+from muster.simulation.physics.optional_parts import BACKENDS, _is_there
+from muster.simulation.physics.rendered_cameras import DrawnSight
 
 if not any(map(_is_there, BACKENDS.values())):
     pytest.skip("neither EGL nor OSMesa is installed", allow_module_level=True)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from muster.mission.model import Mission, Robot
+from muster.motion.map_world import World
 from muster.motion.port import Place, Waypoint
-from muster.motion.world import World
 
 _EVERY_M = 0.25
 _ROUNDING_M = 0.05  # ways go along what is grown by the radius

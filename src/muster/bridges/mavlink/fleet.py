@@ -11,18 +11,18 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from muster.bridges.fleet import Failure
-from muster.bridges.mavlink.craft import Craft
+from muster.bridges.mavlink.drone import Craft
 from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.links import Link, links_of
-from muster.bridges.mavlink.seen import Seen
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
+from muster.bridges.mavlink.telemetry import Seen
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.value_types import shown
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02

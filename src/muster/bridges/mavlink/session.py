@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from muster.bridges.mavlink import orders, scripts
+from muster.bridges.mavlink import commands, procedures
 from muster.bridges.mavlink.autopilots import autopilot_of
-from muster.bridges.mavlink.conversation import Conversation, Script
-from muster.bridges.mavlink.craft import Craft
 from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.drone import Craft
+from muster.bridges.mavlink.fault_detection import Watch
 from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
 from muster.bridges.mavlink.follower import EVERY_S
-from muster.bridges.mavlink.watch import Watch
+from muster.bridges.mavlink.requests import Conversation, Script
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
 
@@ -171,7 +171,7 @@ class Session:
         if not waypoints:
             return
         self._watch.require_charge()
-        way = orders.guided if self.craft.settings.offboard else orders.mission
+        way = commands.guided if self.craft.settings.offboard else commands.mission
         self._begin(way(self.craft, waypoints), now)
 
     def _end_in(self, mode: Callable[[], int], now: float) -> None:
@@ -183,9 +183,9 @@ class Session:
     def _end_flight(self, mode: int, now: float) -> None:
         """Into a mode if it flies under Muster; on the ground it stands down instead."""
         if self.craft.stands:
-            self._begin(orders.stand_down(self.craft), now)
+            self._begin(commands.stand_down(self.craft), now)
         elif self.craft.ours:
-            self._begin(orders.into(self.craft, mode), now)
+            self._begin(commands.into(self.craft, mode), now)
 
     @property
     def _is_left_to_us(self) -> bool:
@@ -264,7 +264,7 @@ class Session:
         self._asked_s = now
         for number in _TELEMETRY:
             rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
-            self._say(scripts.command(self.craft.target, *rate))
+            self._say(procedures.command(self.craft.target, *rate))
 
     def _say(self, message: Message) -> None:
         """The one way out."""

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4, Autopilot
 from muster.bridges.mavlink.dialect import Codec, Message, mavlink
-from muster.bridges.mavlink.flight import Flight
 from muster.bridges.mavlink.simulated_earth import degrees_of, ned_of
 from muster.bridges.mavlink.simulated_faults import Faults
+from muster.bridges.mavlink.simulated_flight import Flight
 from muster.mission.model import Origin
 from muster.motion.port import Place
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, packed
 from muster.bridges.ros1.node import hear
-from muster.bridges.ros1.parcels import Load, in_lines, mission_on, packed
-from muster.bridges.ros1.questions import COMMANDS, Asker
+from muster.bridges.ros1.requests import COMMANDS, Asker
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 

@@ -11,16 +11,16 @@ from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 from muster.bridges.discovery import NAME
-from muster.bridges.ros1.board import Board
-from muster.bridges.ros1.described import task_of
 from muster.bridges.ros1.fleet import Ros1Fleet
-from muster.bridges.ros1.parcels import packed, unpacked
-from muster.bridges.ros1.questions import COMMANDS, PLANNING, Answerer, Asker, Data
+from muster.bridges.ros1.mission_topics import Board
+from muster.bridges.ros1.mission_transfer import packed, unpacked
+from muster.bridges.ros1.parameter_descriptions import task_of
+from muster.bridges.ros1.requests import COMMANDS, PLANNING, Answerer, Asker, Data
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MusterError, NetworkError, ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Task
 from muster.mission.plan import Plan, plan_from
+from muster.mission.value_types import shown
 
 State = Literal["empty", "waiting", "gathering", "planning", "carrying-out", "paused", "ended"]
 _BUSY = ("gathering", "planning", "carrying-out", "paused")

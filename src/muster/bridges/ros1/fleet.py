@@ -14,7 +14,6 @@ from contextlib import suppress
 from typing import Any
 
 from muster.bridges.discovery import NAME, topics_in
-from muster.bridges.making_room import MakingRoom
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
@@ -22,12 +21,13 @@ from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.steering import STILL, Steering
+from muster.bridges.yielding import MakingRoom
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.kinds import shown
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.value_types import shown
+from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
-from muster.motion.roads import Roads
-from muster.motion.world import World, body_of
+from muster.motion.robot_paths import Roads
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from muster.bridges.discovery import robots_in, topics_in
-from muster.bridges.ros1.described import described
+from muster.bridges.ros1.parameter_descriptions import described
 from muster.bridges.ros1.port import Ros1Port
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MissionError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
-from muster.bridges.ros1.messages import matrix_of_transform
+from muster.bridges.ros1.message_conversion import matrix_of_transform
 from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.mission.errors import TransformError

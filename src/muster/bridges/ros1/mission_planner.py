@@ -13,10 +13,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from muster.bridges.ros1.messages import text_of
+from muster.bridges.ros1.message_conversion import text_of
+from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, unpacked
 from muster.bridges.ros1.node import hear, publish
-from muster.bridges.ros1.parcels import Load, in_lines, mission_on, unpacked
-from muster.bridges.ros1.questions import PLANNING, Answerer, Data
+from muster.bridges.ros1.requests import PLANNING, Answerer, Data
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission

@@ -11,7 +11,7 @@ from typing import Any
 
 from muster.bridges.discovery import SHARED
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.messages import matrix_of
+from muster.bridges.ros1.message_conversion import matrix_of
 from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.ros import Odometry, PoseStamped, rospy
 from muster.motion.frames import Floats

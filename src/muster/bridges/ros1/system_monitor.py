@@ -16,7 +16,7 @@ from typing import Any
 from muster.bridges.discovery import robots_in
 from muster.bridges.odometer import Odometer
 from muster.bridges.ros1.map_frame import MapFrame
-from muster.bridges.ros1.messages import place_and_heading, text_of
+from muster.bridges.ros1.message_conversion import place_and_heading, text_of
 from muster.bridges.ros1.node import hear, publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import String, rospy

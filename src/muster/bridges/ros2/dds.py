@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from typing import Any, Generic, TypeVar
 
 from muster.bridges.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
-from muster.bridges.ros2.wire import KEPT, Navigator, domain_or_own, line_of
+from muster.bridges.ros2.middleware import KEPT, Navigator, domain_or_own, line_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 
 M = TypeVar("M", bound=Message)

@@ -15,10 +15,10 @@ from typing import Literal
 from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Newcomers
-from muster.bridges.ros2.messages import PoseStamped
+from muster.bridges.ros2.message_types import PoseStamped
+from muster.bridges.ros2.middleware import Wire, open_wire
 from muster.bridges.ros2.names import ros_names
 from muster.bridges.ros2.port import Arrival, Ros2Port
-from muster.bridges.ros2.wire import Wire, open_wire
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from muster.bridges.ros2.messages import PoseStamped
-from muster.bridges.ros2.wire import Navigation, Navigator, Outcome, Writer
+from muster.bridges.ros2.message_types import PoseStamped
+from muster.bridges.ros2.middleware import Navigation, Navigator, Outcome, Writer
 
 _TRIES = 2
 """Times that a goal is given which the robot's navigation gives up."""

@@ -11,11 +11,11 @@ import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
-from muster.bridges.described import robot_as_said
+from muster.bridges.descriptions import robot_as_said
 from muster.bridges.discovery import robots_in, topics_in
-from muster.bridges.ros2.messages import String
+from muster.bridges.ros2.message_types import String
+from muster.bridges.ros2.middleware import Reader, Wire
 from muster.bridges.ros2.port import Ros2Port
-from muster.bridges.ros2.wire import Reader, Wire
 from muster.mission.errors import MissionError
 from muster.mission.model import Robot
 

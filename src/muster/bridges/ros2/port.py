@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from muster.bridges.follower import Follower
-from muster.bridges.heard import goal_heading, require_finite, velocity_by
+from muster.bridges.pose_port import goal_heading, require_finite, velocity_by
 from muster.bridges.ros2.goals import Goals
-from muster.bridges.ros2.messages import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
-from muster.bridges.ros2.reckoning import Reckoning
-from muster.bridges.ros2.wire import Wire
+from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
+from muster.bridges.ros2.middleware import Wire
+from muster.bridges.ros2.odometry_tracking import Reckoning
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import angles, flu_to_enu, quaternion_rotation

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from muster._explaining import Possible
 from muster.cli.check import checked, refused
 from muster.cli.options import MissionFile
-from muster.cli.remote.sending import parcel
+from muster.cli.remote.uploads import parcel
 from muster.mission.errors import Finding, MissionError
+from muster.planning.explaining import Possible
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 
 def run(

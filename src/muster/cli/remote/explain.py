@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muster._explaining.tables import Part, Table
 from muster.cli.explain import print_explained
 from muster.cli.options import MissionFile, load_plan
-from muster.cli.remote.sending import kept_plan
+from muster.cli.remote.uploads import kept_plan
+from muster.planning.explaining.tables import Part, Table
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 
 def run(

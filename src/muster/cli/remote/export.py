@@ -13,11 +13,11 @@ from click.core import ParameterSource
 from muster.cli.exits import DONE
 from muster.cli.options import MissionFile, load_plan
 from muster.cli.outputs import require_folder, require_writable
-from muster.cli.remote.sending import kept_plan
+from muster.cli.remote.uploads import kept_plan
 from muster.mission.errors import NetworkError, ParameterError
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 _NOTES = "NOTES.txt"
 

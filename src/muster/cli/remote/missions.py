@@ -9,7 +9,7 @@ import click
 from muster.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 
 def run(control: Client, *, form: str, quiet: bool, verbose: bool) -> None:

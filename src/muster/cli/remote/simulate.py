@@ -11,22 +11,22 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.halting import ctrl_c_halts
-from muster.cli.keeping import kept_record
+from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import MissionFile, load_plan
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.remote.sending import kept, kept_plan
+from muster.cli.record_output import kept_record
+from muster.cli.remote.uploads import kept, kept_plan
 from muster.cli.remote.waiting import planned
 from muster.cli.report_tables import print_report
 from muster.cli.simulate import noise_of
+from muster.exchange.mission_control import ConflictError
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import json_text
-from muster.server.words import ConflictError
 
 if TYPE_CHECKING:
-    from muster.server.client import Client, RunningRun
-    from muster.server.words import World
+    from muster.client import Client, RunningRun
+    from muster.exchange.mission_control import World
 
 
 def run(

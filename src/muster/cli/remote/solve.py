@@ -11,13 +11,13 @@ import click
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import MissionFile, settings_of
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.remote.sending import kept
+from muster.cli.remote.uploads import kept
 from muster.cli.remote.waiting import planned
 from muster.cli.results import show_plan, write_book
 from muster.mission.plan import plan_from, read_plan
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 
 def run(

@@ -11,13 +11,13 @@ import click
 from muster.cli.exits import DONE, REJECTED
 from muster.cli.options import MissionFile, load_plan
 from muster.cli.plan_tables import print_verdict
-from muster.cli.remote.sending import kept_plan
+from muster.cli.remote.uploads import kept_plan
 from muster.mission.plan import json_text
 from muster.verification import Verdict
 from muster.verification.verdict import RouteFigures, Violation, Visit
 
 if TYPE_CHECKING:
-    from muster.server.client import Client
+    from muster.client import Client
 
 _NOT_OF_VERDICTS = ("valid", "objective", "waiting_s", "lines", "violations", "routes")
 _NOT_PRINTED = ("waiting_s", "lines", "routes")

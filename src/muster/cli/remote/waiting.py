@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.halting import ctrl_c_halts
+from muster.cli.interrupt import ctrl_c_halts
+from muster.exchange.mission_control import ConflictError
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.server.words import ConflictError
 
 if TYPE_CHECKING:
-    from muster.server.client import RunningJob
-    from muster.server.words import PlanEntry
+    from muster.client import RunningJob
+    from muster.exchange.mission_control import PlanEntry
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from muster.motion.grid import Bools, Floats, Grid
-from muster.motion.maps.inside import blocked_at
+from muster.motion.maps.free_points import blocked_at
 
 _SLACK = 1e-9  # of a radius: 3 cells of 0.05 m are 0.15 m, whatever float64 says
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.kinds import Fault, Path
 from muster.mission.model import Point
+from muster.mission.value_types import Fault, Path
 from muster.motion.grid import Floats
-from muster.motion.maps.occupancy import FARTHEST_M
-from muster.motion.maps.pinches import without_pinches
+from muster.motion.maps.narrow_places import without_pinches
+from muster.motion.maps.occupancy_rules import FARTHEST_M
 
 if TYPE_CHECKING:
     import shapely

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import PolygonSpace
 from muster.motion.grid import Bools, Grid
-from muster.motion.spaces import PolygonSpace
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from muster.mission.errors import MissionError
-from muster.mission.kinds import INVALID, Choice, Fault, JsonSchema, Number, Record, Text, shown, spec, specified
-from muster.mission.kinds import Path as KeyPath
 from muster.mission.model import findings
 from muster.mission.text_files import read_text
+from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Number, Record, Text, shown, spec, specified
+from muster.mission.value_types import Path as KeyPath
 from muster.mission.yaml_reader import parse_data
 
 

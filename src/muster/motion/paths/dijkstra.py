@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import Parameters, between_centres
 from muster.motion.paths.planner import Planner, in_plane
-from muster.motion.spaces import Space
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import blocked, disconnected, not_free
-from muster.motion.spaces import GridSpace, PolygonSpace
 
 Floats = npt.NDArray[np.float64]
 _CELLS_ALONG_A_REGION = 500

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.motion.maps.inside import free
+from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
+from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath, Path
-from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
 Floats = npt.NDArray[np.float64]
 

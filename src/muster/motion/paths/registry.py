@@ -9,7 +9,8 @@ from typing import Any
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
+from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.a_star import A_STAR
 from muster.motion.paths.dijkstra import DIJKSTRA
@@ -17,7 +18,6 @@ from muster.motion.paths.planner import Planner
 from muster.motion.paths.rrt_star import RRT_STAR
 from muster.motion.paths.shortest import SHORTEST
 from muster.motion.paths.theta_star import THETA_STAR
-from muster.motion.spaces import Space
 
 _IMPLEMENTATIONS = (SHORTEST, A_STAR, DIJKSTRA, THETA_STAR, RRT_STAR)
 

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import Planner, blocked
 from muster.motion.paths.rings import rings_of
-from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
 Floats = npt.NDArray[np.float64]
 _SAMPLES_AT_A_TIME = 500  # so that Ctrl-C is heard

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner
 from muster.motion.paths.way_finder import WayFinder
-from muster.motion.spaces import Space
 
 Floats = npt.NDArray[np.float64]
 

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import Parameters, Question, question
 from muster.motion.paths.planner import Planner, in_plane, pair
-from muster.motion.spaces import Space
 
 Floats = npt.NDArray[np.float64]
 

@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Grid, Indices
-from muster.motion.maps.inside import free
+from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import blocked, disconnected, pair, point_of, points_of
 from muster.motion.paths.rings import rings_of
-from muster.motion.spaces import GridSpace, PolygonSpace, PrismSpace, Space
 
 Floats = npt.NDArray[np.float64]
 _ROWS_AT_A_TIME = 32  # so that Ctrl-C is heard

@@ -1,6 +1,6 @@
 """Films and stills of the physics world. Importing it without the extra `physics`: MissingExtraError."""
 
-from muster.simulation.physics.extra import require_physics_extra
+from muster.simulation.physics.optional_parts import require_physics_extra
 
 require_physics_extra()
 

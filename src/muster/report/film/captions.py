@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_lines import event_line
+from muster.mission.event_descriptions import event_line
 from muster.motion.grid import Floats
 from muster.report.record.recording import Happening
 

@@ -21,9 +21,9 @@ from muster.report.film.captions import (
 )
 from muster.report.film.files import film_file
 from muster.report.film.footage import Footage
-from muster.report.film.set import FilmSet
+from muster.report.film.scenery import FilmSet
+from muster.report.record.mission_state import ALARMING, DONE
 from muster.report.record.recording import Happening
-from muster.report.record.situation import ALARMING, DONE
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
 
 LONGEST_S = 24.0

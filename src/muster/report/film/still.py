@@ -10,10 +10,10 @@ from muster.motion.grid import Floats
 from muster.report.film.captions import QUIET_INK, clock, write
 from muster.report.film.files import check_still, write_png
 from muster.report.film.footage import Footage
-from muster.report.film.moments import Moments
-from muster.report.film.set import name_all, places_of, tableau_of
-from muster.report.film.stage_marks import StageMarks
-from muster.report.record.situation import DONE
+from muster.report.film.ground_marks import StageMarks
+from muster.report.film.interpolation import Moments
+from muster.report.film.scenery import name_all, places_of, tableau_of
+from muster.report.record.mission_state import DONE
 from muster.simulation.physics.rendering import Renderer
 
 _MOST_WIDE, _MOST_HIGH, _TOP, _EDGE = 1600, 1200, 44, 24

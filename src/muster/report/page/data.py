@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_lines import event_line
+from muster.mission.event_descriptions import event_line
 from muster.mission.model import Map, Zone
 from muster.motion.grid import Grid
+from muster.report.activity_spans import spans
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
-from muster.report.record.situation import ALARMING, OPEN, OUT, Situation
-from muster.report.spans import spans
+from muster.report.record.mission_state import ALARMING, OPEN, OUT, Situation
 from muster.report.styles import PALETTE
 
 Floats = npt.NDArray[np.float64]

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from muster.mission.errors import Finding, InputError
+from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
 from muster.mission.plan import plan_from
-from muster.mission.reading import mission_from
 from muster.mission.yaml_reader import parse_data
-from muster.report.record.messages import grid_from
+from muster.report.record.json_messages import grid_from
+from muster.report.record.mission_state import Situation
 from muster.report.record.recording import Happening, PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
-from muster.report.record.situation import Situation
 from muster.report.record.writer import require_mcap
 
 _STATE = ("x", "y", "z", "heading_rad", "vx", "vy", "vz")

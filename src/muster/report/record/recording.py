@@ -13,7 +13,7 @@ import numpy.typing as npt
 from muster.mission.model import Mission, Point, Robot
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
-from muster.report.record.situation import Situation
+from muster.report.record.mission_state import Situation
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
-from muster.report.record.situation import CANCELLED, DONE, LOST, Situation
-from muster.report.traces import Way, way_in
+from muster.report.record.mission_state import CANCELLED, DONE, LOST, Situation
+from muster.report.route_lines import Way, way_in
 
 _OVER = (DONE, LOST, CANCELLED)
 

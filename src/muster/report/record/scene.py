@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from muster.mission.model import Map, Point, Robot, Task, Zone
-from muster.report.record.messages import MAP_FRAME, body_frame, pose, stamp
-from muster.report.record.situation import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
+from muster.report.record.json_messages import MAP_FRAME, body_frame, pose, stamp
+from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
 from muster.report.styles import ALARM, FRAME, LEFT_OUT, robot_style
 
 _LEAST_RADIUS_M = 0.1  # so that a robot without a radius is seen

@@ -20,9 +20,9 @@ from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import yaml_text
-from muster.report.record import messages
+from muster.report.record import json_messages
+from muster.report.record.publisher import Teller
 from muster.report.record.schemas import MISSION_FILE, SCHEMAS, TOPICS
-from muster.report.record.teller import Teller
 
 Floats = npt.NDArray[np.float64]
 
@@ -95,7 +95,7 @@ class RecordWriter(Teller):
         self._tell_mission()
 
     def _add(self, topic: str, now: float, data: bytes) -> None:
-        time = messages.nanoseconds(now)
+        time = json_messages.nanoseconds(now)
         self._writer.add_message(self._channels[topic], time, data, time)
         self._waiting_bytes += len(data)
         if self._waiting_bytes >= self._chunk_bytes or self._clock.now() - self._flushed >= self._flush_s:
@@ -130,7 +130,7 @@ def _started(file: IO[bytes]) -> tuple[Any, dict[str, int]]:
     writer = Writer(file, chunk_size=2**31, enable_data_crcs=True)
     writer.start(library="muster")
     numbers = {
-        name: writer.register_schema(name, "jsonschema", messages.json_bytes(schema))
+        name: writer.register_schema(name, "jsonschema", json_messages.json_bytes(schema))
         for name, schema in SCHEMAS.items()
     }
     channels = {topic: writer.register_channel(topic, "json", numbers[name]) for topic, name in TOPICS.items()}

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from muster.bridges.ros2.messages import (
+from muster.bridges.ros2.message_types import (
     SHAPES,
     ColorRGBA,
     Header,
@@ -17,7 +17,7 @@ from muster.bridges.ros2.messages import (
     Time,
     Vector3,
 )
-from muster.report.record.messages import MAP_FRAME, body_frame
+from muster.report.record.json_messages import MAP_FRAME, body_frame
 
 _LINE_M = 0.05
 _TEXT_M = 0.3

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from muster.bridges.ros2.cdr import from_cdr, from_ros1
 from muster.bridges.ros2.description import Message
-from muster.bridges.ros2.messages import (
+from muster.bridges.ros2.message_types import (
     Header,
     Odometry,
     Point,

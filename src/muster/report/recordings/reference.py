@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from muster.bridges.ros2.names import ros_name
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
+from muster.mission.near_matches import did_you_mean
 from muster.motion.metrics import TrajectoryError, path_length, risk_factor, trajectory_error
 from muster.report.record import Recording
 from muster.report.recordings.poses import PoseTrack
@@ -156,7 +156,7 @@ def _deviation(recording: Recording, robot: str, track: PoseTrack, begins_s: flo
 def _risk(recording: Recording, robot: str, places: Floats) -> float | None:
     if recording.mission.map is None:
         return None
-    from muster.motion.world import World
+    from muster.motion.map_world import World
 
     kind = next(one for one in recording.robots if one.id == robot)
     world = World.of(recording.mission, recording.image)

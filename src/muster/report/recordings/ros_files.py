@@ -10,7 +10,7 @@ from muster.bridges.ros2.cdr import to_cdr, to_ros1
 from muster.bridges.ros2.description import ROS1, ROS2, Message, definition, md5_sum, type_name
 from muster.mission.errors import MissingExtraError
 from muster.report.record import Recording
-from muster.report.record.messages import nanoseconds
+from muster.report.record.json_messages import nanoseconds
 from muster.report.record.writer import require_mcap
 from muster.report.recordings.ros_messages import Sent, ros_messages
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from muster.bridges.ros2.description import Message
-from muster.bridges.ros2.messages import (
+from muster.bridges.ros2.message_types import (
     Header,
     MarkerArray,
     Odometry,
@@ -39,8 +39,8 @@ from muster.bridges.ros2.names import ros_names
 from muster.motion.frames import enu_to_flu, wrapped
 from muster.report.record import Recording
 from muster.report.record import scene as scenes
-from muster.report.record.messages import MAP_FRAME, body_frame, json_bytes
-from muster.report.record.situation import Situation
+from muster.report.record.json_messages import MAP_FRAME, body_frame, json_bytes
+from muster.report.record.mission_state import Situation
 from muster.report.recordings.markers import Markers
 
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from muster.server.api.asking import Asker, TheDesk
+from muster.exchange.mission_control import Role
 from muster.server.api.bodies import BoundedRoute
-from muster.server.words import Role
+from muster.server.api.dependencies import Asker, TheDesk
 
 API = 1
 """Of the paths under /api/v1; grows when what a client relies on changes."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from muster.server.api.asking import TheDesk
+from muster.exchange.mission_control import Action
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import Before, Limit, RunQuery
-from muster.server.words import Action
+from muster.server.api.dependencies import TheDesk
+from muster.server.api.parameter_types import Before, Limit, RunQuery
 
 router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute)
 

@@ -8,13 +8,13 @@ from fastapi import FastAPI
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
+from muster.exchange.mission_control import Who
 from muster.server.api import about, actions, jobs, missions, plans, records, runs
-from muster.server.api.answers import ALWAYS, errors
 from muster.server.api.description import describe, listing
 from muster.server.api.problems import add_handlers
-from muster.server.desk.desk import Desk
+from muster.server.api.responses import ALWAYS, errors
 from muster.server.security import who_of as usual_who_of
-from muster.server.words import Who
+from muster.server.services.services import Desk
 
 PREFIX = "/api/v1"
 

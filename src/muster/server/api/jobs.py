@@ -7,13 +7,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, WebSocket
 
-from muster.server.api.answers import errors
-from muster.server.api.asking import Asker, TheDesk
+from muster.exchange.mission_control import Job, JobState
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import JobId, Limit, MissionQuery
+from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.parameter_types import JobId, Limit, MissionQuery
+from muster.server.api.responses import errors
 from muster.server.api.sockets import message, tell
-from muster.server.desk.jobs import Jobs
-from muster.server.words import Job, JobState
+from muster.server.services.jobs import Jobs
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 

@@ -11,10 +11,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, File, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
-from muster.server.api.answers import Responses, a_file, errors, file_answer, with_location
-from muster.server.api.asking import Asker, TheDesk
+from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import (
+from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.parameter_types import (
     LARGEST,
     BeforeVersion,
     Body,
@@ -29,7 +29,7 @@ from muster.server.api.checked import (
     Text,
     VersionNumber,
 )
-from muster.server.words import MissionEntry, MissionVersion, NotFoundError, VersionEntry
+from muster.server.api.responses import Responses, a_file, errors, file_answer, with_location
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
 

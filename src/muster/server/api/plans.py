@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response
 from pydantic import Field
 
-from muster.server.api.answers import a_file, errors, file_answer, parcel_answer, with_location
-from muster.server.api.asking import Asker, TheDesk
+from muster.exchange.mission_control import Job, PlanEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import (
+from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.parameter_types import (
     LARGEST,
     Before,
     Body,
@@ -25,7 +25,7 @@ from muster.server.api.checked import (
     Seed,
     TaskQuery,
 )
-from muster.server.words import Job, PlanEntry
+from muster.server.api.responses import a_file, errors, file_answer, parcel_answer, with_location
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 

@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Response
 
-from muster.server.api.answers import a_file, errors, file_answer, parcel_answer
-from muster.server.api.asking import TheDesk
+from muster.exchange.mission_control import Run
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import Limit, RunId
-from muster.server.words import Run
+from muster.server.api.dependencies import TheDesk
+from muster.server.api.parameter_types import Limit, RunId
+from muster.server.api.responses import a_file, errors, file_answer, parcel_answer
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 

@@ -8,15 +8,15 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
+from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run, World
 from muster.mission.errors import ParameterError
-from muster.server.api.answers import errors, with_location
-from muster.server.api.asking import Asker, TheDesk
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.checked import LARGEST, After, Body, Limit, Name, RunId
+from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.parameter_types import LARGEST, After, Body, Limit, Name, RunId
+from muster.server.api.responses import errors, with_location
 from muster.server.api.sockets import message, tell
-from muster.server.desk.runs import Runs
-from muster.server.runs.lines import line_of
-from muster.server.words import OVER, Action, ConflictError, Entry, Run, World
+from muster.server.runs.log_lines import line_of
+from muster.server.services.runs import Runs
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
 

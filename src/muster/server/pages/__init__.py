@@ -21,13 +21,13 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from starlette.requests import HTTPConnection
 
+from muster.exchange.mission_control import Who
 from muster.mission.errors import MissingExtraError
-from muster.server.pages.asking import Asked, WithDesk
 from muster.server.pages.sockets import OwnUploads, guard_sockets
-from muster.server.words import Who
+from muster.server.pages.visitor import Asked, WithDesk
 
 if TYPE_CHECKING:
-    from muster.server.desk.desk import Desk
+    from muster.server.services.services import Desk
 
 _VIEWS = ("missions", "plan", "live", "records")
 _ICON = Path(__file__).parent / "assets" / "icon.svg"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nicegui import app, ui
 
-from muster.server.pages.asking import is_logged_in, on_the_wall, the_asker
+from muster.server.pages.visitor import is_logged_in, on_the_wall, the_asker
 
 VIEWS = (("Missions", "/", "m"), ("Plan", "/plan", "p"), ("Live", "/live", "l"), ("Records", "/records", "r"))
 _KEYS = {

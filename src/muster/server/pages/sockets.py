@@ -17,7 +17,7 @@ from urllib.parse import parse_qs
 from nicegui import Client, core
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from muster.server.pages.asking import who_in
+from muster.server.pages.visitor import who_in
 from muster.server.security.refusal import RefusalError
 
 _SAID = ("handshake", "event", "javascript_response", "ack")

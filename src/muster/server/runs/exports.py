@@ -20,7 +20,7 @@ from muster.exchange.antimeridian import cut_line
 from muster.exchange.earth import Earth, Spot
 from muster.exchange.spreadsheet import cell
 from muster.exchange.xml_text import add, decimal, text_of
-from muster.mission.event_lines import event_line
+from muster.mission.event_descriptions import event_line
 from muster.report.record import Recording
 
 Log = Sequence[Mapping[str, Any]]

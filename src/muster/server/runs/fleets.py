@@ -6,10 +6,10 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from muster._live import wait_for_robots
 from muster.bridges.fleet import Fleet
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.running.live import wait_for_robots
 
 _WAIT_S = 10.0
 _ANYWHERE_M = 1e6
@@ -56,8 +56,8 @@ def _ros2(
     mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool
 ) -> tuple[Fleet, Callable[[], None]]:
     from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.middleware import open_wire
     from muster.bridges.ros2.port import Arrival
-    from muster.bridges.ros2.wire import open_wire
 
     fleet = Ros2Fleet(
         mission,

@@ -18,7 +18,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import plan_from
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
-from muster.report.record.situation import Situation
+from muster.report.record.mission_state import Situation
 from muster.server.runs.exports import EXPORTS
 from muster.server.runs.tracks import VALUES, Steps, unpacked
 from muster.server.work.missions import mission_of

@@ -23,14 +23,14 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
 from muster.mission.yaml_writer import plain
-from muster.server.runs.lock import alone
-from muster.server.runs.performance import Course, Performance
+from muster.server.runs.log_recorder import Scribe
 from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.scribe import Scribe
-from muster.server.runs.terms import SIMULATED
-from muster.server.work.folders import OF_RUNS
+from muster.server.runs.run_loop import Course, Performance
+from muster.server.runs.run_settings import SIMULATED
+from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
+from muster.server.work.temporary_folders import OF_RUNS
 
 STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
 """Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
@@ -107,11 +107,11 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
 def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scribe, ended: threading.Event) -> Course:
     settings, log = begin["settings"], begin["log"]
     if begin["world"] in SIMULATED:
-        from muster.server.runs.simulated import SimulatedCourse
+        from muster.server.runs.simulated_run import SimulatedCourse
 
         return SimulatedCourse(mission, plan, begin["world"], settings, scribe)
     from muster.server.runs.fleets import fleet_ready
-    from muster.server.runs.real import RealCourse
+    from muster.server.runs.real_run import RealCourse
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:

@@ -14,6 +14,6 @@
 | `login` | the page's login and logout |
 """
 
-from muster.server.security.asking import who_of
+from muster.server.security.authentication import who_of
 
 __all__ = ["who_of"]

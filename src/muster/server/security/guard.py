@@ -16,14 +16,14 @@ from urllib.parse import quote
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
-from muster.server.security.asking import SCOPE_KEY, Asker, Asking, WrongTokenError
+from muster.exchange.mission_control import Who
+from muster.server.security.authentication import SCOPE_KEY, Asker, Asking, WrongTokenError
 from muster.server.security.headers import is_page, is_static, with_security
 from muster.server.security.limits import Body, Buckets, Places, network_of
 from muster.server.security.origins import Hosts
 from muster.server.security.refusal import RefusalError, printable
-from muster.server.security.refusals import Audit
+from muster.server.security.refusal_log import Audit
 from muster.server.settings import Settings
-from muster.server.words import Who
 
 log = logging.getLogger("muster.security")
 

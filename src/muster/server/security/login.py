@@ -9,11 +9,11 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from muster.server.security.asking import SCOPE_KEY, Asker
+from muster.exchange.mission_control import Who
+from muster.server.security.authentication import SCOPE_KEY, Asker
 from muster.server.security.guard import Shield
 from muster.server.security.refusal import RefusalError
 from muster.server.security.sessions import COOKIE, SECURE_COOKIE
-from muster.server.words import Who
 
 _FORM_BYTES = 4096
 

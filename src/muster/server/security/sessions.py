@@ -17,8 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from muster.exchange.mission_control import Role
 from muster.server.security.tokens import Holder
-from muster.server.words import Role
 
 COOKIE = "muster_session"
 SECURE_COOKIE = f"__Host-{COOKIE}"  # a browser takes it over TLS alone, and from this very host

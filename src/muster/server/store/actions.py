@@ -8,9 +8,9 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
+from muster.exchange.mission_control import Action, NotFoundError, Who
 from muster.server.store.database import Database
 from muster.server.store.schema import actions, runs
-from muster.server.words import Action, NotFoundError, Who
 
 
 class ActionTable:

@@ -15,13 +15,13 @@ from tempfile import TemporaryDirectory
 
 from sqlalchemy import Connection, Table, func, insert, select, text
 
+from muster.exchange.mission_control import StoreError
 from muster.mission.errors import ParameterError
 from muster.server.store.database import Database
 from muster.server.store.failures import sqlite_error
 from muster.server.store.migrate import migrate, revision
 from muster.server.store.schema import HEAD, metadata, pruning
 from muster.server.store.store import Store
-from muster.server.words import StoreError
 
 _AT_ONCE = 200
 _COPIED = [table for table in metadata.sorted_tables if table is not pruning]

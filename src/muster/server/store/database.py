@@ -17,11 +17,11 @@ from typing import Any
 from sqlalchemy import Connection, Engine, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
+from muster.exchange.mission_control import StoreError
 from muster.mission.errors import MissingExtraError
 from muster.server.store.columns import as_json
 from muster.server.store.failures import store_error
 from muster.server.store.urls import database_url, shown, sqlite_file
-from muster.server.words import StoreError
 
 _PATIENCE_S = 10
 _NEVER_FOR_EVER = {

@@ -8,10 +8,10 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
+from muster.exchange.mission_control import ConflictError, Job, JobState, NotFoundError
 from muster.server.store.database import Database
 from muster.server.store.plans import add_plan
 from muster.server.store.schema import jobs
-from muster.server.words import ConflictError, Job, JobState, NotFoundError
 
 
 class JobTable:

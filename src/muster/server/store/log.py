@@ -12,13 +12,13 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Row, Table, func, insert, select, update
 
+from muster.exchange.mission_control import ConflictError, Entry, NotFoundError, Stretch
 from muster.mission.errors import ParameterError
 from muster.server.store.columns import as_json
 from muster.server.store.database import Database
 from muster.server.store.schema import entries as entry_table
 from muster.server.store.schema import runs
 from muster.server.store.schema import stretches as stretch_table
-from muster.server.words import ConflictError, Entry, NotFoundError, Stretch
 
 _AT_ONCE = 64
 

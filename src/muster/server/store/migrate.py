@@ -6,10 +6,10 @@ from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
 
+from muster.exchange.mission_control import StoreError
 from muster.server.store.database import Database
 from muster.server.store.schema import HEAD, metadata
 from muster.server.store.triggers import triggers
-from muster.server.words import StoreError
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 _LOCK = 0x4D55_5354  # of PostgreSQL: one program migrates, others wait

@@ -12,9 +12,9 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, and_, insert, select, update
 
+from muster.exchange.mission_control import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.store.database import Database
 from muster.server.store.schema import blobs, mission_files, mission_versions, missions
-from muster.server.words import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry
 
 _LONGEST_ID = 80
 

@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 from sqlalchemy import Connection, Row, func, insert, select
 
+from muster.exchange.mission_control import NotFoundError, PlanEntry
 from muster.server.store.database import Database
 from muster.server.store.schema import missions, plans
-from muster.server.words import NotFoundError, PlanEntry
 
 _BODY = frozenset({"routes", "unassigned", "history", "book"})
 

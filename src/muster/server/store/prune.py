@@ -26,6 +26,7 @@ from sqlalchemy import (
     text,
 )
 
+from muster.exchange.mission_control import JOB_OVER, OVER
 from muster.server.store.backup import existing, require_newest
 from muster.server.store.schema import (
     actions,
@@ -40,7 +41,6 @@ from muster.server.store.schema import (
     runs,
     stretches,
 )
-from muster.server.words import JOB_OVER, OVER
 
 _DECIDE = (jobs, runs, missions, mission_versions, plans, blobs, mission_files)
 """What says which of them go; in the order in which a server writes to them, so that there is no deadlock with one."""

@@ -8,10 +8,10 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
+from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, Who, World
 from muster.server.store.actions import add_action
 from muster.server.store.database import Database
 from muster.server.store.schema import runs
-from muster.server.words import OVER, ConflictError, NotFoundError, Run, Who, World
 
 _CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
 

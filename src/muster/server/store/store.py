@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import text
 
+from muster.exchange.mission_control import StoreError
 from muster.server.store.actions import ActionTable
 from muster.server.store.database import Database, make_file
 from muster.server.store.jobs import JobTable
@@ -15,7 +16,6 @@ from muster.server.store.missions import MissionTable
 from muster.server.store.plans import PlanTable
 from muster.server.store.runs import RunTable
 from muster.server.store.schema import HEAD
-from muster.server.words import StoreError
 
 
 @dataclass(frozen=True)

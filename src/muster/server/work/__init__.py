@@ -6,7 +6,7 @@ The server asks a `Pool`; the pool keeps processes (`worker`) that do `tasks` on
 """
 
 from muster.server.work.errors import OutOfMemory, TimedOut, WorkerDied, WorkError
-from muster.server.work.halt import Halt
 from muster.server.work.pool import Pool
+from muster.server.work.stop_request import Halt
 
 __all__ = ["Halt", "OutOfMemory", "Pool", "TimedOut", "WorkError", "WorkerDied"]

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import Fault, shown
-from muster.mission.kinds import Path as Keys
+from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission, findings
 from muster.mission.plan import Plan, plan_from
-from muster.mission.reading import mission_from
+from muster.mission.value_types import Fault, shown
+from muster.mission.value_types import Path as Keys
 from muster.mission.yaml_reader import parse_data
 
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")

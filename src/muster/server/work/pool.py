@@ -11,12 +11,12 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-from muster.server.words import BusyError
+from muster.exchange.mission_control import BusyError
 from muster.server.work.errors import TimedOut, WorkError
-from muster.server.work.folders import OF_WORK, sweep
-from muster.server.work.halt import Halt
 from muster.server.work.process import PROGRAM, Progress, Worker
+from muster.server.work.stop_request import Halt
 from muster.server.work.tasks import TASKS, Task
+from muster.server.work.temporary_folders import OF_WORK, sweep
 
 MOST_WAITING = 64
 """Pieces of short work that wait; what each was sent with is held meanwhile."""

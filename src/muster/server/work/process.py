@@ -20,7 +20,7 @@ from typing import Any
 from muster.mission.errors import Finding
 from muster.server.work.environment import without_secrets
 from muster.server.work.errors import OutOfMemory, WorkerDied, WorkError
-from muster.server.work.halt import Halt
+from muster.server.work.stop_request import Halt
 
 PROGRAM = (sys.executable, "-P", "-m", "muster.server.work.worker")
 STOP = b'{"stop": true}\n'

@@ -1,6 +1,6 @@
 """A world with masses, forces and contacts (MuJoCo). Importing it without the extra `physics`: MissingExtraError."""
 
-from muster.simulation.physics.extra import choose_backend, require_physics_extra
+from muster.simulation.physics.optional_parts import choose_backend, require_physics_extra
 
 require_physics_extra()
 choose_backend()

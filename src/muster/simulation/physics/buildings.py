@@ -17,7 +17,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from muster.motion.grid import Bools, Grid
-from muster.motion.world import Area, World
+from muster.motion.map_world import Area, World
 from muster.simulation.physics.bodies import quaternion
 from muster.simulation.physics.xml import add
 

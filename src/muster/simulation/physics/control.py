@@ -19,7 +19,7 @@ import numpy as np
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, Build
 from muster.simulation.physics.model import SERVO_S
-from muster.simulation.physics.stage import Group, Indices, Motion, Stage
+from muster.simulation.physics.simulated_model import Group, Indices, Motion, Stage
 
 GRAVITY_MPS2 = 9.81
 MOST_TILT = math.radians(35)

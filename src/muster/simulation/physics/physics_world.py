@@ -20,7 +20,7 @@ from muster.mission.model import Mission, Robot
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
-from muster.motion.world import body_of
+from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
 from muster.simulation.lasers import mounted_m
@@ -30,7 +30,7 @@ from muster.simulation.physics.control import Commands, Control
 from muster.simulation.physics.model import WALL_SETS, Standing
 from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
-from muster.simulation.physics.stage import Stage
+from muster.simulation.physics.simulated_model import Stage
 
 PHYSICS_S = 0.005
 """The longest step of physics."""

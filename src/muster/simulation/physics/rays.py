@@ -10,7 +10,7 @@ import numpy as np
 
 from muster.motion.grid import Bools, Floats
 from muster.simulation.physics.model import FIRST_WALLS_BIT, UNSEEN
-from muster.simulation.physics.stage import Stage
+from muster.simulation.physics.simulated_model import Stage
 
 _GROUPS = np.array([group != UNSEEN for group in range(6)], dtype=np.uint8)
 """Hulls of robots are for contacts: their bodies are seen as they are drawn."""

@@ -19,9 +19,9 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError, RenderingError
 from muster.motion.grid import Floats
-from muster.simulation.physics.extra import BACKENDS
-from muster.simulation.physics.marks import Mark
 from muster.simulation.physics.model import SHOW_HEIGHT, SHOW_WIDTH
+from muster.simulation.physics.optional_parts import BACKENDS
+from muster.simulation.physics.visual_marks import Mark
 
 Picture = npt.NDArray[np.uint8]
 """(height, width, 3): red, green, blue; the first row is the topmost."""

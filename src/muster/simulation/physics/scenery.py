@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
 from muster.mission.model import Tag
-from muster.motion.world import World
+from muster.motion.map_world import World
 from muster.simulation.physics.buildings import Heights, add_buildings
 from muster.simulation.physics.tag_plates import add_plates, picture_files
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from muster.mission.model import Tag
-from muster.perception.extra import require_physics
+from muster.perception.optional_parts import require_physics
 from muster.perception.tags import CELLS, CELLS_OF_PICTURE, tag_image
 from muster.simulation.physics.bodies import quaternion
 from muster.simulation.physics.xml import add

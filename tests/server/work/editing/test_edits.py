@@ -10,7 +10,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.library import shelf as library
+from muster.library import shipped as library
 from muster.server.work.editing.edits import EditError, append, data_of, remove, set_value
 
 COMMENTED = """\

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import Any
 
+from muster.exchange.mission_control import MissionVersion, Who
 from muster.server.pages.editing.history import History
-from muster.server.words import MissionVersion, Who
 
 _QUIET_S = 0.35  # without a change, before a text is checked
 

@@ -12,9 +12,9 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
+from muster.exchange.mission_control import Who
 from muster.mission.errors import MusterError
 from muster.server.pages.notices import words_of
-from muster.server.words import Who
 
 for _scripts in ("muster.server.pages.map", "nicegui.elements.scene"):  # the latter's have three.js
     import_module(_scripts)  # so that those of this view find them

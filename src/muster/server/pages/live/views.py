@@ -7,14 +7,14 @@ from typing import Any
 
 from nicegui import ui
 
+from muster.exchange.mission_control import OVER, Run
 from muster.mission.errors import MusterError
-from muster.server.pages.asking import PATIENCE_S, is_seen, on_the_wall, the_asker, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import told, words_of
-from muster.server.pages.plan.ground import TILES, image_of
+from muster.server.pages.plan.map_scene import TILES, image_of
 from muster.server.pages.tables import table
-from muster.server.words import OVER, Run
+from muster.server.pages.visitor import PATIENCE_S, is_seen, on_the_wall, the_asker, the_desk
 
 KEYS = {
     "space": "pause, go on",

@@ -8,13 +8,13 @@ from functools import cache
 
 from nicegui import ui
 
+from muster.exchange.mission_control import MissionEntry
 from muster.library import mission_summary
-from muster.server.pages.asking import PATIENCE_S, may_command, the_asker, the_desk
+from muster.server.pages.buttons import once
 from muster.server.pages.frame import frame
-from muster.server.pages.missions.making import named, open_making
+from muster.server.pages.missions.new_mission import named, open_making
 from muster.server.pages.notices import offer, say, told
-from muster.server.pages.pressing import once
-from muster.server.words import MissionEntry
+from muster.server.pages.visitor import PATIENCE_S, may_command, the_asker, the_desk
 
 _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"

@@ -8,14 +8,14 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import PATIENCE_S, the_desk
+from muster.exchange.mission_control import PlanEntry
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
 from muster.server.pages.notices import told
-from muster.server.pages.plan.answer import MOST_PLANS, title_of
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
-from muster.server.pages.plan.ground import ground_of
-from muster.server.words import PlanEntry
+from muster.server.pages.plan.map_scene import ground_of
+from muster.server.pages.plan.plan_panel import MOST_PLANS, title_of
+from muster.server.pages.visitor import PATIENCE_S, the_desk
 
 
 @ui.page("/plan/{mission}/compare", response_timeout=PATIENCE_S)

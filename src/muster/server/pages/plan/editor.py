@@ -10,7 +10,7 @@ from nicegui import background_tasks
 from nicegui.elements.codemirror import CodeMirror
 from nicegui.events import GenericEventArguments
 
-from muster.server.pages.editing.crossing import applied, merged
+from muster.server.pages.editing.concurrent_edits import applied, merged
 
 _PATIENCE_S = 60.0  # with a browser that is busy
 

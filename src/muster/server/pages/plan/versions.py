@@ -9,10 +9,10 @@ from html import escape
 
 from nicegui import ui
 
-from muster.server.pages.asking import the_desk
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.missions.view import ago
 from muster.server.pages.notices import told
+from muster.server.pages.visitor import the_desk
 
 _MOST_VERSIONS = 1000  # that are listed
 _MOST_LINES = 20_000  # of two texts that are compared

@@ -8,14 +8,14 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.asking import PATIENCE_S, may_command, on_the_wall, the_desk
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told
-from muster.server.pages.plan.answer import MOST_PLANS, Answer
-from muster.server.pages.plan.ordering import Ordering
-from muster.server.pages.plan.title import Title
-from muster.server.pages.plan.workshop import Workshop
+from muster.server.pages.plan.editors import Workshop
+from muster.server.pages.plan.plan_panel import MOST_PLANS, Answer
+from muster.server.pages.plan.planning_controls import Ordering
+from muster.server.pages.plan.title_bar import Title
+from muster.server.pages.visitor import PATIENCE_S, may_command, on_the_wall, the_desk
 
 _TICK_S = 0.2
 _UNSAVED_S = 3600.0

@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
+from muster.exchange.mission_control import OVER, Action, Entry, Run
 from muster.mission.errors import MusterError
-from muster.server.pages.asking import PATIENCE_S, is_seen, the_desk
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told, words_of
 from muster.server.pages.records.figures import (
@@ -23,8 +23,8 @@ from muster.server.pages.records.figures import (
     task_rows,
 )
 from muster.server.pages.tables import table
-from muster.server.runs.lines import deed_of, line_of
-from muster.server.words import OVER, Action, Entry, Run
+from muster.server.pages.visitor import PATIENCE_S, is_seen, the_desk
+from muster.server.runs.log_lines import deed_of, line_of
 
 KEYS = {
     "space, arrows, home, end": "in the replay: play or pause, go through time (after a click or Tab into it)",

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from muster._api import DEFAULT_ALLOCATOR
 from muster.allocation.registry import ALLOCATORS
+from muster.planning.planning import DEFAULT_ALLOCATOR
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:

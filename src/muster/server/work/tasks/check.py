@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from muster._explaining import Possible, possible
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import plain
+from muster.planning.explaining import Possible, possible
 from muster.server.work.errors import MOST_FINDINGS
-from muster.server.work.floors import floor_of
+from muster.server.work.floor_plans import floor_of
 from muster.server.work.missions import mission_of
 
 

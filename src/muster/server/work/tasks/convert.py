@@ -8,7 +8,7 @@ from typing import Any
 
 from muster import load
 from muster.mission.errors import Finding, MissionError
-from muster.mission.kinds import shown
+from muster.mission.value_types import shown
 from muster.mission.yaml_writer import yaml_text
 from muster.server.work.missions import laid_down
 

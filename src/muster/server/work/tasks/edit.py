@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
+from muster.mission.value_types import shown
 from muster.server.work.editing.changes import CHANGES
 
 

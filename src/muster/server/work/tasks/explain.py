@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from muster._explaining import left_out, one_task, require_fit
-from muster._explaining.sentences import words_on_left_out, words_on_task
-from muster._explaining.tables import Part, tables_on_left_out, tables_on_task
+from muster.planning.explaining import left_out, one_task, require_fit
+from muster.planning.explaining.sentences import words_on_left_out, words_on_task
+from muster.planning.explaining.tables import Part, tables_on_left_out, tables_on_task
 from muster.server.work.missions import mission_of, plan_of
 
 

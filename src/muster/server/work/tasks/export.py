@@ -8,11 +8,11 @@ from dataclasses import fields
 from pathlib import PurePath
 from typing import Any
 
+from muster.exchange.export_request import FORMATS, Wishes
 from muster.exchange.files import plan_files, text_of
-from muster.exchange.wishes import FORMATS, Wishes
 from muster.mission.errors import ParameterError
-from muster.mission.hints import did_you_mean
-from muster.mission.kinds import shown
+from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification.required import require_admissible
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.kinds import shown
+from muster.mission.value_types import shown
 from muster.report import plot_gantt, plot_routes, save_figure
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification import verify

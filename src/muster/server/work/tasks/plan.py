@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from muster._api import DEFAULT_ALLOCATOR
 from muster.allocation.allocator import make_parameters
 from muster.allocation.bounds import lower_bound
 from muster.allocation.problem import Problem
@@ -17,6 +16,7 @@ from muster.allocation.stop import Progress, Stop, usual_time_limit
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.planning.planning import DEFAULT_ALLOCATOR
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification import verify
 

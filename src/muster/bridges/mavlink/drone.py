@@ -1,0 +1,88 @@
+"""One drone as Muster works with it: who it is, what it said, and what is wanted of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from muster.bridges.mavlink.autopilots import Autopilot
+from muster.bridges.mavlink.dialect import Message
+from muster.bridges.mavlink.follower import Follower
+from muster.bridges.mavlink.mission_items import Route
+from muster.bridges.mavlink.settings import Settings
+from muster.bridges.mavlink.telemetry import Seen
+from muster.mission.model import Robot
+from muster.motion.port import Waypoint
+
+
+@dataclass
+class Craft:
+    """Working state of one drone.
+
+    Parameters
+    ----------
+    robot
+        who it is in the mission.
+    seen
+        what it says of itself, and the frames in which it says it.
+    settings
+        what is allowed.
+    height_m
+        in a mission in the plane, how high above home it flies; None in space.
+    """
+
+    robot: Robot
+    seen: Seen
+    settings: Settings
+    height_m: float | None
+    autopilot: Autopilot | None = None  # once it was heard
+    mode: int | None = None  # in which it must be
+    asked_to_arm: bool = False
+    changing_mode: bool = False  # whether a mode was asked for that no heartbeat has shown since
+    disarming: bool = False  # whether that was asked, and to arm not since
+    route: Route | None = None  # the mission that it flies
+    follower: Follower | None = None  # or what leads it
+    passed: int = 0
+
+    @property
+    def kind(self) -> Autopilot:
+        """Its autopilot, which was heard."""
+        assert self.autopilot is not None
+        return self.autopilot
+
+    @property
+    def target(self) -> Message:
+        """A message of it, which says to whom answers go."""
+        assert self.seen.heartbeat is not None
+        return self.seen.heartbeat
+
+    @property
+    def located(self) -> bool:
+        """Whether it has said where it is, in all frames in which it is to be told where to go."""
+        return self.seen.place is not None and not (self.settings.offboard and self.seen.local is None)
+
+    @property
+    def stands(self) -> bool:
+        """Whether it was asked to arm, and was not seen in the air since: it may be armed, or be so soon."""
+        return self.asked_to_arm and not self.seen.was_up
+
+    @property
+    def ours(self) -> bool:
+        """Whether it flies, in a mode into which Muster brought it."""
+        return self.asked_to_arm and self.seen.armed and self.seen.mode in self.kind.own_modes
+
+    def forget_order(self) -> None:
+        """It has no way points any more."""
+        self.passed, self.route, self.follower = 0, None, None
+
+    def flown(self, waypoints: Sequence[Waypoint]) -> list[Waypoint]:
+        """Way points at the height at which they are flown."""
+        ground = self.seen.start[2]
+        lowest = ground + self.settings.lowest_m
+        flat = None if self.height_m is None else ground + self.height_m
+
+        def at_height(waypoint: Waypoint) -> Waypoint:
+            x, y, z = waypoint.position
+            return replace(waypoint, position=(x, y, max(z if flat is None else flat, lowest)))
+
+        return [at_height(waypoint) for waypoint in waypoints]

@@ -1,0 +1,60 @@
+"""Missions on their way between processes, and those that users leave on the parameter server."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from muster.bridges.ros1.ros import rospy
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.value_types import shown
+from muster.mission.yaml_reader import parse_yaml
+from muster.mission.yaml_writer import yaml_text
+
+Load = Callable[[str], Mission]
+"""Muster's own loader: of a file, or of the name of a shipped mission."""
+
+
+def packed(mission: Mission) -> dict[str, Any]:
+    """A mission as JSON can hold it: YAML, and the file from whose folder other files are found."""
+    return {"file": str(Path(mission.source.file).absolute()), "text": yaml_text(mission)}
+
+
+def unpacked(parcel: Mapping[str, Any]) -> Mission:
+    """The inverse of `packed`."""
+    return parse_yaml(parcel["text"], Path(parcel["file"]))
+
+
+def mission_on(parameter: str, load: Load) -> Mission:
+    """The mission that a parameter holds or names.
+
+    It may be the text of a mission file, the mapping that `rosparam load` makes of one, the name of a shipped mission,
+    or the path of a file.
+
+    Raises
+    ------
+    MusterError
+        with all that is wrong with it, or if there is none.
+    """
+    said: Any = rospy.get_param(parameter, None)
+    if isinstance(said, dict):
+        said = json.dumps(said)
+    if not isinstance(said, str) or not said.strip():
+        expected = "a mission in YAML, the name of a shipped one, or the path of a file"
+        raise MusterError(f"{parameter}: {'missing' if said is None else shown(said)}; expected {expected}")
+    if "\n" in said or said.lstrip().startswith("{"):
+        return parse_yaml(said, Path(parameter))
+    return load(said)
+
+
+def in_lines(error: MusterError) -> str:
+    """What is wrong, for the message of a service: one finding a line, and not hundreds."""
+    lines = str(error).splitlines()
+    more = [f"and {len(lines) - _MOST} more"] if len(lines) > _MOST else []
+    return "\n".join(lines[:_MOST] + more)
+
+
+_MOST = 20

@@ -1,0 +1,36 @@
+"""What a robot says of itself on the parameter server, and what is asked for in JSON: as in a mission file."""
+
+from __future__ import annotations
+
+import json
+
+from muster.bridges.descriptions import read_as, robot_as_said
+from muster.bridges.ros1.ros import rospy
+from muster.mission.model import Robot, Task
+
+
+def described(topics: str, robot: Robot) -> Robot:
+    """A robot with what its parameter `muster` says: keys of a robot in a mission file, such as speed_mps.
+
+    Raises
+    ------
+    MissionError
+        if something there is wrong.
+    """
+    name = f"{topics}/muster"
+    return robot_as_said(rospy.get_param(name, {}), robot, name)
+
+
+def task_of(text: str) -> Task:
+    """A task in JSON, with a task's keys of a mission file.
+
+    Raises
+    ------
+    MissionError
+        if it is none.
+    """
+    try:
+        data = json.loads(text)
+    except ValueError:
+        data = text
+    return read_as(Task, data, "add_task")

@@ -1,0 +1,172 @@
+"""What carries messages of ROS 2 to and fro: DDS without ROS (`dds`), or rclpy (`rclpy_wire`). Both are polled."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, Protocol, TypeVar
+
+from muster.bridges.ros2.description import Message
+from muster.bridges.ros2.message_types import PoseStamped
+from muster.mission.errors import ParameterError
+
+M = TypeVar("M", bound=Message)
+Sent = TypeVar("Sent", bound=Message, contravariant=True)
+
+By = Literal["dds", "rclpy"]
+KEPT = 100
+"""Messages that are kept until they are taken."""
+_LAST_DOMAIN = 232  # beyond it there are no ports
+
+
+class Writer(Protocol[Sent]):
+    """Publishes messages of a type on a topic, reliably."""
+
+    def write(self, message: Sent) -> None:
+        """Say it.
+
+        Raises
+        ------
+        NetworkError
+            if it cannot be sent.
+        """
+        ...
+
+    @property
+    def listeners(self) -> int:
+        """How many there are who hear it."""
+        ...
+
+
+class Reader(Protocol[M]):
+    """Hears messages of a type on a topic, whether they are published reliably or not."""
+
+    def take(self) -> list[M]:
+        """What has come since, oldest first; does not wait."""
+        ...
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a goal of navigation ended, and what the robot says of it."""
+
+    status: Literal["succeeded", "aborted", "canceled", "rejected"]
+    detail: str = ""
+
+
+class Navigation(Protocol):
+    """A goal that was given to a robot's own navigation."""
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """None while it is under way."""
+        ...
+
+    def take(self) -> list[PoseStamped]:
+        """Where the robot said that it was, since the last call."""
+        ...
+
+    def cancel(self) -> None:
+        """Ask the robot to give the goal up; that it did so `outcome` says.
+
+        Raises
+        ------
+        NetworkError
+            if it cannot be asked.
+        """
+        ...
+
+
+class Navigator(Protocol):
+    """A client of an action `nav2_msgs/NavigateToPose`."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether somebody serves it."""
+        ...
+
+    def go(self, goal: PoseStamped) -> Navigation:
+        """Let the robot go there; where that cannot even be asked, it is aborted."""
+        ...
+
+
+class Wire(Protocol):
+    """Takes part in a domain of ROS 2 until it is closed. What has come is to be had after `wait`."""
+
+    def writer(self, topic: str, message: type[M]) -> Writer[M]:
+        """Who publishes on a topic (`/r_0/goal_pose`)."""
+        ...
+
+    def reader(self, topic: str, message: type[M]) -> Reader[M]:
+        """Who hears a topic."""
+        ...
+
+    def navigator(self, action: str) -> Navigator:
+        """Who gives goals to an action (`/r_0/navigate_to_pose`).
+
+        Raises
+        ------
+        ParameterError, MissingExtraError
+            where this wire has no actions, or Nav2's messages are not there.
+        """
+        ...
+
+    def topics(self) -> Iterable[tuple[str, str]]:
+        """What is published: topics and types (`geometry_msgs/PoseStamped`)."""
+        ...
+
+    def wait(self, seconds: float) -> None:
+        """Let so much time go by, and hear meanwhile."""
+        ...
+
+    def close(self) -> None:
+        """Leave; writers and readers end with it."""
+        ...
+
+
+def open_wire(by: By | None = None, domain: int | None = None) -> Wire:
+    """Take part in a domain, by rclpy where it can be imported and by DDS elsewhere, or as `by` says.
+
+    Parameters
+    ----------
+    domain
+        None: that of the environment's ROS_DOMAIN_ID.
+
+    Raises
+    ------
+    MissingExtraError
+        if rclpy, or the extra `ros2`, is not there.
+    ParameterError
+        if the domain is no number from 0 to 232.
+    NetworkError
+        if the network cannot be used.
+    """
+    if by == "rclpy" or (by is None and importlib.util.find_spec("rclpy") is not None):
+        from muster.bridges.ros2.rclpy_middleware import RclpyWire
+
+        return RclpyWire(domain)
+    from muster.bridges.ros2.dds import Participant
+
+    return Participant(domain)
+
+
+def domain_or_own(domain: int | None) -> int:
+    """A domain, or that of the environment.
+
+    Raises
+    ------
+    ParameterError
+        if it is no number from 0 to 232.
+    """
+    text = (os.environ.get("ROS_DOMAIN_ID") or "0") if domain is None else str(domain)
+    if not (text.isascii() and text.isdigit()) or int(text) > _LAST_DOMAIN:
+        name = "ROS_DOMAIN_ID" if domain is None else "domain"
+        raise ParameterError(f"{name}: {text!r}; expected a number from 0 to {_LAST_DOMAIN}")
+    return int(text)
+
+
+def line_of(error: Exception) -> str:
+    """What an error of DDS or rclpy says, in a line."""
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,62 @@
+"""A mission shown while it is carried out: told on standard error, and to those who connect with Foxglove."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.mission.errors import NetworkError
+from muster.mission.model import Mission
+
+if TYPE_CHECKING:
+    from muster.execution import Happening
+
+foxglove_option = click.option(
+    "--foxglove",
+    type=click.IntRange(min=0, max=65535),
+    metavar="PORT",
+    help="Show it live to Foxglove on this computer (ws://127.0.0.1:PORT); 0: any free port.",
+)
+
+
+def require_free_port(port: int | None) -> None:
+    """Find out before robots move that a mission cannot be shown on a port.
+
+    Raises
+    ------
+    NetworkError
+        if it is taken, or not for everybody.
+    """
+    if port is None:
+        return
+    try:
+        socket.create_server(("127.0.0.1", port)).close()
+    except OSError as error:
+        raise NetworkError(
+            f"--foxglove: 127.0.0.1:{port}: {error.strerror}; expected a free port of this computer"
+        ) from None
+
+
+@contextmanager
+def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[Sequence[Any]]:
+    """Who is to be told of the mission so that it is shown on a port; nobody where there is none."""
+    if port is None:
+        yield ()
+        return
+    from muster.report.live import FoxgloveServer
+
+    with FoxgloveServer(mission, port) as server:
+        if not quiet:
+            click.echo(f"foxglove: {server.address}", err=True)
+        yield (server,)
+
+
+def tell(happening: Happening) -> None:
+    """Say what happens, as it happens."""
+    from muster.mission.event_descriptions import event_line
+
+    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)

@@ -1,0 +1,211 @@
+"""What verbs that command real robots have in common: what is asked for, waiting, carrying out, the report."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.live_output import foxglove_option, require_free_port, shown_live, tell
+from muster.cli.options import (
+    Finite,
+    Verb,
+    format_option,
+    load_plan,
+    quiet_option,
+    require_admissible,
+    require_complete_option,
+)
+from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.record_output import drawing_options, kept_record, record_option
+from muster.cli.report_tables import print_report
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, json_text
+
+if TYPE_CHECKING:
+    from muster.bridges.fleet import Fleet
+    from muster.execution import Recorder, Report
+
+_FILE = click.Path(path_type=Path)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wishes:
+    """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
+
+    plan: Path | None
+    seed: int
+    time_limit: float
+    record: Path | None
+    html: Path | None
+    plot: Path | None
+    gantt: Path | None
+    foxglove: int | None
+    require_complete: bool
+    form: str
+    quiet: bool
+    verbose: bool
+
+
+def real_options(verb: Verb) -> Verb:
+    """The options of which `Wishes` is made."""
+    options = (
+        click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
+        click.option(
+            "--time-limit",
+            type=click.FloatRange(min=0),
+            default=2.0,
+            show_default=True,
+            metavar="S",
+            help="Of planning.",
+        ),
+        record_option,
+        drawing_options,
+        foxglove_option,
+        require_complete_option,
+        format_option,
+        quiet_option,
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
+
+
+def _namespace(_: click.Context, __: click.Parameter, value: str) -> str:
+    """Checks a namespace of ROS: names with slashes between them."""
+    if value.strip("/") and not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*", value.strip("/")):
+        raise click.BadParameter(f"{value!r}; expected names such as team or lab/team: letters, digits, _")
+    return value
+
+
+def ros_options(verb: Verb) -> Verb:
+    """Where robots on ROS are looked for: --namespace, --wait, --known-only."""
+    options = (
+        click.option(
+            "--namespace",
+            callback=_namespace,
+            default="",
+            metavar="NAME",
+            help="In which the robots' own are.  [default: the root]",
+        ),
+        click.option(
+            "--wait",
+            "wait_s",
+            type=Finite(0.0, 1e6),
+            default=10.0,
+            show_default=True,
+            metavar="S",
+            help="For the mission's robots.",
+        ),
+        click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join."),
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
+
+
+def require_outputs(wishes: Wishes, inputs: tuple[str | Path | None, ...]) -> None:
+    """Find out before robots move that a file cannot be written, or would replace one that is read."""
+    files = (wishes.record, wishes.html, wishes.plot, wishes.gantt)
+    require_writable(None, files, inputs, (wishes.plan,))
+    require_drawable(wishes.plot, wishes.gantt)
+    require_free_port(wishes.foxglove)
+
+
+def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
+    """The plan that was given, before robots are looked for; None: there is none.
+
+    Raises
+    ------
+    PlanError
+        if it is none, or breaks a rule of the mission.
+    """
+    if wishes.plan is None:
+        return None
+    plan = load_plan(wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
+    require_admissible(mission, plan, wishes.plan)
+    return plan
+
+
+def planned(wishes: Wishes, mission: Mission) -> Plan:
+    """A plan made now."""
+    from muster import solve
+
+    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
+
+
+def from_here(mission: Mission, fleet: Fleet) -> Mission:
+    """The mission from where robots stand; who stands elsewhere than it says is told of."""
+    from muster.running.live import elsewhere, from_where_they_stand
+
+    there = from_where_they_stand(mission, fleet)
+    for line in elsewhere(mission, there):
+        click.echo(line, err=True)
+    return there
+
+
+def carried_out(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    wishes: Wishes,
+    halt: threading.Event,
+    observers: Sequence[Recorder] = (),
+    at_end: Callable[[], None] = lambda: None,
+) -> Report:
+    """Carry a plan out; what happens is told, recorded and shown as was asked for.
+
+    Parameters
+    ----------
+    at_end
+        what else robots are told when all is done; comes before anything is drawn, which takes its time.
+    """
+    from muster import carry_out
+
+    report = None
+    try:
+        kept = kept_record(wishes.record, wishes.html, wishes.plot, wishes.gantt)
+        with kept as file, shown_live(mission, wishes.foxglove, quiet=wishes.quiet) as viewers:
+            report = carry_out(
+                mission,
+                plan,
+                fleet,
+                seed=wishes.seed,
+                record=file,
+                observers=(*observers, *viewers),
+                on_happening=None if wishes.quiet else tell,
+                halt=halt,
+            )
+            at_end()
+    except (OSError, MusterError) as error:
+        if report is None:
+            raise
+        click.echo(f"warning: {error}", err=True)  # what is drawn counts less than the report
+    return report
+
+
+def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.Event, left: str) -> int:
+    """Print what came of it; returns the exit code.
+
+    Parameters
+    ----------
+    left
+        what robots do if it was interrupted: "the robots were told to stand".
+    """
+    figures: dict[str, Any] = report.as_dict()
+    if wishes.form == "json":
+        click.echo(json_text(figures), nl=False)
+    else:
+        print_report(figures, mission, with_tasks=wishes.verbose)
+    if halt.is_set():
+        click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
+        return INTERRUPTED
+    return INCOMPLETE if wishes.require_complete and report.tasks_lost else DONE

@@ -1,0 +1,67 @@
+"""The record of a mission that is carried out: kept where it is wanted, and what is drawn of it at the end."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from muster.cli.options import Verb
+
+if TYPE_CHECKING:
+    from muster.report.record import Recording
+
+_FILE = click.Path(path_type=Path)
+
+
+def drawing_options(verb: Verb) -> Verb:
+    """--html, --plot, --gantt."""
+    options = (
+        click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline."),
+        click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf)."),
+        click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf)."),
+    )
+    for option in reversed(options):
+        verb = option(verb)
+    return verb
+
+
+def record_option(verb: Verb) -> Verb:
+    """--record."""
+    option = click.option("--record", type=_FILE, metavar="FILE", help="Write a record (.mcap), for `muster replay`.")
+    return option(verb)
+
+
+@contextmanager
+def kept_record(record: Path | None, html: Path | None, plot: Path | None, gantt: Path | None) -> Iterator[Path | None]:
+    """Where the record is to be written; None: nowhere. What is wanted of it is drawn at the end."""
+    wanted = any((html, plot, gantt))
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "record.mcap" if record is None and wanted else record
+        yield file
+        if file is not None and wanted:
+            from muster.report.record import read_record
+
+            draw_record(read_record(file), html, plot, gantt)
+
+
+def draw_record(recording: Recording, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
+    """Write what is wanted: its page, its picture, its time chart."""
+    if html is not None:
+        from muster.report.page import write_page
+
+        write_page(html, recording)
+    if plot is not None:
+        from muster.report.files import save_figure
+        from muster.report.recorded_tracks import plot_flown
+
+        save_figure(plot_flown(recording), plot)
+    if gantt is not None:
+        from muster.report.files import save_figure
+        from muster.report.recorded_gantt import plot_flown_gantt
+
+        save_figure(plot_flown_gantt(recording), gantt)

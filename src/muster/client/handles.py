@@ -1,0 +1,145 @@
+"""A job and a run at a server, which can be followed and acted upon."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from muster.client.connection import Connection
+from muster.client.reading import read
+from muster.exchange.mission_control import JOB_OVER, OVER, Action, Entry, Job, PlanEntry, Run
+from muster.mission.errors import MusterError
+
+_FIRST_LOOK_S, _LONGEST_LOOK_S = 0.02, 0.5
+_AT_ONCE = 1000
+
+
+class RunningJob:
+    """Long work at a server; `seen` is how it was when last looked at."""
+
+    def __init__(self, connection: Connection, seen: Job) -> None:
+        self._connection = connection
+        self.seen = seen
+
+    @property
+    def id(self) -> int:
+        return self.seen.id
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more happens in it."""
+        return self.seen.state in JOB_OVER
+
+    def look(self) -> Job:
+        """See how far it is."""
+        self.seen = read(Job, self._connection.get(f"/jobs/{self.id}"))
+        return self.seen
+
+    def wait(self, on_progress: Callable[[Mapping[str, Any]], None] | None = None) -> PlanEntry:
+        """The plan, when it is made.
+
+        Parameters
+        ----------
+        on_progress
+            is called with the job's progress whenever there is a newer one.
+
+        Raises
+        ------
+        MusterError
+            if the job fails, or is cancelled.
+        """
+        shown, pause_s = None, _FIRST_LOOK_S
+        while not self.over:
+            time.sleep(pause_s)
+            pause_s = min(1.5 * pause_s, _LONGEST_LOOK_S)
+            progress = self.look().progress
+            if on_progress is not None and progress is not None and progress != shown:
+                on_progress(progress)
+                shown = progress
+        if self.seen.state != "done" or self.seen.result is None:
+            raise MusterError(self.seen.error or f"job {self.id} was {self.seen.state}")
+        return read(PlanEntry, self._connection.get(f"/plans/{self.seen.result['plan']}"))
+
+    def stream(self) -> Iterator[Job]:
+        """Each change, until it is over."""
+        for message in self._connection.stream(f"/jobs/{self.id}/stream"):
+            self.seen = read(Job, message)
+            yield self.seen
+
+    def stop(self) -> Job:
+        """Ask for the best plan so far, which ends it soon; one that waits for its turn is cancelled."""
+        self.seen = read(Job, self._connection.post(f"/jobs/{self.id}/stop", {}))
+        return self.seen
+
+    def cancel(self) -> Job:
+        """End it at once, without a plan."""
+        self.seen = read(Job, self._connection.delete(f"/jobs/{self.id}"))
+        return self.seen
+
+
+class RunningRun:
+    """A plan that is carried out at a server; `seen` is how it was when last looked at."""
+
+    def __init__(self, connection: Connection, seen: Run) -> None:
+        self._connection = connection
+        self.seen = seen
+
+    @property
+    def id(self) -> int:
+        return self.seen.id
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more happens in it."""
+        return self.seen.state in OVER
+
+    def look(self) -> Run:
+        """See how it is."""
+        self.seen = read(Run, self._connection.get(f"/runs/{self.id}"))
+        return self.seen
+
+    def wait(self) -> Run:
+        """How it was when it was over."""
+        pause_s = _FIRST_LOOK_S
+        while self.look().state not in OVER:
+            time.sleep(pause_s)
+            pause_s = min(1.5 * pause_s, _LONGEST_LOOK_S)
+        return self.seen
+
+    def stream(self, after: int = 0) -> Iterator[dict[str, Any]]:
+        """What happens, as it happens (docs/mission-control-api.md); of the log what has a greater `seq`."""
+        yield from self._connection.stream(f"/runs/{self.id}/stream", after=after)
+
+    def events(self, after: int = 0) -> Iterator[Entry]:
+        """The log as it is now."""
+        while True:
+            found = self._connection.get(f"/runs/{self.id}/events", after=after, limit=_AT_ONCE)
+            yield from (read(Entry, entry) for entry in found)
+            if len(found) < _AT_ONCE:
+                return
+            after = found[-1]["seq"]
+
+    def act(self, verb: str, **data: Any) -> Action:
+        """Let something be done: pause, resume, speed, cancel, event."""
+        return read(Action, self._connection.post(f"/runs/{self.id}/actions", {"verb": verb, "data": data}))
+
+    def pause(self) -> Action:
+        return self.act("pause")
+
+    def resume(self) -> Action:
+        return self.act("resume")
+
+    def cancel(self) -> Action:
+        return self.act("cancel")
+
+    def report(self) -> dict[str, Any]:
+        """What it took; as `muster simulate --format json` prints it.
+
+        Raises
+        ------
+        ConflictError
+            as long as it goes on.
+        """
+        found: dict[str, Any] = self._connection.get(f"/runs/{self.id}/report")
+        return found

@@ -1,0 +1,66 @@
+"""What was done of a mission before whoever carried it out ended: tasks, and what robots used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from muster.execution.changes import FAILED
+from muster.execution.robot_state import Hand
+from muster.execution.task_ledger import Ledger
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deed:
+    """A task that was done: by whom, when (mission's clock), and usage by the plan and as measured."""
+
+    robot: str
+    arrives_s: float
+    starts_s: float
+    ends_s: float
+    arrival_usage: float
+    usage: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Past:
+    """What is known of the time before.
+
+    Parameters
+    ----------
+    done, cancelled, delays_s
+        tasks that were done; when others were cancelled; by how much others were delayed.
+    barred
+        tasks that must not be begun again, and why.
+    used, failed_s
+        by robot what it had used, in the mission's unit; since when it takes no part.
+    """
+
+    done: Mapping[str, Deed] = field(default_factory=dict)
+    cancelled: Mapping[str, float] = field(default_factory=dict)
+    delays_s: Mapping[str, float] = field(default_factory=dict)
+    barred: Mapping[str, str] = field(default_factory=dict)
+    used: Mapping[str, float] = field(default_factory=dict)
+    failed_s: Mapping[str, float] = field(default_factory=dict)
+
+    def recall(self, ledger: Ledger, crew: Mapping[str, Hand]) -> None:
+        """Write it into a ledger and a crew that are new."""
+        for task, deed in self.done.items():
+            ledger.arrivals_s[task], ledger.starts_s[task] = deed.arrives_s, deed.starts_s
+            ledger.arrival_usage[task], ledger.usage[task] = deed.arrival_usage, deed.usage
+            ledger.end(task, deed.robot, deed.ends_s)
+            if deed.robot in crew:
+                crew[deed.robot].done.append(task)
+                crew[deed.robot].at_home = False
+        ledger.cancelled.update(self.cancelled)
+        ledger.delays_s.update(self.delays_s)
+        for task, why in self.barred.items():
+            for robot in crew:
+                ledger.refuse(task, robot, why)
+        for robot, used in self.used.items():
+            if robot in crew:
+                crew[robot].recall(used)
+                crew[robot].used_before = used
+        for robot, since_s in self.failed_s.items():
+            if robot in crew:
+                crew[robot].out, crew[robot].out_s = FAILED, since_s

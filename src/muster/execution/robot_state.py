@@ -1,0 +1,214 @@
+"""One robot of the crew: what it is doing, what it was told, what it said, and what it has used.
+
+The thesis' availability `a_i` (TCF thesis, 5.3.1): a robot is busy while it moves to a task or does it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+
+from muster.execution.task_motion import Work, path_length, place
+from muster.mission.model import Robot
+from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
+
+
+class Activity(Enum):
+    """What a robot is doing."""
+
+    IDLE = "idle"  # available
+    DRIVING = "driving"  # to the first task of its route; an order may hold the work too
+    WAITING = "waiting"  # at the task, for prerequisites
+    WORKING = "working"
+    RETURNING = "returning"  # to where its route ends
+
+
+MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
+
+
+@dataclass
+class Hand:
+    """Working state of one robot.
+
+    Parameters
+    ----------
+    robot, port
+        who it is, and how it is reached.
+    home
+        where its route must end; None: anywhere.
+    in_time
+        whether usage is time.
+    route
+        tasks that it is still to do, that at hand first.
+    out
+        why it takes no part now: failed, silent, stuck; empty if it does.
+    """
+
+    robot: Robot
+    port: RobotPort
+    home: Place | None
+    in_time: bool
+    heard_s: float
+    route: list[str] = field(default_factory=list)
+    done: list[str] = field(default_factory=list)
+    out: str = ""
+    out_s: float = 0.0  # since when
+    activity: Activity = Activity.IDLE
+    told: Telemetry | None = None
+    work: Work | None = None  # at hand
+    to_task: int = 0  # way points of the last order that lead to the task
+    works: bool = False  # whether the order holds the work too
+    delay_s: float = 0.0  # that the work at hand was ordered with
+    at_home: bool = True
+    begun_s: float = 0.0  # the activity
+    work_s: float = 0.0  # how long the work at hand takes, delays included
+    charged: float = 0.0  # usage of works that ended, as far as it was not travelled
+    used_before: float = 0.0  # usage at the end of the last task
+    usage_to_task: float = 0.0  # from then to the end of the task at hand, as planned
+    busy_s: float = 0.0
+    since_s: float = 0.0  # up to when `busy_s` counts
+    nearest_m: float = math.inf  # least way left of this order, and when it was reached, or others last held it up
+    nearest_s: float = 0.0
+    stuck_before: bool = False
+    warned_of: str = ""  # the task on the way to which its capacity was found too small
+    left: Place | None = None  # the last place known to be free: a way point passed
+    home_usage: float = 0.0  # from the exit of the task at hand to `home`, in the mission's unit
+    _order: int = 0
+    _waypoints: tuple[Waypoint, ...] = ()
+
+    @property
+    def available(self) -> bool:
+        """The thesis' `a_i`."""
+        return not self.out and self.activity in (Activity.IDLE, Activity.RETURNING)
+
+    @property
+    def position(self) -> Place:
+        return self.told.position if self.told is not None else place(self.robot.position)
+
+    @property
+    def refuge(self) -> Place:
+        """A place near by where it can stand for certain."""
+        return self.left if self.left is not None else place(self.robot.position)
+
+    @property
+    def passed(self) -> int:
+        """How many way points of the last order it has passed."""
+        return self.told.passed if self.told is not None and self.told.order == self._order else 0
+
+    @property
+    def refused(self) -> str:
+        """Why it will not get to the next way point of the last order; empty while it goes on."""
+        return self.told.refused if self.told is not None and self.told.order == self._order else ""
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it has carried out the last order."""
+        return self.passed >= len(self._waypoints)
+
+    def recall(self, used: float) -> None:
+        """It has used so much before it was heard first, in the mission's unit, as a gauge has it."""
+        said = self.port.telemetry()
+        self.busy_s, self.charged = used, used - (said.odometry_m if said is not None else 0.0)
+
+    def hear(self, now: float) -> Telemetry | None:
+        """What it says, if that is new."""
+        if self.activity in MOVING and not self.out:
+            self.busy_s += now - self.since_s
+        self.since_s = now
+        said = self.port.telemetry()
+        if said is None or (self.told is not None and said.time_s <= self.told.time_s):
+            return None
+        self.told, self.heard_s = said, now
+        if self.passed:
+            self.left = self._waypoints[self.passed - 1].position
+        return said
+
+    def send(self, now: float, activity: Activity, waypoints: Sequence[Waypoint]) -> None:
+        """Order it to pass way points."""
+        self._waypoints = tuple(waypoints)
+        self._order = self.port.send(self._waypoints)
+        self.turn_to(now, activity)
+
+    def send_again(self, now: float) -> None:
+        """Order what is left of the last order."""
+        begun = self.begun_s
+        self.send(now, self.activity, self._waypoints[self.passed :])
+        self.begun_s = begun
+
+    def stop(self, now: float) -> None:
+        """Let it stop where it is, available. Work that is broken off is charged as far as it went."""
+        if self.activity is Activity.WORKING and self.work_s > 0:
+            self.charged += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
+        self._waypoints = ()
+        self._order = self.port.cancel()
+        self.work = None
+        self.turn_to(now, Activity.IDLE)
+
+    def stand(self, now: float) -> None:
+        """Stop for a while: who is under way has to be sent again, who works keeps what is left of the work."""
+        if self.activity is Activity.WORKING:
+            self._waypoints = self._waypoints[self.passed :]
+            self._order = self.port.cancel()
+        elif self.activity in MOVING:
+            self.stop(now)
+
+    def turn_to(self, now: float, activity: Activity) -> None:
+        """Go on to another activity under the same order."""
+        self.activity, self.begun_s = activity, now
+        self.nearest_m, self.nearest_s = math.inf, now
+
+    @property
+    def points_left(self) -> list[Place]:
+        """The places of the last order that it has not passed."""
+        return [waypoint.position for waypoint in self._waypoints[self.passed :]]
+
+    @property
+    def way_left_m(self) -> float:
+        """Metres of the last order that it has not travelled."""
+        return path_length(self.position, self._waypoints[self.passed :])
+
+    @property
+    def used(self) -> float:
+        """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
+        return self.busy_s if self.in_time else self.charged + (self.told.odometry_m if self.told else 0.0)
+
+    @property
+    def capacity(self) -> float | None:
+        """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
+        most = self.robot.work_capacity
+        if most is None or self.told is None or self.told.charge is None:
+            return most
+        return min(most, self.used + self.told.charge * most)
+
+    def work_left_s(self, now: float) -> float:
+        """Seconds until the work under way ends, if all goes well."""
+        return max(0.0, self.begun_s + self.work_s - now) if self.activity is Activity.WORKING else 0.0
+
+    def used_after(self, now: float) -> float:
+        """Usage when the task at hand is done, in the mission's unit; without one, now."""
+        if self.work is None:
+            return self.used
+        works = self.activity is Activity.WORKING
+        if self.in_time:
+            before = 0.0 if works else self.travel_left_m / self.robot.speed_mps
+            return self.used + before + (self.work_left_s(now) if works else self.work_s)
+        way = self.way_left_m if works else self.travel_left_m + self.work.way_m
+        return self.used + way + self._stayed_cost
+
+    @property
+    def travel_left_m(self) -> float:
+        """Metres to the entry of the task at hand."""
+        work_m = self.work.way_m if self.works and self.work is not None else 0.0
+        return max(0.0, self.way_left_m - work_m)
+
+    def charge_work(self) -> None:
+        """The work at hand has ended: its cost is used up, as far as it was not travelled."""
+        self.charged += self._stayed_cost
+        self.work = None
+
+    @property
+    def _stayed_cost(self) -> float:
+        """Usage of the work at hand, by distance, that is not travelled."""
+        return 0.0 if self.work is None else self.work.stayed_cost_m

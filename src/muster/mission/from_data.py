@@ -1,0 +1,62 @@
+"""Plain data (from YAML, CSV, TSPLIB) to a Mission, with all that is wrong reported in one go.
+
+A value that is wrong is set aside and the rest is still checked, so that a misspelt speed does not hide an unknown
+prerequisite three tasks later.
+"""
+
+from __future__ import annotations
+
+from muster.mission.consistency import inconsistencies
+from muster.mission.degrees import degrees_to_metres, in_degrees
+from muster.mission.errors import MissionError
+from muster.mission.model import Mission, findings
+from muster.mission.source import Source
+from muster.mission.travel_csv import read_travel_tables
+from muster.mission.value_types import Fault, Path, Record
+
+
+def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
+    """The mission that plain data describes.
+
+    Parameters
+    ----------
+    data
+        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres.
+    source
+        where the values came from; files named in the data are found from the folder of its file.
+    faults
+        what was wrong with the form of the file already.
+
+    Raises
+    ------
+    MissionError
+        with `faults` and everything else that was found.
+    MissingExtraError
+        if places are in degrees and pymap3d is not installed.
+    """
+    places = degrees_to_metres(data, faults)
+    mission: Mission = Record(Mission, "a mission").read(data, (), faults)
+    object.__setattr__(mission, "source", source)
+    if mission.travel_rule == "matrix" and mission.travel:
+        object.__setattr__(mission, "travel_tables", read_travel_tables(mission.travel, source, faults))
+    # Where a value is known to be wrong a filler stands in its place: nothing more is said of it.
+    wrong = {fault.path for fault in faults}
+    around = {start for path in wrong for start in _prefixes(path)}
+    faults.extend(
+        fault
+        for fault in (in_degrees(found, places) for found in inconsistencies(mission))
+        if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path)) and not _in_doubt(fault, wrong)
+    )
+    if faults:
+        raise MissionError(findings(faults, source))
+    return mission
+
+
+def _in_doubt(fault: Fault, wrong: set[Path]) -> bool:
+    """Whether an id was looked for among ids of which one is wrong: that may be the one that was meant."""
+    group = fault.relies_on
+    return bool(group) and any(path[:1] == (group,) and (len(path) < 3 or path[2] == "id") for path in wrong)
+
+
+def _prefixes(path: Path) -> list[Path]:
+    return [path[:length] for length in range(len(path) + 1)]

@@ -1,0 +1,404 @@
+"""What a value of a mission may be.
+
+The fields of the model (`model.py`) are declared once, each with its *kind*. From that one declaration follow
+reading a file, checking a mission built in Python, writing, the "did you mean" of unknown keys and the published
+JSON Schema, so that these cannot disagree.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import MISSING, Field, dataclass, field, fields
+from numbers import Real
+from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
+
+from muster.mission.near_matches import did_you_mean
+
+Path = tuple[str | int, ...]
+JsonSchema = dict[str, Any]
+
+RESERVED_NAMES = frozenset({"earliest_s", "latest_s", "robots_needed", "recharge"})
+"""Keys that a later version will give a meaning; until then they are refused, not ignored."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One wrong value: its path in the mission (`("tasks", 3, "position")`), what it is, what was expected."""
+
+    path: Path
+    value: str
+    expected: str
+    relies_on: str = ""
+    """`robots` or `tasks` where the value was looked for among their ids; not said where one of those is wrong."""
+
+
+class Invalid:
+    """The result of reading a value that had a fault."""
+
+
+INVALID = Invalid()
+
+
+@runtime_checkable
+class Kind(Protocol):
+    """One kind of value: reads it from plain Python data, and describes itself in JSON Schema."""
+
+    @property
+    def expected(self) -> str:
+        """How a message names what was expected."""
+
+    @property
+    def filler(self) -> Any:
+        """What stands for a required value that is wrong while the rest is checked."""
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        """The value in the model's own form; or INVALID, and what is wrong appended to `faults`."""
+
+    def schema(self) -> JsonSchema: ...
+
+
+def shown(value: object, limit: int = 60) -> str:
+    """A value as a message shows it: on one line, and short."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    text = json.dumps(_trimmed(value), ensure_ascii=False, default=lambda other: type(other).__name__)
+    return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def _trimmed(value: object, levels: int = 3) -> object:
+    """The first items of the first levels of a value; more would not be shown, and aliases can make it endless."""
+    if isinstance(value, list | tuple):
+        return [_trimmed(item, levels - 1) for item in value[:6]] if levels else "..."
+    if isinstance(value, dict):
+        return {str(key): _trimmed(value[key], levels - 1) for key in list(value)[:6]} if levels else "..."
+    return (
+        value[:200]
+        if isinstance(value, str)
+        else value
+        if not isinstance(value, int) or abs(value) < 10**60
+        else "huge"
+    )
+
+
+def _refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:
+    faults.append(Fault(at, shown(value), kind.expected))
+    return INVALID
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite number, as float64."""
+
+    filler: ClassVar[float] = 0.0
+    minimum: float | None = None
+    above: float | None = None
+    maximum: float | None = None
+    below: float | None = None
+
+    @property
+    def expected(self) -> str:
+        bounds = [
+            f"{word} {bound:g}"
+            for word, bound in (
+                ("at least", self.minimum),
+                ("above", self.above),
+                ("at most", self.maximum),
+                ("below", self.below),
+            )
+            if bound is not None
+        ]
+        return ", ".join(["a finite number", *filter(None, [" and ".join(bounds)])])
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, bool) or not isinstance(value, int | float | Real):
+            return _refuse(self, value, at, faults)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        return number if self._holds(number) else _refuse(self, value, at, faults)
+
+    def _holds(self, number: float) -> bool:
+        return (
+            math.isfinite(number)
+            and (self.minimum is None or number >= self.minimum)
+            and (self.above is None or number > self.above)
+            and (self.maximum is None or number <= self.maximum)
+            and (self.below is None or number < self.below)
+        )
+
+    def schema(self) -> JsonSchema:
+        bounds = {
+            "minimum": self.minimum,
+            "exclusiveMinimum": self.above,
+            "maximum": self.maximum,
+            "exclusiveMaximum": self.below,
+        }
+        return {"type": "number"} | {key: bound for key, bound in bounds.items() if bound is not None}
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number of at least `minimum`, and at most `maximum`."""
+
+    filler: ClassVar[int] = 0
+    minimum: int = 0
+    maximum: int | None = None
+
+    @property
+    def expected(self) -> str:
+        return f"a whole number of at least {self.minimum}" + (f", at most {self.maximum}" if self.maximum else "")
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, bool) or not isinstance(value, int) or value < self.minimum:
+            return _refuse(self, value, at, faults)
+        if self.maximum is not None and value > self.maximum:
+            return _refuse(self, value, at, faults)
+        return value
+
+    def schema(self) -> JsonSchema:
+        most = {} if self.maximum is None else {"maximum": self.maximum}
+        return {"type": "integer", "minimum": self.minimum} | most
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or false."""
+
+    filler: ClassVar[bool] = False
+    expected: ClassVar[str] = "true or false"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        return value if isinstance(value, bool) else _refuse(self, value, at, faults)
+
+    def schema(self) -> JsonSchema:
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text of one line that is not empty; a whole number is read as its decimal text (ids, types, skills)."""
+
+    filler: ClassVar[str] = "?"
+    expected: ClassVar[str] = "a text of one line"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 10**300:
+            return str(value)
+        if isinstance(value, str) and value.strip() and value.isprintable():
+            return value
+        hint = "; in quotes it is one" if isinstance(value, int | float) else ""
+        faults.append(Fault(at, shown(value), self.expected + hint))
+        return INVALID
+
+    def schema(self) -> JsonSchema:
+        return {"anyOf": [{"type": "string", "minLength": 1}, {"type": "integer"}]}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words."""
+
+    words: Collection[str]
+
+    @property
+    def filler(self) -> str:
+        return next(iter(self.words))
+
+    @property
+    def expected(self) -> str:
+        return " or ".join(self.words)
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, str) and value in self.words:
+            return value
+        hint = did_you_mean(value, self.words) if isinstance(value, str) else ""
+        faults.append(Fault(at, shown(value), self.expected + hint))
+        return INVALID
+
+    def schema(self) -> JsonSchema:
+        return {"enum": list(self.words)}
+
+
+@dataclass(frozen=True)
+class Position:
+    """`[x, y]` or `[x, y, z]` in metres, map frame; with `planar` only `[x, y]`. The third may be a yaw in radians."""
+
+    filler: ClassVar[tuple[float, ...]] = ()  # neither flat nor spatial
+    planar: bool = False
+    third: Literal["z", "yaw"] = "z"
+
+    @property
+    def expected(self) -> str:
+        if self.planar:
+            return "[x, y] in metres"
+        return f"[x, y] or [x, y, {self.third}] in metres{' and radians' if self.third == 'yaw' else ''}"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        lengths = (2,) if self.planar else (2, 3)
+        value = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
+        if isinstance(value, str) or not isinstance(value, Sequence) or len(value) not in lengths:
+            return _refuse(self, value, at, faults)
+        numbers = [Number().read(number, (*at, k), faults) for k, number in enumerate(value)]
+        return INVALID if INVALID in numbers else tuple(numbers)
+
+    def schema(self) -> JsonSchema:
+        return {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2 if self.planar else 3}
+
+
+@dataclass(frozen=True)
+class Many:
+    """A list of values of one kind."""
+
+    filler: ClassVar[tuple[()]] = ()
+    kind: Kind
+    minimum: int = 0
+
+    @property
+    def expected(self) -> str:
+        some = f" of at least {self.minimum}" if self.minimum else ""
+        return f"a list{some}, each {self.kind.expected}"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, str) or not isinstance(value, Sequence) or len(value) < self.minimum:
+            return _refuse(self, value, at, faults)
+        items = [self.kind.read(item, (*at, k), faults) for k, item in enumerate(value)]
+        return INVALID if any(item is INVALID for item in items) else tuple(items)
+
+    def schema(self) -> JsonSchema:
+        least = {"minItems": self.minimum} if self.minimum else {}
+        return {"type": "array", "items": self.kind.schema()} | least
+
+
+@dataclass(frozen=True)
+class Table:
+    """A mapping from names to values of one kind."""
+
+    kind: Kind
+    of: str
+    filler: ClassVar[None] = None
+
+    @property
+    def expected(self) -> str:
+        return self.of
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if not isinstance(value, Mapping) or not value:
+            return _refuse(self, value, at, faults)
+        names = [Text().read(key, (*at, str(key)), faults) for key in value]
+        items = [self.kind.read(item, (*at, str(key)), faults) for key, item in value.items()]
+        wrong = any(part is INVALID for part in (*names, *items))
+        return INVALID if wrong else dict(zip(names, items, strict=True))
+
+    def schema(self) -> JsonSchema:
+        return {"type": "object", "additionalProperties": self.kind.schema(), "minProperties": 1}
+
+
+@dataclass(frozen=True)
+class Record:
+    """A mapping with known keys: one of the model's dataclasses.
+
+    Always reads to an instance. Where a value is wrong, a filler stands in its place, so that the rest can still be
+    checked; whoever reads looks at `faults` before using the instance. INVALID in the data was refused before.
+    """
+
+    of: type[Any]
+    what: str
+    filler: ClassVar[None] = None
+
+    @property
+    def expected(self) -> str:
+        keys = [f.name for f in specified(self.of) if required(f)]
+        if keys:
+            return f"{self.what} with the keys {', '.join(keys)}"
+        return f"{self.what} with some of the keys {', '.join(f.name for f in specified(self.of))}"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, self.of):
+            return value
+        if not isinstance(value, Mapping):
+            _refuse(self, value, at, faults)
+            return self._instance({})
+        before = len(faults)
+        known = {f.name: f for f in specified(self.of)}
+        faults.extend(_unknown_key(str(key), item, at, known) for key, item in value.items() if key not in known)
+        values: dict[str, Any] = {}
+        for name, f in known.items():
+            item = value.get(name, INVALID)
+            if name in value and not (item is None and f.default is None):
+                values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
+            elif required(f):
+                faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
+        if len(faults) == before:
+            faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
+        return self._instance(values)
+
+    def _instance(self, values: Mapping[str, Any]) -> Any:
+        """An instance made without checks: they have just been made, and all faults are on the list."""
+        instance = object.__new__(self.of)
+        for f in fields(self.of):
+            value = values.get(f.name, INVALID)
+            if value is INVALID:
+                value = f.metadata["kind"].filler if required(f) else _default(f)
+            object.__setattr__(instance, f.name, value)
+        return instance
+
+    def schema(self) -> JsonSchema:
+        own = specified(self.of)
+        properties = {f.name: _schema(f) | _described(f) for f in own}
+        need = [f.name for f in own if required(f) and "instead" not in f.metadata]
+        either: list[JsonSchema] = []
+        for f in own:
+            if "instead" in f.metadata:
+                key, kind, doc = f.metadata["instead"]
+                properties[key] = kind.schema() | {"description": doc}
+                either += [{"required": [f.name]}, {"required": [key]}]
+        extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
+        choice: JsonSchema = {"oneOf": either} if either else {}
+        whole = {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
+        return whole | choice | extra
+
+
+def _schema(f: Field[Any]) -> JsonSchema:
+    """A key whose default is None may also stand without a value."""
+    own: JsonSchema = f.metadata["kind"].schema()
+    return {"anyOf": [own, {"type": "null"}]} if f.default is None else own
+
+
+def _default(f: Field[Any]) -> Any:
+    return f.default if f.default_factory is MISSING else f.default_factory()
+
+
+def _described(f: Field[Any]) -> JsonSchema:
+    shown_default = {"default": f.default} if isinstance(f.default, str | int | float) else {}
+    return {"description": f.metadata["doc"]} | shown_default
+
+
+def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[Any]]) -> Fault:
+    if key in RESERVED_NAMES:
+        return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
+    if key == "<<":
+        return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
+    hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
+    return Fault((*at, key), "unknown key", f"a known key{hint}")
+
+
+def spec(kind: Kind, doc: str, *, default: Any = MISSING, instead: tuple[str, Kind, str] | None = None) -> Any:
+    """A dataclass field whose values are of `kind`; without `default` it is required.
+
+    `instead` is a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
+    """
+    metadata: dict[str, Any] = {"kind": kind, "doc": doc} | ({"instead": instead} if instead else {})
+    return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
+
+
+def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
+    """The fields of a model class that a file may hold, in order."""
+    return tuple(f for f in fields(cls) if "kind" in f.metadata)
+
+
+def required(f: Field[Any]) -> bool:
+    """Whether a file must hold the field."""
+    return f.default is MISSING and f.default_factory is MISSING

@@ -1,0 +1,250 @@
+"""The base of an epoch: who owns what when its auction begins, by what all members declared.
+
+A pure function of the declarations: members that have the same ones find the same base, and drop the same claims.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from graphlib import CycleError, TopologicalSorter
+from hashlib import blake2b
+
+from muster.negotiation.knowledge import holders, in_order
+from muster.negotiation.messages import Claim, Declaration, Fact
+from muster.negotiation.new_tasks import task_of
+
+Routes = dict[str, list[Claim]]
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What a base must hold.
+
+    Parameters
+    ----------
+    robots, tasks
+        all ids, in tie order: robots and tasks that come first win ties.
+    prerequisites
+        of each task; empty where they are ignored.
+    once
+        tasks that must not be begun twice, whatever happens to the network.
+    linked
+        whether tasks that are added may wait for others.
+    """
+
+    robots: Mapping[str, int]
+    tasks: Mapping[str, int]
+    prerequisites: Mapping[str, Sequence[str]]
+    once: frozenset[str] = frozenset()
+    linked: bool = True
+
+    @property
+    def majority(self) -> int:
+        """Any two groups of so many robots of the mission have one in common."""
+        return len(self.robots) // 2 + 1
+
+    def with_added(self, added: Sequence[Fact]) -> Rules:
+        """The rules when these tasks belong to the mission; those that are elsewhere now do anyway."""
+        tasks = [task_of(fact.content) for fact in added if fact.task not in self.tasks]
+        if not tasks:
+            return self
+        return replace(
+            self,
+            tasks={**self.tasks, **{task.id: k for k, task in enumerate(tasks, len(self.tasks))}},
+            prerequisites={**self.prerequisites, **{t.id: t.prerequisites if self.linked else () for t in tasks}},
+            once=self.once | {task.id for task in tasks if task.across_partition == "at-most-once"},
+        )
+
+
+@dataclass(frozen=True)
+class Base:
+    """Who owns what.
+
+    Parameters
+    ----------
+    routes
+        claims of each member, in the order of its route; what it has begun stands first.
+    facts
+        all that any member knows for good.
+    done, added
+        of them what was done, in order, and those by which there are more tasks, in tie order, or tasks are elsewhere.
+    closed
+        tasks that are not for sale, whoever owns them.
+    held
+        tasks that nobody may begin on this base: those that nobody may begin twice, if too few robots are here to know,
+        and what waits for them.
+    dropped
+        (robot, task) that were declared, and are not kept.
+    twice
+        tasks begun by several members, with these: both go on, as work under way is never broken off.
+    rounds
+        rounds seen in all.
+    digest
+        eight bytes; members whose digests are equal have the same base.
+    """
+
+    routes: Mapping[str, tuple[Claim, ...]]
+    facts: frozenset[Fact]
+    done: tuple[Fact, ...]
+    added: tuple[Fact, ...]
+    closed: frozenset[str]
+    held: frozenset[str]
+    dropped: tuple[tuple[str, str], ...]
+    twice: Mapping[str, tuple[str, ...]]
+    rounds: int
+    digest: bytes
+
+    def keeping(self, kept: Mapping[str, Sequence[str]]) -> Base:
+        """The base in which of what waits to be begun only this is kept: the rest does not fit any more."""
+        lost = {
+            (robot, claim.task)
+            for robot, claims in self.routes.items()
+            for claim in claims
+            if not claim.begun and claim.task not in kept.get(robot, ())
+        }
+        if not lost:
+            return self
+        routes = {r: tuple(c for c in claims if (r, c.task) not in lost) for r, claims in self.routes.items()}
+        return replace(self, routes=routes, dropped=(*self.dropped, *sorted(lost)))
+
+
+def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
+    """The base that follows from the declarations of all members, in any order.
+
+    A task that several claim stays with the one that has begun it; if nobody has, with the lowest price, then with the
+    first in tie order. Who claims one without knowing that it is elsewhere now loses it, unless it has begun it. What
+    waits for a task that nobody owns or has done is dropped, and of routes that wait for each other for ever the tasks
+    that come last in tie order; work that was begun never.
+    """
+    declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
+    facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
+    added = _added(facts, rules)
+    rules = rules.with_added(added)
+    known = frozenset(fact for fact in facts if fact.task in rules.tasks)  # of a task it may be heard that it was done
+    finished = tuple(fact for fact in in_order(known) if fact.done)  # before it is heard that there is such a task
+    done = {fact.task for fact in finished}
+    gone = done.union(fact.task for fact in known if fact.kind == "cancelled")
+    reserved = _reserved(declarations, known)
+    routes: Routes = {}
+    for declaration in declarations:
+        robot = declaration.robot
+        stale = {fact.task for fact in added if fact.kind == "moved" and fact not in declaration.facts}
+        kept = [c for c in declaration.route if c.task not in gone | stale and reserved.get(c.task, robot) == robot]
+        routes[robot] = [*(c for c in declaration.route if c.begun), *(c for c in kept if not c.begun)]
+    twice = _one_owner_each(routes, rules)
+    _drop_orphans(routes, done, rules)
+    while (last := _last_of_a_cycle(routes, rules)) is not None:
+        for claims in routes.values():
+            claims[:] = [c for c in claims if c.begun or c.task != last]
+        _drop_orphans(routes, done, rules)
+    still = {robot: {claim.task for claim in claims} for robot, claims in routes.items()}
+    few = sum(declaration.knows for declaration in declarations) < rules.majority
+    return Base(
+        routes={robot: tuple(claims) for robot, claims in routes.items()},
+        facts=facts,
+        done=finished,
+        added=added,
+        closed=frozenset(gone.union(reserved, rules.once if few else ())),
+        held=_with_followers(rules.once - done, routes, rules) if few else frozenset(),
+        dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),
+        twice=twice,
+        rounds=max(declaration.rounds for declaration in declarations),
+        digest=_digest(declarations),
+    )
+
+
+def _added(facts: frozenset[Fact], rules: Rules) -> tuple[Fact, ...]:
+    """The facts by which there are more tasks, of several of one name the first, or they are elsewhere, the last."""
+    first: dict[str, Fact] = {}
+    last: dict[str, Fact] = {}
+    for fact in in_order(facts):
+        if fact.kind == "added" and fact.task not in rules.tasks:
+            first.setdefault(fact.task, fact)
+        elif fact.kind == "moved" and (fact.task in rules.tasks or fact.task in first):
+            last[fact.task] = fact
+    return (*first.values(), *last.values())
+
+
+def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:
+    """By task that a robot may have begun for good that robot; nobody (the empty name) where that is not clear.
+
+    Of several it is clear if all are here to tell: then it is the one that has begun, or else the first to say so.
+    """
+    claims = {(d.robot, claim.task): claim for d in declarations for claim in d.route}
+    reserved = {}
+    for task, robots in holders(facts).items():
+        claimed = [claims.get((robot, task)) for robot in robots]
+        if len(robots) > 1 and None in claimed:
+            reserved[task] = ""
+        else:
+            begun = [robot for robot, claim in zip(robots, claimed, strict=True) if claim is not None and claim.begun]
+            reserved[task] = (begun or robots)[0]
+    return reserved
+
+
+def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
+    """Leave each task to one robot, or to all that have begun it; these tasks, and their robots."""
+    owners: dict[str, list[tuple[bool, float, int, str]]] = {}
+    for robot, claims in routes.items():
+        for claim in claims:
+            owners.setdefault(claim.task, []).append((not claim.begun, claim.price, rules.robots[robot], robot))
+    twice = {}
+    for task, claimants in owners.items():
+        if len(claimants) > 1:
+            begun = tuple(robot for waits, _, _, robot in sorted(claimants) if not waits)
+            keep = begun or (min(claimants)[3],)
+            if len(begun) > 1:
+                twice[task] = begun
+            for *_, robot in claimants:
+                if robot not in keep:
+                    routes[robot][:] = [claim for claim in routes[robot] if claim.task != task]
+    return twice
+
+
+def _drop_orphans(routes: Routes, done: set[str], rules: Rules) -> None:
+    """Drop tasks that wait for one that nobody owns or has done."""
+    while True:
+        there = done.union(claim.task for claims in routes.values() for claim in claims)
+        orphans = {
+            claim.task
+            for claims in routes.values()
+            for claim in claims
+            if not claim.begun and not there.issuperset(rules.prerequisites.get(claim.task, ()))
+        }
+        if not orphans:
+            return
+        for claims in routes.values():
+            claims[:] = [claim for claim in claims if claim.begun or claim.task not in orphans]
+
+
+def _last_of_a_cycle(routes: Routes, rules: Rules) -> str | None:
+    """A task that waits for itself, by routes and prerequisites; None if there is none that has not been begun."""
+    graph: dict[str, set[str]] = {}
+    begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
+    for claims in routes.values():
+        for k, claim in enumerate(claims):
+            waits = graph.setdefault(claim.task, set())
+            waits.update(rules.prerequisites.get(claim.task, ()))
+            waits.update(other.task for other in claims[max(k - 1, 0) : k])
+    for task in begun:
+        graph[task] = set()
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        cycle: list[str] = error.args[1]
+        return max((task for task in cycle if task not in begun), key=lambda task: rules.tasks[task])
+    return None
+
+
+def _with_followers(tasks: frozenset[str], routes: Routes, rules: Rules) -> frozenset[str]:
+    """These tasks and those that wait for them, but for what has been begun."""
+    begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
+    found = tasks - begun
+    while more := {t for t, needs in rules.prerequisites.items() if found.intersection(needs)} - begun - found:
+        found |= more
+    return found
+
+
+def _digest(declarations: Sequence[Declaration]) -> bytes:
+    return blake2b(repr([replace(d, facts=in_order(d.facts)) for d in declarations]).encode(), digest_size=8).digest()

@@ -1,0 +1,64 @@
+"""Tasks that appear or move while a mission goes on: as bytes that all robots keep, and as a part of their problem."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+
+from muster.allocation.problem import Problem
+from muster.mission.errors import MissionError
+from muster.mission.model import Task, findings
+from muster.mission.source import IN_PYTHON
+from muster.mission.value_types import Fault, Record, shown
+from muster.mission.yaml_writer import plain
+
+
+def content_of(task: Task) -> bytes:
+    """The task as bytes; equal tasks, equal bytes."""
+    return json.dumps(plain(task), sort_keys=True, separators=(",", ":")).encode()
+
+
+@cache
+def task_of(content: bytes) -> Task:
+    """The task of these bytes.
+
+    Raises
+    ------
+    MissionError
+        if they are no task.
+    """
+    faults: list[Fault] = []
+    try:
+        data = json.loads(content)
+    except ValueError:
+        raise MissionError(findings([Fault((), shown(content), "a task as JSON")], IN_PYTHON)) from None
+    task = Record(Task, "a task").read(data, (), faults)
+    if faults:
+        raise MissionError(findings(faults, IN_PYTHON))
+    assert isinstance(task, Task)
+    return task
+
+
+def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:
+    """The problem with more tasks, behind all that it has: ties go to those that were there before.
+
+    A task of a name that there is takes that one's place: it is elsewhere now.
+
+    Raises
+    ------
+    MissionError
+        if a task does not fit into the mission.
+    """
+    if not contents:
+        return problem
+    new = {task.id: task for task in map(task_of, contents)}
+
+    def changed(tasks: Sequence[Task]) -> tuple[Task, ...]:
+        return tuple({**{task.id: task for task in tasks}, **new}.values())
+
+    compiled = Problem.compile(
+        replace(problem.mission, tasks=changed(problem.mission.tasks)), problem.objective, problem.ignored
+    )
+    return replace(compiled, tasks=changed(problem.tasks), mapped=problem.mapped)

@@ -1,0 +1,102 @@
+"""What takes a robot into an auction, its negotiator, and what comes out of it: the plan as the robot sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from muster.allocation.allocator import Outcome, finished_plan
+from muster.allocation.auction import AUCTION
+from muster.allocation.auction_terms import Terms
+from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
+from muster.allocation.consensus_bundle import Parameters as BundleParameters
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.mission.auction_book import Book
+from muster.mission.plan import Plan
+from muster.negotiation.bundles import BundleValuer
+from muster.negotiation.effects import Memory
+from muster.negotiation.epoch_base import Rules
+from muster.negotiation.members import Patience
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.new_tasks import with_tasks
+from muster.negotiation.robot_book import book_of_bundles, book_of_view
+from muster.negotiation.robot_view import View, view_of
+from muster.negotiation.valuation import AuctionValuer, Valuer
+
+
+def rules_of(problem: Problem) -> Rules:
+    """What the robots' agreement must hold."""
+    linked = problem.holds("prerequisites")
+    return Rules(
+        robots=problem.robot_index,
+        tasks=problem.task_index,
+        prerequisites={task.id: task.prerequisites if linked else () for task in problem.tasks},
+        once=frozenset(task.id for task in problem.tasks if task.across_partition == "at-most-once"),
+        linked=linked,
+    )
+
+
+def negotiator_of(
+    problem: Problem,
+    params: Any,
+    robot: str,
+    *,
+    incarnation: int,
+    valuer: Callable[[Problem, Any, str], Valuer] = AuctionValuer,
+    patience: Patience = Patience(),  # noqa: B008 - frozen
+    remembered: Memory | None = None,
+    forgot: bool = False,
+    absent: Collection[str] = (),
+) -> Negotiator:
+    """A robot that takes part, in the auction by default.
+
+    `params` are those of the `valuer`; `incarnation` is above all that it had before; `remembered`, `forgot` and
+    `absent` are as the negotiator has them.
+    """
+    return Negotiator(
+        robot=robot,
+        rules=rules_of(problem),
+        valuer=valuer(problem, params, robot),
+        patience=patience,
+        incarnation=incarnation,
+        remembered=remembered,
+        forgot=forgot,
+        absent=absent,
+    )
+
+
+bundler_of = partial(negotiator_of, valuer=BundleValuer)
+"""A robot that takes part in CBBA."""
+
+
+def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
+    """The plan as a robot sees it, with its book.
+
+    Where nothing failed it is, seconds aside, that of the auction in one process.
+    """
+    valuer = negotiator.valuer
+    assert isinstance(valuer, AuctionValuer)
+    return plan_of_view(problem, valuer.terms, view_of(negotiator))
+
+
+def plan_of_view(problem: Problem, terms: Terms, view: View, elapsed_s: float | None = None) -> Plan:
+    """The plan in a view; `elapsed_s` is how long the robots took to agree, seconds."""
+    return _plan(problem, view, book_of_view(problem, terms, view), AUCTION.name, elapsed_s)
+
+
+def plan_of_bundles(problem: Problem, params: BundleParameters, view: View, elapsed_s: float | None = None) -> Plan:
+    """The same of CBBA; where nothing failed it is that of CBBA in one process on a complete network."""
+    return _plan(problem, view, book_of_bundles(problem, params, view), CONSENSUS_BUNDLE.name, elapsed_s)
+
+
+def _plan(problem: Problem, view: View, book: Book, allocator: str, elapsed_s: float | None) -> Plan:
+    stop, problem = Stop(), with_tasks(problem, view.added)
+    routes = [[problem.task_index[task] for task in view.routes.get(robot.id, ())] for robot in problem.robots]
+    stop.improved(*problem.value(routes))
+    plan = finished_plan(problem, stop, Outcome(routes, book), allocator=allocator, seed=0)
+    if elapsed_s is None:
+        return plan
+    return replace(plan, elapsed_s=elapsed_s, history=tuple((elapsed_s, value) for _, value in plan.history))

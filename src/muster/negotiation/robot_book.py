@@ -1,0 +1,100 @@
+"""The book of an auction without a centre, from one robot's view of it.
+
+Robots publish what the winner rule needs, no more; but what each would bid follows from the routes that all know. So
+the auctions are held again, and every bid is told as the book of the auction in one process tells it. (A bid that a
+robot did not make, since it had given the task back, is told too: others cannot know.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from muster.allocation.auction_terms import Terms
+from muster.allocation.auctioneer import Auctioneer
+from muster.allocation.book_keeper import bids_of_round
+from muster.allocation.consensus import neighbours, score
+from muster.allocation.consensus_bundle import Parameters
+from muster.allocation.problem import Problem
+from muster.allocation.winners import Sale
+from muster.mission.auction_book import Award, Book, TakeBid
+from muster.negotiation.bundles import BundleValuer
+from muster.negotiation.messages import Claim
+from muster.negotiation.robot_view import Held, View
+from muster.negotiation.valuation import AuctionValuer
+
+OnSale = Callable[[Problem, Auctioneer, Sale, Sequence[int]], None]
+"""Is told of a sale before the task has its owner: of which problem, and which robots could bid."""
+
+
+def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
+    """The book: awards of all that the view's robots own, and the bids of all rounds that the robot has seen.
+
+    Of a task that was won where the robot could not see it, the book knows the price alone. `messages` is None where
+    the whole team took part throughout, so that every robot has bid for all that it could do; else it tells how many
+    the robot has sent.
+    """
+    auctions = view.auctions
+
+    def recite(take: TakeBid) -> None:
+        def tell(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+            for bid in bids_of_round(problem, auctioneer, sale, members):
+                take(bid)
+
+        _hold_again(problem, terms, auctions, tell)
+
+    whole = all(len(held.members) == len(problem.robots) for held in auctions)
+    awards = tuple(_awards(problem, terms, auctions, view.claims))
+    return Book(rounds=view.rounds, messages=None if whole else view.sent, awards=awards, recite=recite)
+
+
+def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
+    """Ask all robots for their bids, and tell of them round by round."""
+    valuer = AuctionValuer(problem, terms, problem.robots[0].id)
+    for held in auctions:
+        valuer.begin(held.opening)
+        members = [problem.robot_index[robot] for robot in held.members]
+        for number, sold in enumerate(held.sales, held.rounds + 1):
+            valuer.auctioneer.round = number
+            on_sale(valuer.problem, valuer.auctioneer, valuer.sale_of(sold), members)
+            valuer.award(sold)
+
+
+def _awards(
+    problem: Problem, terms: Terms, auctions: Sequence[Held], claims: Mapping[str, Sequence[Claim]]
+) -> list[Award]:
+    """How each task came to the robot that owns it, in the order of rounds."""
+    seen: dict[tuple[str, str, int], Award] = {}
+
+    def note(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
+        bids = auctioneer.bids_for(sale.task)
+        bidders = [i for i in members if np.isfinite(bids[i])]
+        named = [(problem.robots[i].id, float(bids[i])) for i in sorted(bidders, key=lambda i: bids[i])]
+        robot, task = problem.robots[sale.robot].id, problem.tasks[sale.task].id
+        seen[robot, task, auctioneer.round] = Award.of(auctioneer.round, task, robot, sale.price, named)
+
+    _hold_again(problem, terms, auctions, note)
+    awards = [
+        seen.get((robot, c.task, c.round)) or Award.of(c.round, c.task, robot, c.price, [(robot, c.price)])
+        for robot, owned in claims.items()
+        for c in owned
+    ]
+    return sorted(awards, key=lambda award: award.round)
+
+
+def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:
+    """The book of CBBA: that of the last epoch, held again if the robot heard it whole, else what was won alone."""
+    held = view.auctions[-1]
+    if not held.whole:
+        owned = [(c.round, c.task, robot, score(c.price)) for robot, claims in view.claims.items() for c in claims]
+        awards = tuple(Award.of(*won, [(won[2], won[3])]) for won in sorted(owned))
+        return Book(rounds=view.rounds, messages=view.sent, awards=awards)
+    watcher = BundleValuer(problem, params, held.members[0])
+    watcher.begin(held.opening)
+    for bids in held.published:
+        watcher.bids()
+        for sold in watcher.resolve(bids).sales:
+            watcher.award(sold)
+    routes = [[problem.task_index[task] for task in watcher.route(robot.id)] for robot in problem.robots]
+    return watcher.ledger.book(problem, routes, neighbours("complete", len(problem.robots)))

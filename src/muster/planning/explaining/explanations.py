@@ -1,0 +1,150 @@
+"""Why tasks are left out of a plan, and why one is done by this robot and not by another: as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from muster.allocation.allocator import routes_of
+from muster.allocation.explanations import Alternative, alternatives, unassigned
+from muster.allocation.problem import Problem
+from muster.allocation.remedies import remedies, smallest_as_is
+from muster.allocation.remedy import Remedy
+from muster.mission.auction_book import Award
+from muster.mission.errors import Finding, ParameterError, PlanError
+from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
+from muster.mission.plan import Plan, Unassigned
+from muster.verification import RouteFigures, Verdict, verify
+
+_MOST_SHORT = 50  # tasks left out whose smallest change is looked for when none is asked for by name
+_IN_KNOTS = ("unknown-robot", "unknown-task", "repeated-robot", "repeated-task", "deadlock", "prerequisite")
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """The tasks that a plan leaves out, and for the first of them the smallest change with which each could be done."""
+
+    problem: Problem
+    unassigned: tuple[Unassigned, ...]
+    changes: Mapping[str, Remedy | None]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what `muster explain --format json` prints."""
+        smallest = [{"task": task, "remedy": _plain(remedy)} for task, remedy in self.changes.items()]
+        return {"unassigned": [asdict(item) for item in self.unassigned], "smallest": smallest}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneTask:
+    """What there is to say of one task of a plan.
+
+    Parameters
+    ----------
+    robot
+        who does it; None: it is left out.
+    alternatives
+        for each robot what giving it the task would do.
+    remedies
+        for each robot what it would need.
+    award
+        how it was won, of an auction's plan.
+    """
+
+    problem: Problem
+    plan: Plan
+    verdict: Verdict
+    task: str
+    robot: str | None
+    alternatives: tuple[Alternative, ...]
+    remedies: tuple[Remedy, ...]
+    award: Award | None
+
+    @property
+    def objective(self) -> float | None:
+        return self.verdict.value()
+
+    @property
+    def route(self) -> RouteFigures | None:
+        """The route in which it is done."""
+        return next((route for route in self.verdict.routes if route.robot == self.robot), None)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what `muster explain --task T --format json` prints."""
+        data = {
+            "task": self.task,
+            "robot": self.robot,
+            "objective": self.objective,
+            "alternatives": [asdict(other) for other in self.alternatives],
+            "remedies": [_plain(remedy) for remedy in self.remedies],
+        }
+        return data if self.award is None else {**data, "award": self.award.as_dict()}
+
+
+def require_fit(mission: Mission, plan: Plan, file: str) -> None:
+    """Explanations need a plan of this mission without knots; anything else is for `verify` to say.
+
+    Raises
+    ------
+    PlanError
+        if it is none; `file` names it.
+    """
+    wrong = [v for v in verify(mission, plan).violations if v.kind in _IN_KNOTS]
+    if wrong:
+        expected = "a plan of this mission (`muster verify` says more)"
+        raise PlanError(
+            [
+                Finding(file, None, v.kind, ", ".join(filter(None, (v.task or v.robot, v.detail))), expected)
+                for v in wrong
+            ]
+        )
+
+
+def left_out(mission: Mission, plan: Plan) -> LeftOut:
+    """Find out why tasks are left out of a plan that fits."""
+    problem = Problem.compile(mission, plan.objective, plan.ignored)
+    routes = routes_of(problem, plan)
+    missing = unassigned(problem, routes)
+    changes = {
+        item.task: smallest_as_is(problem, routes, problem.task_index[item.task], admits)
+        for item in missing[:_MOST_SHORT]
+    }
+    return LeftOut(problem, missing, changes)
+
+
+def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
+    """Find out why a task is done by this robot and not by another, or left out, of a plan that fits.
+
+    Raises
+    ------
+    ParameterError
+        if the mission has no such task.
+    """
+    problem = Problem.compile(mission, plan.objective, plan.ignored)
+    if task not in problem.task_index:
+        hint = did_you_mean(task, problem.task_index)
+        raise ParameterError(f"--task: {task}; expected the id of a task of this mission{hint}")
+    routes, j = routes_of(problem, plan), problem.task_index[task]
+    found = alternatives(problem, routes, j)
+    changes = remedies(problem, routes, j, admits)
+    verdict = verify(mission, plan)
+    return OneTask(
+        problem=problem,
+        plan=plan,
+        verdict=verdict,
+        task=task,
+        robot=next((route.robot for route in verdict.routes if task in route.tasks), None),
+        alternatives=found,
+        remedies=changes,
+        award=None if plan.book is None else plan.book.award_of(task),
+    )
+
+
+def admits(mission: Mission, plan: Plan) -> bool:
+    """Whether nothing is wrong with a plan: the `Judge` of searches."""
+    return verify(mission, plan).valid
+
+
+def _plain(remedy: Remedy | None) -> dict[str, Any] | None:
+    return None if remedy is None else {**asdict(remedy), "kinds": remedy.kinds}

@@ -1,0 +1,76 @@
+"""Which tasks of a mission can never be done, alone or together: as data, and back from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from muster.allocation.conflicts import Conflict, Together, together
+from muster.allocation.feasibility import impossible
+from muster.allocation.problem import Problem
+from muster.mission.model import Mission
+from muster.mission.plan import Reason, Unassigned
+from muster.planning.explaining.explanations import admits
+
+
+@dataclass(frozen=True)
+class Possible:
+    """What can be done of a mission.
+
+    Parameters
+    ----------
+    impossible
+        tasks that no robot can ever do.
+    together
+        whether one plan can do all others.
+    """
+
+    impossible: tuple[Unassigned, ...] = ()
+    together: Together = Together()
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what `muster check --format json` prints of it."""
+        conflict = self.together.conflict
+        return {
+            "impossible": [asdict(item) for item in self.impossible],
+            "conflict": None if conflict is None else asdict(conflict),
+            "unknown": self.together.unknown,
+        }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Possible:
+        """Read what `as_dict` has written, also after it was JSON."""
+        lost = (
+            Unassigned(item["task"], tuple(Reason(**reason) for reason in item["reasons"]))
+            for item in data["impossible"]
+        )
+        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]))
+
+
+def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float | None = None) -> Possible:
+    """Find the tasks of a mission that can never be done.
+
+    Parameters
+    ----------
+    ignored
+        rules that do not hold.
+    time_limit
+        seconds for finding out whether all tasks can be done in one plan; None: that stays unknown.
+
+    Raises
+    ------
+    MissionError, NotSupportedError
+        if the mission cannot be planned at all, or its map is wrong.
+    """
+    problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
+    if time_limit is None:
+        return Possible(impossible(problem), Together(unknown=True))
+    return Possible(impossible(problem), together(problem, admits, time_limit=time_limit))
+
+
+def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:
+    if data is None:
+        return None
+    named = {name: tuple(data[name]) for name in ("tasks", "prerequisites", "robots")}
+    return Conflict(**{**data, **named})

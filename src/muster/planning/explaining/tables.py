@@ -1,0 +1,78 @@
+"""An explanation as lines and tables, for a terminal: as `muster explain` prints it, here or of a server."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from muster.allocation.problem import Problem
+from muster.allocation.remedy import Remedy
+from muster.planning.explaining.explanations import LeftOut, OneTask
+from muster.planning.explaining.phrases import award_text, lines, place, reserve, short, smallest_change, what_then
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells under the names of their columns."""
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+Part = str | Table
+
+
+def tables_on_left_out(found: LeftOut) -> list[Part]:
+    """Which tasks are left out and why, and the smallest changes with which they could be done."""
+    left_out, changes = found.unassigned, found.changes
+    if not left_out:
+        return ["no task is left out; --task T explains a task that is done"]
+    title = "1 task left out" if len(left_out) == 1 else f"{len(left_out)} tasks left out"
+    rows = tuple((item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons)
+    parts: list[Part] = [Table(title, ("task", "robot", "reason", "detail"), rows), _smallest(found.problem, changes)]
+    if len(left_out) > len(changes):
+        parts.append(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
+    return parts
+
+
+def tables_on_task(found: OneTask) -> list[Part]:
+    """Who does the task, what it would be with others, and what each of them would need."""
+    parts: list[Part] = [*place(found)]
+    if found.plan.book is not None and found.award is not None:
+        parts.append(award_text(found.problem, found.plan.book, found.award))
+    parts += [_alternatives(found), _remedies(found)]
+    if found.robot is None and (change := smallest_change(found.problem, found.remedies)):
+        parts.append(change)
+    if note := reserve(found.problem):
+        parts.append(note)
+    return parts
+
+
+def _alternatives(found: OneTask) -> Table:
+    rows = tuple(
+        (_named(found, other.robot), "yes", what_then(found, other))
+        if other.reason is None
+        else (_named(found, other.robot), "no", f"{other.reason.reason}: {other.reason.detail}")
+        for other in found.alternatives
+    )
+    return Table("each robot, the rest of the plan as it is", ("robot", "could", "why, and what then"), rows)
+
+
+def _remedies(found: OneTask) -> Table:
+    rows = tuple((_named(found, r.robot), "\n".join(lines(found.problem, r))) for r in found.remedies)
+    return Table(f"to do {found.task} beside all else that the plan does", ("robot", "would need"), rows)
+
+
+def _smallest(problem: Problem, changes: Mapping[str, Remedy | None]) -> Table:
+    rows = tuple(
+        (task, "-", "none was found; --task T looks further")
+        if remedy is None
+        else (task, remedy.robot, short(problem, remedy))
+        for task, remedy in changes.items()
+    )
+    return Table("smallest changes, the rest as it is", ("task", "robot", "change"), rows)
+
+
+def _named(found: OneTask, robot: str) -> str:
+    return f"{robot}  (now)" if robot == found.robot else robot

@@ -1,0 +1,81 @@
+"""Reads a mission from whatever file or name a user gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from muster.library import mission_names, mission_path
+from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
+
+
+def load(
+    path_or_name: str | Path,
+    *,
+    robots: str | Path | None = None,
+    suitability: str | Path | None = None,
+    salesmen: int | None = None,
+    depot: str = "1",
+) -> Mission:
+    """Read a mission: a YAML file, a task-list CSV, a TSPLIB file, QGroundControl plans, or a shipped name.
+
+    Parameters
+    ----------
+    path_or_name
+        a file, a folder of QGroundControl `.plan` files, or one of `muster missions`; a file of that name comes first.
+    robots, suitability
+        the CSV files that go with a task-list CSV.
+    salesmen, depot
+        how many robots, and the number of the node where they start and end, for TSPLIB.
+
+    Raises
+    ------
+    MissionError
+        with everything that is wrong: file, line, field, value, what was expected.
+    ParameterError
+        if a parameter is missing, or does not go with this kind of file.
+    """
+    path = _found(path_or_name)
+    suffix = path.suffix.lower()
+    _check_flags(path_or_name, suffix, robots=robots, suitability=suitability, salesmen=salesmen)
+    if suffix == ".csv":
+        from muster.mission.thesis_csv import read_csv
+
+        return read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability))
+    if suffix == ".tsp":
+        from muster.mission.tsplib import read_tsplib
+
+        return read_tsplib(path, salesmen or 0, depot)
+    if suffix == ".plan" or path.is_dir():
+        from muster.exchange.qgc_reader import read_plan_files
+
+        return read_plan_files(path)
+    from muster.mission.yaml_reader import read_yaml
+
+    return read_yaml(path)
+
+
+def _found(path_or_name: str | Path) -> Path:
+    path = Path(path_or_name)
+    shipped = mission_path(str(path_or_name))
+    named_as_file = path.suffix.lower() in (".yaml", ".yml", ".csv", ".tsp", ".plan")
+    if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
+        return path
+    if shipped is None:
+        expected = f"a file, or the name of a shipped mission{did_you_mean(str(path_or_name), mission_names())}"
+        raise MissionError([Finding(str(path_or_name), None, "", "no such file or mission", expected)])
+    return shipped
+
+
+_FLAGS = {".csv": ("robots", "suitability"), ".tsp": ("salesmen",)}
+_NEEDED_FLAGS = {".csv": "robots", ".tsp": "salesmen"}
+
+
+def _check_flags(named: str | Path, suffix: str, **given: object) -> None:
+    needed = _NEEDED_FLAGS.get(suffix)
+    if needed is not None and given[needed] is None:
+        raise ParameterError(f"{named}: --{needed} missing; expected with a {suffix} file")
+    for name, value in given.items():
+        if value is not None and name not in _FLAGS.get(suffix, ()):
+            raise ParameterError(f"{named}: --{name} given; expected no --{name} with this kind of mission")

@@ -1,0 +1,139 @@
+"""The set of a film: bodies, walls and marks at any moment of a run, drawn from one of its views."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+import cv2
+import numpy as np
+
+from muster.mission.model import Mission
+from muster.motion.grid import Floats
+from muster.report.film.captions import Picture, rgb, write_names
+from muster.report.film.footage import Footage
+from muster.report.film.ground_marks import RING_PX, TASK_PX, StageMarks, rgba
+from muster.report.film.interpolation import Moments
+from muster.report.film.view import Frame, View, view_of
+from muster.report.styles import QUIET_TEXT, robot_style
+from muster.simulation.physics.buildings import Heights
+from muster.simulation.physics.posed_scene import Tableau
+from muster.simulation.physics.rendering import Lens, Renderer
+
+OVERSAMPLED = 2
+"""Pictures are drawn so many times as large, and made smaller: edges are smooth, more cheaply than by MuJoCo."""
+WALL_PX = 13
+MOST_WALL_M = 0.5
+"""Walls without a height are shown so high: in pixels of the film, and metres at most."""
+_MOST_NAMED = 60
+_LEAST_REACH_M = 0.8
+_FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
+"""What is kept free for captions, pixels of the film."""
+
+
+class FilmSet:
+    """Goes through a run and draws it; use it in a `with`.
+
+    Parameters
+    ----------
+    footage
+        of the run.
+    width, height
+        of the pictures, in pixels.
+    """
+
+    def __init__(self, footage: Footage, width: int, height: int) -> None:
+        self.moments = Moments(footage)
+        mission = footage.mission
+        places = places_of(mission, self.moments.poses)
+        self.size = (width, height)
+        frame = Frame(width, height, **_FREE)
+        self.view: View = view_of(places, frame)
+        self._tableau = tableau_of(footage, self.view.pixel_m)
+        self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
+        self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._renderer.close()
+
+    def picture(self, now: float) -> Picture:
+        """What is seen at a moment, not before one that was drawn; without captions."""
+        self.moments.go_on(now)
+        poses = self.moments.at(now)
+        self._tableau.put(poses[:, :3], poses[:, 3:])
+        (width, height), view = self.size, self.view
+        lens = Lens(OVERSAMPLED * width, OVERSAMPLED * height, OVERSAMPLED * view.focal_px)
+        marks = self._marks.at(now, poses)
+        large = self._renderer.seen_from(view.position, view.axes, lens, marks=marks, depth_m=view.depth_m)
+        picture: Picture = cv2.resize(large, self.size, interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False)
+        name_all(picture, self.moments, poses, view.pixels, view.pixel_m, self._tableau.ground_m)
+        return picture
+
+
+def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Tableau:
+    """The world of a run, its robots in their colours, those that joined included, between low walls.
+
+    Parameters
+    ----------
+    pixel_m
+        how many metres a pixel of the picture is across.
+    """
+    stage = footage.world.replica(Heights.low(min(WALL_PX * pixel_m, MOST_WALL_M)))
+    colors = [rgba(robot_style(k).color) for k in range(len(stage.robots))]
+    return Tableau(stage, colors, smooth=smooth)
+
+
+def name_all(
+    picture: Picture,
+    moments: Moments,
+    poses: Floats,
+    pixels: Callable[[Floats], Floats],
+    pixel_m: float,
+    ground_m: float,
+) -> None:
+    """Write tasks' ids beneath them, if they are not too many, and robots' above them.
+
+    Parameters
+    ----------
+    pixels, pixel_m
+        where places are in the picture, and how many metres a pixel of it is across.
+    """
+    tasks, robots = list(moments.situation.tasks.values()), list(moments.situation.robots.values())[: len(poses)]
+    if len(tasks) <= _MOST_NAMED:
+        places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)
+        at = pixels(places)
+        at[:, 1] += TASK_PX + 13.0
+        write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
+    names = [(robot.id, rgb(robot_style(k).color)) for k, robot in enumerate(robots)]
+    rings = np.array([max(robot.radius_m / pixel_m, RING_PX) for robot in robots])
+    at = pixels(poses[: len(robots), :3])
+    at[:, 1] -= rings + 5.0
+    write_names(picture, names, at, 13, 600)
+
+
+def places_of(mission: Mission, poses: Floats) -> Floats:
+    """What has to be in a picture, (k, 3) metres: tasks, robots wherever they were, the map's boundary and zones."""
+    found = [place for task in mission.tasks for place in (task.position, task.entry, task.exit) if place is not None]
+    found += [robot.position for robot in mission.robots]
+    found += [event.new_task.position for event in mission.events if event.new_task is not None]
+    places = np.array([(*place, 0.0)[:3] for place in found]).reshape(-1, 3)
+    way = poses[:, :, :3].reshape(-1, 3)
+    whole = np.concatenate([places, way[np.isfinite(way).all(axis=1)], _corners(mission)])
+    low, high = whole[:, :2].min(axis=0), whole[:, :2].max(axis=0)
+    around = np.maximum(_LEAST_REACH_M - (high - low) / 2, 0.03 * (high - low).max())
+    (west, south), (east, north), ground = low - around, high + around, whole[:, 2].min()
+    return np.concatenate([whole, [(x, y, ground) for x in (west, east) for y in (south, north)]])
+
+
+def _corners(mission: Mission) -> Floats:
+    if mission.map is None:
+        return np.empty((0, 3))
+    from muster.motion.map_world import World
+    from muster.report.floor import map_corners
+
+    corners = map_corners(mission.map, World.of(mission).image)
+    return np.array([(*corner, 0.0)[:3] for corner in corners]).reshape(-1, 3)

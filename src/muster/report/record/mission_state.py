@@ -1,0 +1,96 @@
+"""What there is while a mission is carried out: robots, tasks with their places, and what became of them.
+
+Events change it. A change of the mission has the name and the content that it has in a mission file's `events`; the
+work of a robot has the words of the judge's schedule. An event of another kind changes nothing here.
+
+| kind | data |
+|---|---|
+| `sets_out`, `arrives`, `starts`, `ends` | `robot`, `task` |
+| `returns`, `robot_at_end` | `robot`, on the way to where its route ends |
+| `lost` | `task`, `reason` |
+| `robot_fails`, `robot_silent`, `robot_stuck`, `robot_returns` | `robot` |
+| `robot_joins` | `robot`: a robot as in a mission file, or the id of one in the mission's `events` |
+| `new_task` | `task`: a task, likewise |
+| `cancel_task` | `task` |
+| `move_task` | `task`, `position` |
+| `delay_task` | `task`, `by_s` |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Self
+
+from muster.mission.errors import MissionError, ParameterError
+from muster.mission.model import Mission, Robot, Task
+from muster.mission.value_types import Fault, Record
+
+OPEN, UNDER_WAY, DONE, LOST, CANCELLED = "open", "under way", "done", "lost", "cancelled"
+OUT = ("robot_fails", "robot_silent", "robot_stuck")
+"""Kinds of event after which a robot takes no part."""
+ALARMING = ("lost", *OUT, "contact")
+"""Kinds of event that somebody should look at."""
+_BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED}
+
+
+class Situation:
+    """Robots and tasks by id, in the order in which they came, and the state of each task."""
+
+    def __init__(self, mission: Mission) -> None:
+        self.mission = mission
+        self.robots: dict[str, Robot] = {robot.id: robot for robot in mission.robots}
+        self.tasks: dict[str, Task] = {task.id: task for task in mission.tasks}
+        self.states: dict[str, str] = dict.fromkeys(self.tasks, OPEN)
+
+    @classmethod
+    def after(cls, mission: Mission, events: Iterable[tuple[str, Mapping[str, Any]]]) -> Self:
+        """The situation after events, each a kind and its data."""
+        situation = cls(mission)
+        for kind, data in events:
+            situation.take(kind, data)
+        return situation
+
+    def take(self, kind: str, data: Mapping[str, Any]) -> str | None:
+        """Let an event change the situation; returns the id of the task or robot that is new or has changed.
+
+        Raises
+        ------
+        ParameterError
+            if a new robot or task is none.
+        """
+        if kind == "robot_joins":
+            robot: Robot = self._made(Robot, data["robot"], kind)
+            self.robots[robot.id] = robot
+            return robot.id
+        if kind == "new_task":
+            task: Task = self._made(Task, data["task"], kind)
+            self.tasks[task.id], self.states[task.id] = task, OPEN
+            return task.id
+        name = data.get("task")
+        if name not in self.tasks:
+            return None
+        if kind == "move_task":
+            place = tuple(float(value) for value in data["position"])
+            self.tasks[name] = replace(self.tasks[name], position=place, entry=None, exit=None)
+            return str(name)
+        if kind not in _BECOMES or self.states[name] == CANCELLED:
+            return None
+        self.states[name] = _BECOMES[kind]
+        return str(name)
+
+    def _made(self, model: type, data: Any, kind: str) -> Any:
+        """A robot or task from a mapping, or by the id of one that the mission's own events bring."""
+        if isinstance(data, str):
+            brought = [getattr(event, kind) for event in self.mission.events if getattr(event, kind) is not None]
+            there = self.robots if model is Robot else self.tasks
+            known = {**there, **{one.id: one for one in brought}}
+            data = known.get(data, data)
+        faults: list[Fault] = []
+        try:
+            made = Record(model, f"a {model.__name__.lower()}").read(data, (), faults)
+        except MissionError as error:
+            raise ParameterError(f"event {kind}: {error}") from None
+        if faults:
+            raise ParameterError(f"event {kind}: {faults[0].value}; expected {faults[0].expected}")
+        return made

@@ -1,0 +1,60 @@
+"""What robots did in a mission that was recorded, over time: a row for each robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from muster.report.activity_spans import TRAVEL, WAITING, WORK, spans
+from muster.report.canvas import add_legend, add_title, note_entries
+from muster.report.fonts import Names
+from muster.report.record import Recording
+from muster.report.recorded_tracks import outcome
+from muster.report.route_ground import drawn_prerequisites
+from muster.report.time_chart import Row, TimeChart, Work, duration, lasting, new_chart_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def plot_flown_gantt(recording: Recording) -> Axes:
+    """Draw when each robot travelled, worked and waited: the robots of the mission, then those that joined.
+
+    Looks like `plot_gantt`. The lines are the end of the mission, and the makespan of the plan that it began with.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    rows, until_s = _rows(recording), recording.duration_s
+    ax = new_chart_axes(len(rows))
+    planned = [version.plan.makespan_s for version in recording.plans[:1] if version.plan.makespan_s is not None]
+    chart = TimeChart(
+        rows=rows,
+        prerequisites=drawn_prerequisites(recording.mission),
+        until_s=max([until_s, *planned]),
+        lines=((until_s, "end"), *((at_s, "planned makespan") for at_s in planned)),
+    )
+    names = Names(recording.mission)
+    with names.fonts():
+        entries = chart.draw(ax, names)
+        facts = [duration(until_s), *outcome(recording)]
+        add_title(ax, names.title(recording.mission.name), facts, "" if recording.complete else "the record breaks off")
+        add_legend(ax, [*entries, *note_entries(names)])
+    return ax
+
+
+def _rows(recording: Recording) -> tuple[Row, ...]:
+    found = spans(recording.events, recording.duration_s)
+    rows = []
+    for robot in recording.robots:
+        own = [span for span in found if span.robot == robot.id]
+        rows.append(
+            Row(
+                robot=robot.id,
+                work=tuple(Work(span.task, span.from_s, span.until_s) for span in own if span.kind == WORK),
+                travel=lasting((span.from_s, span.until_s) for span in own if span.kind == TRAVEL),
+                waiting=lasting((span.from_s, span.until_s) for span in own if span.kind == WAITING),
+            )
+        )
+    return tuple(rows)

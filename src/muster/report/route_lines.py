@@ -1,0 +1,134 @@
+"""Where the robots of a plan go, as lines to be drawn. No drawing here.
+
+All places are metres in the map frame, `(n, d)` with d 2 or 3 as the picture has dimensions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muster.mission.model import Mission, Point, Robot, Task
+from muster.motion.actions import Impossible, plan
+from muster.motion.path import NoPath
+from muster.verification import RouteFigures, Verdict
+
+Places = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One robot's way.
+
+    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven;
+    `work` along the way points of a task's action, else from its entry through its position to its exit, where these
+    differ. Both are polylines, parted by
+    rows of NaN. `end` is the leg from the last task to where the route must end, no rows where it may end anywhere.
+    """
+
+    index: int
+    robot: Robot
+    figures: RouteFigures
+    tasks: tuple[Task, ...]
+    positions: Places
+    travel: Places
+    work: Places
+    end: Places
+
+
+Way = Callable[[Robot, Point, Point], Sequence[Point]]
+"""The points that a robot passes on its way from one place to another, both included."""
+
+
+def traces(mission: Mission, verdict: Verdict, dimensions: int) -> list[Trace]:
+    """Trace the ways of all robots, in mission order."""
+    way = way_in(mission)
+    tasks = {task.id: task for task in mission.tasks}
+    found = []
+    for index, (robot, figures) in enumerate(zip(mission.robots, verdict.routes, strict=True)):
+        route = tuple(tasks[name] for name in figures.tasks)
+        found.append(_trace(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions, way))
+    return found
+
+
+def way_in(mission: Mission) -> Way:
+    """How robots go from place to place: along the paths of the map where travel is by it, else straight."""
+    if mission.travel_rule != "map":
+        return lambda robot, start, goal: (start, goal)
+    from muster.motion.map_world import body_of
+    from muster.motion.robot_paths import Roads
+
+    roads = Roads.of(mission)
+
+    def way(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
+        found = roads.path(body_of(robot), start, goal)
+        return (start, goal) if isinstance(found, NoPath) else [tuple(point) for point in found.points.tolist()]
+
+    return way
+
+
+def _trace(
+    index: int,
+    robot: Robot,
+    figures: RouteFigures,
+    tasks: tuple[Task, ...],
+    end: Point | None,
+    dimensions: int,
+    way: Way,
+) -> Trace:
+    travel, work, here = [[robot.position]], [], robot.position
+    for task in tasks:
+        points = work_points(task, robot)
+        travel[-1] += way(robot, here, points[0])[1:]
+        if len(points) > 1:
+            legs = [way(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(task) else [points]
+            work.append([points[0], *(point for leg in legs for point in leg[1:])])
+        here = points[-1]
+        if points[0] != here:
+            travel.append([here])
+    return Trace(
+        index=index,
+        robot=robot,
+        figures=figures,
+        tasks=tasks,
+        positions=places((task.position for task in tasks), dimensions),
+        travel=_polylines(travel, dimensions),
+        work=_polylines(work, dimensions),
+        end=places(way(robot, here, end) if end is not None and tasks else [], dimensions),
+    )
+
+
+def work_points(task: Task, robot: Robot) -> Sequence[Point]:
+    """What a robot passes at a task; of one that it cannot do, the position."""
+    doing = plan(task, robot)
+    return (task.position,) if isinstance(doing, Impossible) else doing.points
+
+
+def _is_moving(task: Task) -> bool:
+    return task.action is not None and task.action.has_geometry
+
+
+def left_out(mission: Mission, verdict: Verdict) -> list[Task]:
+    """List the tasks in no route, in mission order."""
+    done = {name for route in verdict.routes for name in route.tasks}
+    return [task for task in mission.tasks if task.id not in done]
+
+
+def places(points: Iterable[Point], dimensions: int) -> Places:
+    """Turn points into `(n, dimensions)`; z is 0 where a point has none."""
+    rows = [(*point, 0.0)[:dimensions] for point in points]
+    return np.array(rows, dtype=np.float64).reshape(-1, dimensions)
+
+
+def _polylines(lines: Sequence[Sequence[Point]], dimensions: int) -> Places:
+    """Put lines of at least two points below one another, parted by rows of NaN."""
+    gap = np.full((1, dimensions), np.nan)
+    parts: list[Places] = []
+    for line in lines:
+        if len(line) > 1:
+            parts += [gap, places(line, dimensions)] if parts else [places(line, dimensions)]
+    return np.vstack(parts) if parts else np.empty((0, dimensions))

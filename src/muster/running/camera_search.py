@@ -1,0 +1,239 @@
+"""Robots that look while a plan is carried out: what their cameras find becomes tasks (TCF thesis 4.3, 7.3).
+
+Each camera looks at its own rate from where it truly is. Its robot takes itself to be where its telemetry says, and
+tilted as its inertial unit says, both with the world's noise. Of a robot that is silent nobody hears what it sees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from muster.execution.report import FoundReport, Report
+from muster.mission.model import Camera, Event, Found, Mission, MovedTask, Robot, Task, Work
+from muster.mission.value_types import specified
+from muster.motion.frames import angles
+from muster.motion.port import RobotPort
+from muster.perception.camera import Intrinsics, View, mount_of_mission
+from muster.perception.detection import TagDetector
+from muster.perception.interest import remarks
+from muster.perception.localisation import Uncertainty
+from muster.perception.observer import Observer
+from muster.perception.search import Find, Proof, Search
+from muster.simulation import KinematicWorld, Noise, SimulatedWorld
+from muster.simulation.cameras import GeometricSight, Look, Sight, true_body
+
+OnLook = Callable[[Look], None]
+
+
+@dataclass
+class _Eye:
+    """One robot's camera: its number in the world, and when it looks next."""
+
+    number: int
+    observer: Observer
+    period_s: float
+    due_s: float
+
+
+class Lookout:
+    """All cameras of a team, and what they find.
+
+    Parameters
+    ----------
+    mission
+        its tags are what there is to be found, its `found` what becomes of that.
+    world, ports
+        where bodies truly are, and where robots take themselves to be.
+    noise
+        how much robots err about that.
+    seed
+        of what is random.
+    on_look
+        is told every look.
+    proof
+        when a point of interest counts as found.
+
+    Raises
+    ------
+    MissingExtraError
+        if the extra `physics` is needed and not installed.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        world: SimulatedWorld,
+        ports: Mapping[str, RobotPort],
+        *,
+        noise: Noise,
+        seed: int,
+        on_look: OnLook | None = None,
+        proof: Proof | None = None,
+    ) -> None:
+        self._mission, self._world, self._ports, self._noise = mission, world, ports, noise
+        self._random = np.random.default_rng((seed, 2))
+        self._on_look = on_look or (lambda look: None)
+        self._sight, self._detector = _sight_of(world, mission, seed)
+        self._eyes: dict[str, _Eye] = {}
+        self._tasks: dict[tuple[int, int], str] = {}
+        self._remarks: dict[tuple[str, str], str] = {}
+        self.search = Search(proof)
+        for robot in mission.robots:
+            self.join(robot)
+
+    @property
+    def due_s(self) -> float:
+        """When a camera looks next."""
+        return min((eye.due_s for eye in self._eyes.values()), default=math.inf)
+
+    @property
+    def found(self) -> tuple[FoundReport, ...]:
+        """What was found so far, by time."""
+        return tuple(self._told(find) for find in self.search.finds)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a person should hear of."""
+        return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds), self.search.seen))
+
+    def join(self, robot: Robot) -> None:
+        """A robot that is in the world looks from now on, if it has a camera."""
+        if robot.camera is None:
+            return
+        eye = Observer(
+            robot=robot.id,
+            intrinsics=intrinsics_of(robot.camera),
+            mount=mount_of_mission(robot.camera),
+            detector=self._detector,
+            uncertainty=Uncertainty(
+                position_m=self._noise.position_m, angle_rad=max(self._noise.attitude_rad, self._noise.heading_rad)
+            ),
+            ground_m=self._world.ground_m,
+        )
+        number = list(self._world.ports).index(robot.id)
+        self._eyes[robot.id] = _Eye(number, eye, 1 / robot.camera.rate_hz, self._world.time_s)
+
+    def look(self, now: float, unheard: Collection[str] = ()) -> Iterator[tuple[dict[str, Any], Event | None]]:
+        """Let those look whose time has come.
+
+        Parameters
+        ----------
+        now
+            the mission's clock, seconds.
+        unheard
+            robots that cannot tell what they see, beside those whose telemetry is old.
+
+        Yields
+        ------
+        what was found, or found to lie elsewhere, as the data of a `found` event of a record, and the event of a
+        mission that follows from that, if any.
+        """
+        frames, positions, axes = self._world.frames, self._world.positions, self._world.axes
+        for robot, eye in self._eyes.items():
+            if eye.due_s > now + 1e-9:
+                continue
+            eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
+            said = None if robot in unheard else self._ports[robot].telemetry()
+            if said is None or said.time_s < now - self._world.dt_s / 2:
+                continue
+            k = eye.number
+            view = View.from_body(eye.observer.intrinsics, true_body(frames[k], axes[k]), eye.observer.mount)
+            roll, pitch = angles(axes[k])[:2] + self._random.normal(0.0, self._noise.attitude_rad, 2)
+            believed = [*(np.array(said.position) + frames[k] - positions[k]), roll, pitch, said.heading]
+            look = self._sight.look(eye.observer, view, believed, now)
+            self._on_look(look)
+            for remark in look.observation.remarks:  # what is so in many images is said once
+                self._remarks.setdefault((robot, remark.partition(": ")[2]), remark)
+            for find in self.search.take(look.observation.estimates, now):
+                event = self._event(find, now)  # first: it names the task
+                yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
+
+    def refused(self, task: str) -> None:
+        """What was found did not become this task after all."""
+        self._tasks = {find: name for find, name in self._tasks.items() if name != task}
+
+    def close(self) -> None:
+        """Give back what cameras hold."""
+        self._sight.close()
+
+    def _event(self, find: Find, now: float) -> Event | None:
+        """The task that a find becomes; or, of one that was found before, that its task is elsewhere."""
+        place = self._place(find)
+        task = self._tasks.get((find.tag, find.number))
+        if task is not None:
+            return Event(at_s=now, move_task=MovedTask(task=task, position=place))
+        rule = _rule_for(self._mission.found, find.tag)
+        if rule is None:
+            return None
+        name = self._free_name(find)
+        self._tasks[find.tag, find.number] = name
+        return Event(at_s=now, new_task=task_of(rule.becomes, name, place))
+
+    def _place(self, find: Find) -> tuple[float, ...]:
+        x, y = (round(float(value), 4) for value in find.point.position[:2])
+        return (x, y) if self._mission.dimensions == 2 else (x, y, self._world.ground_m)
+
+    def _free_name(self, find: Find) -> str:
+        taken = {task.id for task in self._mission.tasks} | {
+            event.new_task.id for event in self._mission.events if event.new_task is not None
+        }
+        name = f"found-{find.tag}" + (f"-{find.number + 1}" if find.number else "")
+        while name in taken:
+            name += "'"
+        return name
+
+    def _told(self, find: Find) -> FoundReport:
+        point = find.point
+        place = tuple(float(value) for value in point.position)
+        truth = [tag.position[:2] for tag in self._mission.tags if tag.id == find.tag]
+        return FoundReport(
+            tag=find.tag,
+            position=place,
+            deviation_m=math.sqrt(float(np.linalg.eigvalsh(point.covariance)[-1])),
+            error_m=min((math.dist(place, true) for true in truth), default=None),
+            sightings=point.sightings,
+            robots=point.robots,
+            found_s=find.at_s,
+            task=self._tasks.get((find.tag, find.number)),
+        )
+
+
+def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight, TagDetector | None]:
+    """How the cameras of a world see, and what looks for tags in their pictures, if they have any."""
+    if isinstance(world, KinematicWorld):
+        return GeometricSight(mission.tags, seed), None
+    from muster.simulation.physics.physics_world import PhysicsWorld
+    from muster.simulation.physics.rendered_cameras import DrawnSight
+
+    assert isinstance(world, PhysicsWorld)
+    return DrawnSight(world), TagDetector()
+
+
+def lookout_for(mission: Mission, world: SimulatedWorld, ports: Mapping[str, RobotPort], **how: Any) -> Lookout | None:
+    """The cameras of a mission in which there is something to find; see `Lookout`."""
+    return Lookout(mission, world, ports, **how) if mission.tags else None
+
+
+def with_found(report: Report, lookout: Lookout | None) -> Report:
+    """A report with what cameras found."""
+    return report if lookout is None else replace(report, found=lookout.found, remarks=lookout.remarks)
+
+
+def intrinsics_of(camera: Camera) -> Intrinsics:
+    """Of a camera as its mission has it."""
+    return Intrinsics.of_view(camera.width_px, camera.height_px, math.radians(camera.fov_deg))
+
+
+def task_of(work: Work, name: str, position: Sequence[float]) -> Task:
+    """Work as a task at a place."""
+    own: dict[str, Any] = {f.name: getattr(work, f.name) for f in specified(Work)}
+    return Task(id=name, position=tuple(position), **own)
+
+
+def _rule_for(rules: Sequence[Found], tag: int) -> Found | None:
+    return next((rule for rule in rules if rule.tags is None or tag in rule.tags), None)

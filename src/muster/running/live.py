@@ -1,0 +1,250 @@
+"""A plan carried out by real robots, through any bridge, in real time: the executor and a fleet wired together."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from muster.bridges.fleet import Fleet, reason_of
+from muster.execution import (
+    Executor,
+    Past,
+    Reallocation,
+    Recorder,
+    Status,
+    report_of,
+    status_of,
+    travel_of,
+    way_of,
+)
+from muster.mission.errors import NetworkError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.motion.port import RobotPort
+from muster.motion.robot_paths import Roads
+from muster.running.fleet_clock import FromZero
+
+if TYPE_CHECKING:
+    from muster.execution import Happening, Report
+
+LOOK_S = 0.2
+"""Seconds between two looks at the robots, where nothing is heard before."""
+ELSEWHERE_M = 0.5
+"""Metres from where a mission says that a robot starts, from which it stands elsewhere."""
+
+
+def carry_out_live(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    *,
+    seed: int = 0,
+    recorder: Recorder | None = None,
+    on_happening: Callable[[Happening], None] | None = None,
+    halt: threading.Event | None = None,
+) -> Report:
+    """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
+
+    The mission's clock begins now.
+
+    Parameters
+    ----------
+    fleet
+        has a port for each robot of the mission, and stays open.
+    seed
+        of planning anew.
+    recorder
+        is told all that happens, and where robots say that they are.
+    on_happening
+        is told what happens, as it happens.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+    live = Live(mission, plan, fleet, seed=seed, recorder=recorder)
+    halt, told = halt or threading.Event(), 0
+    try:
+        while not halt.is_set():
+            live.look()
+            if on_happening is not None:
+                for happening in live.happenings[told:]:
+                    on_happening(happening)
+                told = len(live.happenings)
+            if live.done:
+                break
+            live.hear(live.time_s + LOOK_S)
+    finally:
+        live.stop()
+    report = live.result()
+    if recorder is not None:
+        recorder.on_report(report.as_dict())
+    return report
+
+
+class Live:
+    """A plan that is being carried out by real robots: they are heard, and looked at, in turn.
+
+    Parameters
+    ----------
+    fleet
+        has a port for each robot of the mission, and stays open.
+    seed
+        of planning anew.
+    recorder
+        is told all that happens, and where robots say that they are.
+    past, begin_s
+        what was done before, of a mission that goes on, and up to when.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        fleet: Fleet,
+        *,
+        seed: int = 0,
+        recorder: Recorder | None = None,
+        past: Past | None = None,
+        begin_s: float = 0.0,
+    ) -> None:
+        self._fleet, self._recorder = FromZero(fleet, begin_s), recorder
+        roads = Roads.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, roads)
+        self.executor = Executor(
+            mission,
+            plan,
+            self._fleet.ports,
+            way=way_of(mission, roads),
+            travel=travel,
+            replan=Reallocation(travel=travel, seed=seed),
+            observer=recorder,
+            now=begin_s,
+            past=past,
+        )
+
+    @property
+    def time_s(self) -> float:
+        """The mission's clock; it stands still in a pause."""
+        return self._fleet.time_s
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self.executor.done
+
+    @property
+    def happenings(self) -> Sequence[Happening]:
+        """All that has happened so far."""
+        return self.executor.happenings
+
+    @property
+    def status(self) -> Status:
+        """What each robot does now, and how far each task is."""
+        return status_of(self.executor)
+
+    def look(self) -> None:
+        """See how far robots are, and send them on."""
+        self.executor.tick(self.time_s)
+        self.tell_places()
+
+    def hear(self, until_s: float) -> None:
+        """Hear and speak until a time of the mission's clock, or until something is due."""
+        for event in self._fleet.advance(min(until_s, self.executor.due_s)):
+            self.executor.report_if_it_fits(event, reason_of(event))
+
+    def tell_places(self) -> None:
+        """Tell the recorder where robots say that they are."""
+        if self._recorder is not None:
+            _tell_places(self._recorder, self.time_s, self.executor.crew, self._fleet.ports)
+
+    def pause(self) -> None:
+        """Robots stop where they are, and the mission's clock too, until `resume`."""
+        self.executor.stand()
+        self._fleet.pause()
+
+    def resume(self) -> None:
+        """Robots go on."""
+        self._fleet.resume()
+        self.executor.come_to(self.time_s)
+        self.executor.go_on()
+
+    def stop(self) -> None:
+        """Robots stay where they are."""
+        self._fleet.stop()
+
+    def result(self) -> Report:
+        """What it took, so far or in all."""
+        report = report_of(self.executor.account)
+        if not self.done:
+            left = ", ".join(task.id for task in self.executor.ledger.open)
+            report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
+        return report
+
+
+class _Heard(Protocol):
+    def unheard(self) -> Mapping[str, str]:
+        """Robots of the mission that have not said where they are, and what is missing."""
+        ...
+
+
+def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
+    """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
+
+    Raises
+    ------
+    NetworkError
+        if something is, when the time is over.
+    """
+    until = time.monotonic() + wait_s
+    while (unheard := fleet.unheard()) and not halt.is_set():
+        if time.monotonic() > until:
+            robot, why = next(iter(unheard.items()))
+            more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
+            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
+        time.sleep(0.05)
+
+
+def from_where_they_stand(mission: Mission, fleet: Fleet) -> Mission:
+    """The mission with robots that start where they say that they are, and as they head; the others as it has them."""
+    said = {robot.id: fleet.ports[robot.id].telemetry() for robot in mission.robots}
+    robots = (
+        replace(robot, position=there.position[: mission.dimensions], heading_deg=math.degrees(there.heading))
+        if (there := said[robot.id])
+        else robot
+        for robot in mission.robots
+    )
+    return replace(mission, robots=tuple(robots))
+
+
+def elsewhere(mission: Mission, there: Mission) -> list[str]:
+    """A line for each robot that does not stand where the mission says; `there` is by `from_where_they_stand`."""
+    lines = []
+    for says, stands in zip(mission.robots, there.robots, strict=True):
+        far = math.dist(says.position[: len(stands.position)], stands.position)
+        if far > ELSEWHERE_M:
+            at, start = (", ".join(f"{c:.2f}" for c in robot.position) for robot in (stands, says))
+            lines.append(f"robot {says.id} begins at ({at}), where it stands, not at ({start}): {far:.2f} m away")
+    return lines
+
+
+def _tell_places(recorder: Recorder, now: float, robots: Iterable[str], ports: Mapping[str, RobotPort]) -> None:
+    """A step of a record, by what robots last said; NaN of those that were not heard."""
+    rows = []
+    for robot in robots:
+        said = ports[robot].telemetry()
+        rows.append([np.nan] * 7 if said is None else [*said.position, said.heading, *said.velocity])
+    states = np.array(rows, dtype=float).reshape(-1, 7)
+    recorder.on_step(now, states[:, :3], states[:, 3], states[:, 4:])

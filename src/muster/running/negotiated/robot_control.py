@@ -1,0 +1,194 @@
+"""One robot that decides for itself: it does what it owns by the auction, and tells the others what it has done."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from muster.allocation.problem import Problem
+from muster.execution import Executor, Happening, Revision, travel_of, way_of
+from muster.execution.monitor import exceeds
+from muster.execution.reallocation import usage_ahead
+from muster.execution.remaining_problem import Rest
+from muster.execution.task_ledger import moved
+from muster.mission.errors import MissionError, ParameterError
+from muster.mission.model import Event, MovedTask, Task
+from muster.mission.plan import Plan
+from muster.mission.value_types import shown
+from muster.motion.port import RobotPort
+from muster.negotiation.knowledge import in_order
+from muster.negotiation.messages import Fact
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.new_tasks import content_of, task_of
+
+_ITS_OWN = {
+    "sets_out",
+    "arrives",
+    "starts",
+    "ends",
+    "returns",
+    "robot_at_end",
+    "no_way_to_end",
+    "robot_sent_again",
+    "robot_runs_low",
+    "robot_stuck",
+    "task_refused",
+}
+"""Happenings that nobody else knows of."""
+
+
+class Pilot:
+    """One robot. Its executor plans by asking what the robot owns, and begins no task without the others' leave.
+
+    Parameters
+    ----------
+    problem
+        what the team negotiates about.
+    port
+        to the robot's body, which has been heard.
+    negotiator
+        its part in the auction.
+    now
+        the mission's time, seconds.
+    used
+        what it has used so far, in the mission's unit.
+    """
+
+    def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
+        mission = problem.mission.at_once()
+        roads = problem.roads if mission.travel_rule == "map" else None
+        self._travel = travel_of(mission, roads)
+        self._negotiator = negotiator
+        self._executor = Executor(
+            mission,
+            Plan(mission=mission.name, ignored=problem.ignored, routes=()),
+            {port.robot: port},
+            way=way_of(mission, roads),
+            travel=self._travel,
+            replan=self._owned,
+            now=now,
+            peers=self,
+        )
+        self._limited = problem.holds("capacity")
+        self._hand = self._executor.crew[port.robot]
+        self._hand.recall(used)
+        self._learned: set[Fact] = set()
+        self._known = 0  # the digest of what was learned
+
+    @property
+    def idle(self) -> bool:
+        """Whether it has nothing to do, nor a way to go."""
+        return self._executor.idle and (bool(self._hand.out) or not self._wanted)
+
+    @property
+    def used(self) -> float:
+        """Usage so far, in the mission's unit."""
+        return self._hand.used
+
+    def usage(self, task: str) -> tuple[float, float]:
+        """Of a task that it has done: planned, flown."""
+        return self._executor.ledger.usage[task]
+
+    def tick(self, now: float) -> Sequence[Happening]:
+        """Go on to a time, after what the body said then; returns what the robot did, and what befell its body."""
+        self._learn()
+        if not self._hand.out and self._wanted != self._hand.route:
+            self._executor.plan_again("agreed", {})
+        happenings = [happening for happening in self._executor.tick(now) if happening.kind in _ITS_OWN]
+        for happening in happenings:
+            if happening.kind == "ends":
+                self._negotiator.finish(happening.data["task"])
+        return happenings
+
+    def befalls(self, event: Event) -> str | None:
+        """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""
+        try:
+            if event.new_task is not None:
+                if not self._is_known(event.new_task):  # else it is said once more
+                    self._negotiator.announce(event.new_task)
+            elif event.cancel_task is not None:
+                self._negotiator.cancel(event.cancel_task)
+            elif event.move_task is not None:
+                self._negotiator.move(self._moved(event.move_task))
+            else:
+                self._executor.report(event)
+                if event.robot_returns is not None:
+                    self._negotiator.come_back()
+        except (MissionError, ParameterError) as error:
+            return str(error)
+        return None
+
+    def may_begin(self, task: str) -> bool:
+        """See `execution.Peers`."""
+        return self._negotiator.begin(task)
+
+    @property
+    def _wanted(self) -> list[str]:
+        """What it owns, in order, without what has to wait for more robots: meanwhile it does the rest."""
+        still = {task.id for task in self._executor.ledger.open} - self._negotiator.held
+        return [claim.task for claim in self._negotiator.route if claim.task in still]
+
+    def _learn(self) -> None:
+        """Take in what others did, and what is new, as it is known among the robots.
+
+        What is heard of a task before it is heard that there is one waits for that.
+        """
+        if self._known == self._negotiator.known:
+            return
+        facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
+        places = {fact.task: fact for fact in facts if fact.kind == "moved"}  # the last of each
+        tasks = self._executor.ledger.tasks
+        for fact in facts:
+            if fact in self._learned or (fact.kind != "added" and fact.task not in tasks):
+                continue
+            self._learned.add(fact)
+            if fact.kind == "done":
+                self._executor.end_elsewhere(fact.task, fact.robot)
+            elif fact.kind == "cancelled":
+                self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
+                self._negotiator.abandon(fact.task)
+            elif fact.kind == "moved" and fact is places[fact.task]:
+                move = MovedTask(task=fact.task, position=task_of(fact.content).position)
+                self._executor.report(Event(at_s=0.0, move_task=move))
+            elif fact.kind == "added" and fact.task not in tasks:
+                self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
+
+    def _owned(self, rest: Rest) -> Revision:
+        """The plan of the rest is what the robot owns, but for what it cannot do: that it gives back."""
+        robot = self._negotiator.robot
+        begun = {claim.task for claim in self._negotiator.route if claim.begun}
+        once = self._negotiator.once
+        for task, robots in rest.refusals.items():
+            if robot in robots and task in self._wanted and not (task in begun and task in once):
+                self._negotiator.release(task)
+        if not rest.crew:
+            for task in begun - once:
+                self._negotiator.release(task)
+            for task in begun & once:  # nobody else may do it, nor what waits for it
+                self._negotiator.cancel(task)
+            self._negotiator.withdraw()
+            return _revision({}, {})
+        (me,) = rest.crew
+        capacity = me.robot.work_capacity if self._limited else None
+        route = [task for task in self._wanted if task != me.task]
+        while True:
+            ahead = usage_ahead(replace(rest, routes={robot: route}), self._travel)
+            if not route or route[-1] in begun or not exceeds(me.used + ahead[robot][""], capacity):
+                return _revision({robot: tuple(route)}, ahead)
+            self._negotiator.release(route.pop())
+
+    def _is_known(self, task: Task) -> bool:
+        """Whether it was heard that there is this task, wherever it is now."""
+        content = content_of(task)
+        return any(fact.kind == "added" and fact.content == content for fact in self._negotiator.facts)
+
+    def _moved(self, move: MovedTask) -> Task:
+        ledger = self._executor.ledger
+        if move.task not in ledger.tasks:
+            raise ParameterError(f"move_task: {shown(move.task)}; expected the id of a task that there is by then")
+        return moved(ledger.tasks[move.task], move.position)
+
+
+def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:
+    """What this robot does; what the others do, and whose a task was before, the team knows."""
+    return Revision(routes=routes, ahead=ahead, moved={}, forced=frozenset(), added={}, dropped=(), left_out={})

@@ -1,0 +1,202 @@
+"""What a team did, put together from what its robots tell: happenings, states of tasks, the plan, the figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from typing import Any
+
+from muster.allocation.problem import Problem
+from muster.execution import Happening, Observer
+from muster.execution.reallocation import told
+from muster.execution.report import Account
+from muster.execution.task_ledger import Ledger
+from muster.mission.model import Event
+from muster.mission.plan import Plan
+from muster.mission.yaml_writer import plain
+from muster.motion.port import Telemetry
+from muster.verification import verify
+
+_OF_A_TASK = ("cancel_task", "move_task", "delay_task")
+
+
+class Log:
+    """Keeps what happens, and tells it to an observer. No robot sees this: it knows more than each of them.
+
+    Parameters
+    ----------
+    problem
+        what the team negotiates about.
+    observer
+        is told all.
+    on_happening
+        is told what happens.
+    late
+        robots that are not there before they join.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        observer: Observer,
+        on_happening: Callable[[Happening], None],
+        late: Collection[str] = (),
+    ) -> None:
+        self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisites"))
+        self.happenings: list[Happening] = []
+        self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
+        self._problem = problem
+        self._observer, self._on_happening = observer, on_happening
+        self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
+        self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
+        self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
+        self._out: dict[str, str] = {}  # robot: why
+        self._plans: list[Plan] = []
+        self._causes: list[dict[str, Any]] = []
+        self._now_s = 0.0
+
+    def is_out(self, robot: str) -> bool:
+        """Whether a robot takes no part any more, as far as all know."""
+        return robot in self._out
+
+    @property
+    def open_tasks(self) -> bool:
+        return bool(self.ledger.open)
+
+    def take(self, robot: str, at_s: float, kind: str, data: Mapping[str, Any], used: float) -> None:
+        """Take in what a robot tells of itself."""
+        self.used[robot] = used
+        task = str(data.get("task", ""))
+        if kind == "arrives":
+            self._came[robot, task] = used, at_s
+        elif kind == "starts":
+            self._start(robot, task, at_s)
+        elif kind == "ends":
+            self._end(robot, task, at_s)
+        elif kind == "robot_stuck":
+            self._lose(robot, f"did not get on at {at_s:g} s")
+            self._causes.append({"kind": kind, "robot": robot})
+        self.tell(at_s, kind, data)
+
+    def note_usage(self, task: str, usage: tuple[float, float]) -> None:
+        """What a task that was done has cost: planned, flown."""
+        self.ledger.usage.setdefault(task, usage)
+
+    def befalls(self, event: Event, now_s: float) -> bool:
+        """Take in an event of the mission; whether it changes anything."""
+        ((kind, said),) = ((key, value) for key, value in plain(event).items() if key != "at_s")
+        task = said["task"] if kind in ("move_task", "delay_task") else said
+        if kind in _OF_A_TASK and (task in self.ledger.ends_s or task in self.ledger.cancelled):
+            self.tell(now_s, "without_effect", plain(event))
+            return False
+        if event.new_task is not None:
+            self.ledger.tasks[event.new_task.id] = event.new_task
+        elif event.cancel_task is not None:
+            self.ledger.withdraw(event.cancel_task, now_s)
+        elif event.move_task is not None:
+            self.ledger.move(event.move_task.task, event.move_task.position)
+        elif event.robot_fails is not None:
+            self._lose(event.robot_fails, f"failed at {now_s:g} s")
+        elif event.robot_joins is not None:
+            self.used[event.robot_joins.id] = 0.0
+        elif event.robot_returns is not None:
+            self._out.pop(event.robot_returns, None)
+        what = "task" if kind.endswith("_task") else "robot"
+        data = said if kind in ("move_task", "delay_task") else {what: said}
+        self._causes.append({"kind": kind, **data})
+        self.tell(now_s, kind, data)
+        return True
+
+    def see(self, robot: str, telemetry: Telemetry, now_s: float) -> None:
+        """Take in where a robot says that it is."""
+        self._now_s = max(self._now_s, now_s)
+        self._observer.on_telemetry(self._now_s, robot, telemetry)
+
+    def agreed(self, plan: Plan, now_s: float) -> None:
+        """Take in what robots agree on: the plan of the whole mission."""
+        self._plans.append(plan)
+        if len(self._plans) > 1:
+            causes, self._causes = self._causes, []
+            self.tell(now_s, "replanned", {"causes": causes, **_difference(*self._plans[-2:])})
+        self._observer.on_plan(max(now_s, self._now_s), plan)
+
+    def tell(self, at_s: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Something has happened; what is heard late of it is kept as it is heard, so that times do not go back."""
+        self._now_s = max(self._now_s, at_s)
+        happening = Happening(self._now_s, kind, data)
+        self.happenings.append(happening)
+        self._observer.on_event(self._now_s, kind, data)
+        self._on_happening(happening)
+
+    def end(self) -> None:
+        """The mission is over, since the last robot was done."""
+        self._now_s = self.happenings[-1].at_s if self.happenings else 0.0
+        for task, reason in self.lost().items():
+            self.tell(self._now_s, "lost", {"task": task, "reason": reason})
+        self.tell(self._now_s, "mission_ended", {})
+
+    def lost(self) -> dict[str, str]:
+        """Every task that is not done, and why."""
+        reasons = {item.task: told(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
+        return self.ledger.lost(lambda task: reasons.get(task) or "not done", self._out)
+
+    @property
+    def account(self) -> Account:
+        """What it took, so far or in all."""
+        planned, usages = None, dict[str, float]()
+        if self._plans:
+            planned = self._plans[0].objective_value
+            usages = {route.robot: route.usage for route in verify(self._problem.mission, self._plans[0]).routes}
+        return Account(
+            objective=self._problem.objective,
+            objective_planned=planned,
+            ledger=self.ledger,
+            lost=self.lost(),
+            used=self.used,
+            usage_planned=usages,
+            mission_time_s=self._now_s,
+            reallocations=len(self._plans) - 1,
+        )
+
+    def _start(self, robot: str, task: str, at_s: float) -> None:
+        self._began_s[robot, task] = at_s
+        other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
+        if other != robot:
+            self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
+        elif task not in self.ledger.ends_s and task not in self._at_work:
+            self._at_work[task] = robot
+            self._note_begun(robot, task)
+
+    def _end(self, robot: str, task: str, at_s: float) -> None:
+        """A task counts for the robot that ends it first, whoever else was at it, or had given it up."""
+        self._at_work.pop(task, None)
+        if task not in self.ledger.ends_s:
+            self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
+            self._note_begun(robot, task)
+            self.ledger.end(task, robot, at_s)
+
+    def _note_begun(self, robot: str, task: str) -> None:
+        self.ledger.arrive(task, *self._came[robot, task])
+        self.ledger.begin(task, self._began_s[robot, task])
+
+    def _lose(self, robot: str, why: str) -> None:
+        """A robot is out: what it was at is given up."""
+        self._out[robot] = why
+        for task in [task for task, at in self._at_work.items() if at == robot]:
+            del self._at_work[task]
+            self.ledger.give_up(task)
+
+
+def _difference(before: Plan, after: Plan) -> dict[str, Any]:
+    """What has changed, as `execution.Revision.difference` tells it."""
+    old, new = _robots(before), _robots(after)
+    left_out = {item.task: ", ".join(reason.reason for reason in item.reasons) for item in after.unassigned}
+    return {
+        "moved": {task: [old[task], robot] for task, robot in new.items() if old.get(task, robot) != robot},
+        "forced": [],
+        "added": {task: robot for task, robot in new.items() if task not in old},
+        "dropped": {task: left_out.get(task, "") for task in old if task not in new},
+    }
+
+
+def _robots(plan: Plan) -> dict[str, str]:
+    return {task: route.robot for route in plan.routes for task in route.tasks}

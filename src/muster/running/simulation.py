@@ -1,0 +1,305 @@
+"""A plan carried out in a world: executor and world wired together, as neither knows the other."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from muster.execution import (
+    Executor,
+    Reallocation,
+    Recorder,
+    Status,
+    broken_off,
+    report_of,
+    status_of,
+    travel_of,
+    way_of,
+)
+from muster.mission.errors import ParameterError
+from muster.mission.model import Event, Mission
+from muster.mission.near_matches import did_you_mean
+from muster.mission.plan import Plan
+from muster.motion.robot_paths import Roads
+from muster.running.camera_search import Lookout, OnLook, lookout_for, with_found
+from muster.running.state_estimation import heard
+from muster.simulation import NO_NOISE, KinematicWorld, Noise, SimulatedWorld
+from muster.verification import verify
+
+if TYPE_CHECKING:
+    from muster.execution.executor import Happening
+    from muster.execution.report import Report
+
+OnWorld = Callable[[SimulatedWorld], None]
+WORLDS = ("kinematic", "physics")
+LOOK_S = 0.5
+"""Seconds of mission time between two looks at the robots, where nothing happens before."""
+
+
+class Simulation:
+    """A plan that is being carried out in a world, with the mission's events, as far as time is let go on.
+
+    Parameters
+    ----------
+    world
+        `kinematic`, or `physics`, which needs the extra of that name.
+    seed
+        of the world and of planning anew.
+    dt_s
+        step of the world in seconds.
+    avoidance
+        how robots pass each other: orca, rvo, hrvo or none.
+    noise
+        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+    recorder
+        is told all that happens.
+    on_look
+        is told each look of a camera; cameras look where the mission has tags.
+    on_world
+        is given the world when it is made, to look at it: at bodies, in the physics world.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names what the mission does not have, or a parameter is out of range.
+    MissingExtraError
+        if the extra `physics` is needed and not installed.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        *,
+        world: str = "kinematic",
+        seed: int = 0,
+        dt_s: float = 0.1,
+        avoidance: str = "orca",
+        noise: Noise = NO_NOISE,
+        recorder: Recorder | None = None,
+        on_look: OnLook | None = None,
+        on_world: OnWorld | None = None,
+    ) -> None:
+        roads = Roads.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, roads)
+        self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+        if on_world is not None:
+            on_world(self._world)
+        self._hearing = heard(self._world)
+        self._executor = Executor(
+            mission,
+            _with_objective(mission, plan),
+            self._hearing.ports,
+            way=way_of(mission, roads),
+            travel=travel,
+            replan=Reallocation(travel=travel, seed=seed),
+            observer=recorder,
+            now=self._world.time_s,
+        )
+        self._lookout = lookout_for(mission, self._world, self._hearing.ports, noise=noise, seed=seed, on_look=on_look)
+        self._recorder = recorder
+        self._ahead = sorted(mission.events, key=lambda event: event.at_s)
+        self._executor.tick(self.time_s)
+
+    @property
+    def world(self) -> SimulatedWorld:
+        """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
+        return self._world
+
+    @property
+    def time_s(self) -> float:
+        """The mission's clock."""
+        return round(self._world.time_s, 9)  # of many steps, each of which rounds
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self._executor.done
+
+    @property
+    def plan(self) -> Plan:
+        """The plan of the whole mission as it is now, without figures: what each robot did, does and will do."""
+        return self._executor.plan
+
+    @property
+    def happenings(self) -> Sequence[Happening]:
+        """All that has happened so far."""
+        return self._executor.happenings
+
+    @property
+    def positions(self) -> dict[str, tuple[float, ...]]:
+        """Where robots say that they are, metres: those that were heard."""
+        told = {name: port.telemetry() for name, port in self._hearing.ports.items()}
+        return {name: said.position for name, said in told.items() if said is not None}
+
+    def advance(self, until_s: float) -> Sequence[Happening]:
+        """Go on until something happens, until the mission is over, or up to a time; returns what happened.
+
+        It goes on by whole steps: what falls into a step, an event or `until_s`, comes at its end.
+        """
+        first = len(self._executor.happenings)
+        while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
+            due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
+            self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
+            while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
+                self._befalls(self._ahead.pop(0))
+            self._look()
+            self._tick()
+        return self._executor.happenings[first:]
+
+    def report(self, event: Event) -> None:
+        """Let something happen now that the mission file did not foresee; its `at_s` does not count.
+
+        What follows for the plan follows at once, not only when time goes on.
+
+        Raises
+        ------
+        ParameterError
+            if the event names a robot or task that there is not, or one anew that there is.
+        """
+        if event.robot_joins is not None:
+            self._executor.require_newcomer(event.robot_joins)
+            self._befalls(event)  # the executor asks for its port
+            self._executor.report(event)
+        else:
+            self._executor.report(event)
+            self._befalls(event)
+        self._tick()
+
+    def result(self) -> Report:
+        """What it took, so far or in all."""
+        world = self._world
+        report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        return with_found(report, self._lookout)
+
+    @property
+    def status(self) -> Status:
+        """What each robot does now, and how far each task is."""
+        return status_of(self._executor)
+
+    def break_off(self, reason: str) -> Report:
+        """End it now, before it is over; every task that is not done is lost. Nothing is to be asked of it then."""
+        report = broken_off(self.result(), self._executor.account, reason)
+        if self._recorder is not None:
+            self._recorder.on_report(report.as_dict())
+        return report
+
+    @property
+    def lookout(self) -> Lookout | None:
+        """What cameras see, where the mission has tags."""
+        return self._lookout
+
+    def close(self) -> None:
+        """Give back what pictures hold of the graphics library."""
+        if self._lookout is not None:
+            self._lookout.close()
+
+    def _tick(self) -> None:
+        self._executor.tick(self.time_s)
+        if self.done and self._recorder is not None:
+            self._recorder.on_report(self.result().as_dict())
+
+    @property
+    def _look_due_s(self) -> float:
+        return math.inf if self._lookout is None else self._lookout.due_s
+
+    def _look(self) -> None:
+        """Let cameras look; what they find becomes tasks, and what lies elsewhere moves those not yet done."""
+        if self._lookout is None:
+            return
+        for found, event in self._lookout.look(self.time_s):
+            self._executor.come_to(self.time_s)
+            self._executor.tell("found", found)
+            if event is None or not (event.new_task or self._is_open(event)):
+                continue
+            if not self._executor.report_if_it_fits(event) and event.new_task is not None:
+                self._lookout.refused(event.new_task.id)
+
+    def _is_open(self, event: Event) -> bool:
+        return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
+
+    def _befalls(self, event: Event) -> None:
+        """What an event does to bodies; what it does to the plan is the executor's affair."""
+        if event.robot_fails is not None:
+            self._world.fail(event.robot_fails)
+        elif event.robot_silent is not None:
+            self._world.silence(event.robot_silent)
+        elif event.robot_returns is not None:
+            self._world.recover(event.robot_returns)
+        elif event.robot_joins is not None:
+            self._world.join(event.robot_joins)
+            if self._lookout is not None:
+                self._lookout.join(event.robot_joins)
+
+
+def world_named(name: str) -> Callable[..., SimulatedWorld]:
+    """What makes a world of that name for a mission.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    MissingExtraError
+        if it needs an extra that is not installed.
+    """
+    if name == "kinematic":
+        return KinematicWorld
+    if name != "physics":
+        raise ParameterError(f"world: {name}; expected {', '.join(WORLDS)}{did_you_mean(name, WORLDS)}")
+    from muster.simulation.physics import PhysicsWorld
+
+    return PhysicsWorld
+
+
+def recorded_world(name: str, mission: Mission, recorder: Recorder | None, **how: Any) -> SimulatedWorld:
+    """The world of that name for a mission, which tells a recorder where bodies are."""
+    if recorder is not None:
+        how |= {"observer": recorder.on_step, "observe_s": 0.1}
+    return world_named(name)(mission, **how)
+
+
+def _with_objective(mission: Mission, plan: Plan) -> Plan:
+    """A plan from elsewhere may not tell its objective: then as the judge has it."""
+    if plan.objective_value is not None:
+        return plan
+    verdict = verify(mission, plan)
+    return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
+
+
+def carry_out(
+    mission: Mission,
+    plan: Plan,
+    *,
+    speed: float | None = None,
+    on_happening: Callable[[Happening], None] | None = None,
+    halt: threading.Event | None = None,
+    **how: Any,
+) -> Report:
+    """Carry a plan out to its end; see `Simulation`.
+
+    Parameters
+    ----------
+    speed
+        how many times as fast as the wall clock; None: as fast as it goes.
+    on_happening
+        is told what happens, as it happens.
+    halt
+        when it is set, carrying out stops, and the report is of what was done until then.
+    """
+    halt = halt or threading.Event()
+    with closing(Simulation(mission, plan, **how)) as simulation:
+        begin, told = time.monotonic(), 0
+        while not simulation.done and not halt.is_set():
+            simulation.advance(simulation.time_s + LOOK_S)
+            if speed is not None:
+                halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+            if on_happening is not None:
+                for happening in simulation.happenings[told:]:
+                    on_happening(happening)
+                told = len(simulation.happenings)
+        return simulation.result()

@@ -1,0 +1,72 @@
+"""What answers beside plain words: files to be kept, what was made, what was accepted; and which errors there are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote
+
+from starlette.responses import Response
+
+from muster.server.api.problems import MEDIA_TYPE
+from muster.server.services.archives import parcel
+
+Responses = dict[int | str, dict[str, Any]]
+
+_WHY = {
+    400: "What was sent is wrong; `findings` says where.",
+    401: "No token, or one that nobody has.",
+    403: "Whoever asked may only watch.",
+    404: "There is no such thing.",
+    405: "Not with this method.",
+    409: "It cannot be done as things are now.",
+    413: "The body is too long.",
+    422: "A parameter or body is of a wrong form; `findings` says where.",
+    428: "Neither If-Match nor base_version says which version it is based on.",
+    429: "A limit is reached; ask again after Retry-After.",
+    501: "An optional part of the server's installation is absent.",
+    503: "The database cannot be used, or the server is about to stop.",
+}
+ALWAYS = (400, 401, 403, 404, 413, 422, 429, 501, 503)
+"""Which errors any route may answer."""
+
+
+def errors(*statuses: int) -> Responses:
+    """The description of errors, as problem JSON."""
+    schema = {"$ref": "#/components/schemas/Problem"}
+    return {status: {"description": _WHY[status], "content": {MEDIA_TYPE: {"schema": schema}}} for status in statuses}
+
+
+def a_file(*kinds: str, what: str) -> Responses:
+    """The description of an answer that is a file of one of these media types."""
+    schema = {"type": "string", "contentMediaType": "application/octet-stream"}
+    header = {"description": "How the file is called.", "schema": {"type": "string"}}
+    content = {kind: {"schema": schema} for kind in kinds}
+    return {200: {"description": what, "content": content, "headers": {"Content-Disposition": header}}}
+
+
+def with_location(status: int, what: str, *, etag: bool = False) -> Responses:
+    """The description of an answer about something new: `Location` says where it is."""
+    headers = {"Location": {"description": "Where it is.", "schema": {"type": "string"}}}
+    if etag:
+        headers["ETag"] = {"description": "Its version, for If-Match.", "schema": {"type": "string"}}
+    return {status: {"description": what, "headers": headers}}
+
+
+def file_answer(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:
+    """A file as it is: a browser keeps it, or shows it without letting it reach anything of this site."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "._- ") else "_" for c in name) or "file"
+    how = "inline" if shown_in_place else "attachment"
+    headers = {
+        "Content-Disposition": f"{how}; filename=\"{plain}\"; filename*=UTF-8''{quote(name, safe='')}",
+        "X-Content-Type-Options": "nosniff",
+        "Content-Security-Policy": "sandbox allow-scripts allow-downloads",
+        "Cache-Control": "no-store",
+    }
+    return Response(data, headers=headers, media_type=kind)
+
+
+async def parcel_answer(files: Mapping[str, str], name: str) -> Response:
+    """Files by their names, in base64, as one answer: as it is if it is one, otherwise packed into a ZIP."""
+    data, called = await parcel(files, name)
+    return file_answer(data, called, "application/octet-stream" if len(files) == 1 else "application/zip")

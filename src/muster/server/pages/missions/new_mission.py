@@ -1,0 +1,172 @@
+"""The dialog that makes a mission: empty, from a shipped one, or from files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from nicegui import events, ui
+
+from muster.mission.errors import ParameterError
+from muster.mission.yaml_writer import flow_text
+from muster.server.pages.buttons import once
+from muster.server.pages.notices import told, warn
+from muster.server.pages.visitor import the_asker, the_desk
+from muster.server.work import WorkError
+
+EMPTY = """\
+schema: muster/1
+name: {name}
+rules: {{objective: total+max}}
+robots:
+  - {{id: r_0, position: [0, 0], speed_mps: 1}}
+  - {{id: r_1, position: [3, 0], speed_mps: 1}}
+tasks:
+  - {{id: 1, position: [5, 8]}}
+"""
+EMPTY_IN_SPACE = """\
+schema: muster/1
+name: {name}
+rules: {{objective: total+max}}
+robots:
+  - {{id: r_0, kind: air, position: [0, 0, 0], speed_mps: 2}}
+  - {{id: r_1, kind: air, position: [3, 0, 0], speed_mps: 2}}
+tasks:
+  - {{id: 1, position: [5, 8, 4]}}
+"""
+_STARTS = {
+    "": (EMPTY, "A small start: two robots, one task"),
+    "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
+}
+_ACCEPT = ".yaml,.yml,.csv,.tsp,.plan,.png,.pgm,.jpg"
+_MOST_BYTES = 16 * 2**20
+_REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
+_CSV = (  # as `mission.thesis_csv` reads them
+    "Tasks: index, x, y, type, actuation_cost, prerequisites; also z.",
+    "Robots, in a file with the word robots in its name: id, type, x, y, work_capacity; also z.",
+    "Suitability, if types matter, in a file with that word in its name: robot types in the first column, "
+    "task types in the first line.",
+)
+
+
+async def open_making() -> None:
+    """Open the dialog; the mission that is made is opened in Plan."""
+    with told():
+        shipped = [entry.id for entry in await the_desk().missions.list() if entry.shipped]
+        with ui.dialog() as dialog, ui.card().classes("making"):
+            ui.label("New mission").classes("dialog-title")
+            name = ui.input("Name", value="my mission").props("outlined dense autofocus").classes("full")
+            start = ui.select(
+                {name: words for name, (_, words) in _STARTS.items()} | {one: one for one in shipped},
+                value="",
+                label="Begin with",
+                with_input=True,
+            )
+            start.props("outlined dense").classes("full")
+            with ui.element("div").classes("dialog-buttons"):
+                ui.button("Cancel", on_click=dialog.close).props("flat")
+                ui.button("Make it", on_click=once(lambda: _make(name.value, start.value or ""))).props("unelevated")
+            ui.separator()
+            _uploading()
+        dialog.open()
+
+
+def _uploading() -> None:
+    ui.label("Or from a file").classes("dialog-title")
+    ui.label(
+        "A mission (YAML, with the files that it names), tasks and robots (CSV, chosen together), a problem of TSPLIB, "
+        "or a plan of QGroundControl."
+    ).classes("quiet small")
+    with ui.element("details").classes("more small"):
+        with ui.element("summary"):
+            ui.label("What CSV files need")
+        for words in _CSV:
+            ui.label(words)
+    salesmen = ui.number("Robots, for a problem of TSPLIB", value=3, min=1, precision=0)
+    salesmen.props("outlined dense").classes("full")
+
+    async def take(event: events.MultiUploadEventArguments) -> None:
+        await _upload({file.name: await file.read() for file in event.files}, int(salesmen.value or 3))
+
+    upload = ui.upload(
+        label="Choose or drop files",
+        multiple=True,
+        auto_upload=True,
+        max_file_size=_MOST_BYTES,
+        on_multi_upload=take,
+    )
+    upload.on("rejected", lambda event: warn(refused(event.args)), js_handler=_REJECTED)
+    upload.props(f'accept="{_ACCEPT}" flat bordered').classes("full")
+
+
+def refused(files: Sequence[tuple[str, str, int]]) -> str:
+    """Why files were not taken, one a line: each is what was wrong, its name, and its size in bytes."""
+    lines = []
+    for wrong, name, size in files:
+        if wrong == "max-file-size":
+            lines.append(f"{name}: {size / 2**20:.1f} MiB is too large; expected at most {_MOST_BYTES // 2**20} MiB")
+        else:
+            lines.append(f"{name}: not a kind of file that can be read; expected {_ACCEPT.replace(',', ', ')}")
+    return "\n".join(lines)
+
+
+async def _make(name: str, start: str) -> None:
+    missions = the_desk().missions
+    title = name.strip() or "mission"
+    if start not in _STARTS:
+        old = await missions.get(start)
+        made = await missions.create(the_asker(), await named(old.text, title), dict(old.files), title)
+    else:
+        made = await missions.create(the_asker(), _STARTS[start][0].format(name=flow_text(title)), {}, title)
+    ui.navigate.to(f"/plan/{made.mission}")
+
+
+async def named(text: str, name: str) -> str:
+    """A mission's text with another name; one that cannot be edited keeps its own."""
+    try:
+        return str(await the_desk().missions.edit(text, "rename", name))
+    except WorkError:
+        return text
+
+
+async def _upload(files: dict[str, bytes], salesmen: int) -> None:
+    with told():
+        name, beside = sorted_out(list(files))
+        options = options_of(name, beside, salesmen)
+        rest = {other: data for other, data in files.items() if other != name}
+        made = await the_desk().missions.upload(the_asker(), name, files[name], rest, **options)
+        ui.navigate.to(f"/plan/{made.mission}")
+
+
+def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str, Any]:
+    """What has to be known of a mission's file besides, by its kind.
+
+    Raises
+    ------
+    ParameterError
+        for a task-list CSV without robots.
+    """
+    kind = PurePath(name).suffix.lower()
+    if kind == ".tsp":
+        return {"salesmen": salesmen, "depot": "1"}
+    if kind != ".csv":
+        return {}
+    if "robots" not in beside:
+        raise ParameterError(
+            f"{name}: the robots are missing; expected two CSV files chosen together, of which one has the word "
+            "robots in its name"
+        )
+    return dict(beside)
+
+
+def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
+    """Which of files that are chosen together is the mission, and which has its robots and its suitability."""
+    beside = {}
+    for kind, word in (("robots", "robot"), ("suitability", "suitab")):
+        named_so = [name for name in names if name.lower().endswith(".csv") and word in name.lower()]
+        if named_so and len(names) > 1:
+            beside[kind] = named_so[0]
+    rest = [name for name in names if name not in beside.values()]
+    rest.sort(key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".plan", ".csv")))
+    return rest[0], beside

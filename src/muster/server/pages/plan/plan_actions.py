@@ -1,0 +1,113 @@
+"""What can be done with a plan: carry it out, take it away as a file, bring one along, compare it with another."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from nicegui import events, ui
+
+from muster.mission.errors import ParameterError
+from muster.mission.plan import json_text
+from muster.server.pages.notices import say, told
+from muster.server.pages.plan.start_run import open_start
+from muster.server.pages.visitor import may_command, on_the_wall, the_asker, the_desk
+from muster.server.services.archives import parcel
+
+if TYPE_CHECKING:
+    from muster.server.pages.plan.plan_panel import Answer
+
+_FORMATS = {
+    "": "Plan file (JSON)",
+    "csv": "Table of visits (CSV)",
+    "geojson": "GeoJSON",
+    "kml": "KML",
+    "gpx": "GPX",
+    "qgc": "QGroundControl",
+}
+_ON_EARTH = ("geojson", "kml", "gpx", "qgc")
+_NOT_ON_EARTH = "needs origin_wgs84 in the mission: where on Earth it is"
+_PICTURES = {"routes": "Picture of the routes (SVG)", "gantt": "Picture of the schedule (SVG)"}
+_MOST_BYTES = 16 * 2**20
+
+
+class Taking:
+    """Buttons below a plan."""
+
+    def __init__(self, answer: Answer) -> None:
+        self._answer = answer
+        self._commands = may_command() and not on_the_wall()
+        self._bar = ui.element("div").classes("bar control")
+        self.show()
+
+    def show(self, *, on_earth: bool = True) -> None:
+        """Show what can be done with the plan that is shown now; `on_earth`: its mission says where on Earth it is."""
+        self._bar.clear()
+        entry = self._answer.entry
+        with self._bar:
+            if entry is not None and self._commands:
+                ui.button("Carry out", icon="play_arrow", on_click=self._start).props('unelevated id="carry-out"')
+            if entry is not None:
+                self._exports(entry.id, on_earth)
+            others = [other for other in self._answer.entries if entry is not None and other.id != entry.id]
+            if others and entry is not None:
+                target = f"/plan/{self._answer.mission}/compare?a={others[0].id}&b={entry.id}"
+                ui.button("Compare", icon="compare", on_click=lambda: ui.navigate.to(target)).props("outline")
+            if self._commands:
+                ui.button("Upload a plan", on_click=self._open_upload).props("flat")
+
+    def _exports(self, plan: int, on_earth: bool) -> None:
+        with ui.dropdown_button("Export", icon="download", auto_close=True).props('outline id="export"'), ui.list():
+            for name, words in _FORMATS.items():
+                if name in _ON_EARTH and not on_earth:
+                    with ui.item().props("disable"), ui.item_section():
+                        ui.item_label(words)
+                        ui.item_label(_NOT_ON_EARTH).props("caption")
+                else:
+                    ui.item(words, on_click=lambda name=name: self._export(plan, name))
+            for what, words in _PICTURES.items():
+                ui.item(words, on_click=lambda what=what: self._picture(plan, what))
+
+    async def _export(self, plan: int, form: str) -> None:
+        with told():
+            plans = the_desk().plans
+            if form:
+                content, name = await parcel(await plans.export(plan, form), f"plan-{plan}-{form}")
+            else:
+                content, name = json_text((await plans.get(plan)).plan).encode(), f"plan-{plan}.json"
+            ui.download.content(content, name)
+
+    async def _picture(self, plan: int, what: str) -> None:
+        with told():
+            ui.download.content(await the_desk().plans.picture(plan, what, "svg"), f"{what}-{plan}.svg")
+
+    async def _start(self) -> None:
+        entry = self._answer.entry
+        if entry is None:
+            return
+        with told():
+            missions = {mission.id: mission for mission in await the_desk().missions.list()}
+            if entry is not self._answer.entry:  # another plan is chosen meanwhile
+                return
+            open_start(entry, missions[entry.mission].dimensions if entry.mission in missions else 2)
+
+    def _open_upload(self) -> None:
+        with ui.dialog() as dialog, ui.card().classes("making"):
+            ui.label("Upload a plan of this mission").classes("dialog-title")
+            ui.label("A plan file (JSON), also of another program: it needs `schema` and `routes`.").classes("quiet")
+
+            async def take(event: events.UploadEventArguments) -> None:
+                with told():
+                    try:
+                        plan = json.loads(await event.file.read())
+                    except ValueError as error:
+                        raise ParameterError(f"{event.file.name}: {error}; expected a plan file (JSON)") from None
+                    entry = await the_desk().plans.upload(the_asker(), self._answer.mission, plan)
+                    dialog.close()
+                    say("The plan is uploaded.")
+                    await self._answer.show_newest(entry.id)
+
+            ui.upload(auto_upload=True, max_file_size=_MOST_BYTES, on_upload=take).props('accept=".json" flat bordered')
+            with ui.element("div").classes("dialog-buttons"):
+                ui.button("Close", on_click=dialog.close).props("flat")
+        dialog.open()

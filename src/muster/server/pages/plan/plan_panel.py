@@ -1,0 +1,174 @@
+"""The right side of Plan, below the controls: the plan that is shown, its figures, who does what, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from nicegui import ui
+
+from muster.exchange.mission_control import PlanEntry
+from muster.server.pages.charts import Curve, Gantt
+from muster.server.pages.editing.draft import Draft
+from muster.server.pages.map import MissionMap
+from muster.server.pages.missions.view import ago
+from muster.server.pages.notices import told
+from muster.server.pages.plan.explanation import Why
+from muster.server.pages.plan.figures import figures_list, figures_of, left_out, lines_of, objective_unit, robots_table
+from muster.server.pages.plan.plan_actions import Taking
+from muster.server.pages.visitor import the_desk
+
+MOST_PLANS = 1000  # that are listed to choose from
+
+
+class Answer:
+    """Shows one plan of a mission: on the map, as figures and tables, in time."""
+
+    def __init__(self, draft: Draft, ground: MissionMap) -> None:
+        self._draft = draft
+        self._map = ground
+        self._entries: Sequence[PlanEntry] = ()
+        self._entry: PlanEntry | None = None
+        self._chosen: Mapping[str, Any] | None = None
+        self._gantt: Gantt
+        with ui.element("div").classes("panel answer"):
+            with ui.element("div").classes("bar"):
+                self._choice = ui.select({}, label="Plan", on_change=self._chosen_plan)
+                self._choice.props('outlined dense options-dense id="plans"').classes("plan-choice")
+                self._outdated = ui.label("made for another text of the mission").classes("outdated").props("hidden")
+            self._none = ui.label("No plan yet.").classes("quiet")
+            self.why = Why(self)
+            self._body = ui.element("div").classes("answer-body")
+            self.taking = Taking(self)
+        draft.on_change.append(lambda _: self._show_outdated())
+
+    def build_gantt(self) -> None:
+        """Build the time chart where the page wants it."""
+        self._chart = ui.element("div").classes("panel scrolling").props("hidden")
+        with self._chart:
+            self._gantt = Gantt()
+            self._gantt.on("choose", lambda event: self._choose_named("task", event.args))
+
+    @property
+    def entry(self) -> PlanEntry | None:
+        """The plan that is shown."""
+        return self._entry
+
+    @property
+    def entries(self) -> Sequence[PlanEntry]:
+        """The newest plans of the mission, and the one that was asked for; the newest first."""
+        return self._entries
+
+    @property
+    def mission(self) -> str:
+        """The mission's id."""
+        return self._draft.id
+
+    async def begin(self, plan: int | None) -> None:
+        """Show a plan, or the newest if there is one."""
+        await self._list(plan)
+        known = [entry.id for entry in self._entries]
+        if known:
+            self._choice.set_value(plan if plan in known else known[0])
+
+    async def show_newest(self, plan: int) -> None:
+        """Show a plan that has just been made."""
+        await self._list(plan)
+        self._choice.set_value(plan)
+
+    async def _list(self, plan: int | None) -> None:
+        """List the newest plans, and one that may be older."""
+        entries = await the_desk().plans.list(self._draft.id, MOST_PLANS)
+        if plan is not None and entries and plan < entries[-1].id:
+            entries += await the_desk().plans.list(self._draft.id, 1, before=plan + 1)
+        self._entries = entries
+        self._choice.set_options({entry.id: title_of(entry) for entry in self._entries}, value=self._choice.value)
+        self._choice.set_visibility(bool(self._entries))
+        self._none.set_visibility(not self._entries)
+
+    async def _chosen_plan(self) -> None:
+        chosen = self._choice.value
+        if chosen is None:
+            return
+        self._show_no_plan()
+        with told():
+            entry = await the_desk().plans.get(chosen)
+            if self._choice.value != chosen:  # another one meanwhile
+                return
+            self._entry = entry
+            self._show_judging(entry)
+            verdict = await the_desk().plans.verdict(entry.id)
+            version = await the_desk().missions.get(entry.mission, entry.mission_version)
+            on_earth = bool((await the_desk().missions.look(version.text, "origin_wgs84")).get("origin_wgs84"))
+            if self._entry is entry:
+                self._show(entry, verdict, on_earth=on_earth)
+
+    def _show_no_plan(self) -> None:
+        """Until a chosen plan is known nothing can be done with it, nor with the one before."""
+        self._entry = None
+        self._show_outdated()
+        self._body.clear()
+        self.taking.show()
+        self.why.clear()
+        self.choose(self._chosen)
+
+    def _show_judging(self, entry: PlanEntry) -> None:
+        self._show_outdated()
+        self._body.clear()
+        with self._body:
+            figures_list(figures_of(entry.plan))
+            with ui.element("div").classes("bar").props('role="status"'):
+                ui.spinner(size="1.2em")
+                ui.label("The judge goes through the plan: ways, times, rules.").classes("quiet")
+
+    def _show(self, entry: PlanEntry, verdict: Mapping[str, Any], *, on_earth: bool) -> None:
+        self._map.show_plan(lines_of(entry.plan, verdict))
+        self._gantt.show(verdict["routes"])
+        self._chart.props(remove="hidden")
+        self._body.clear()
+        with self._body:
+            figures_list(figures_of(entry.plan, verdict))
+            left_out(entry.plan, self._choose_named)
+            _how_found(entry.plan)
+            robots_table(verdict["routes"], str(entry.plan.get("usage_unit", "")), self._choose_named)
+        self.taking.show(on_earth=on_earth)
+        self.why.clear()
+        self.choose(self._chosen)
+
+    def _show_outdated(self) -> None:
+        entry = self._entry
+        old = entry is not None and (not self._draft.is_saved or entry.mission_version != self._draft.base.version)
+        self._outdated.props(remove="hidden") if old else self._outdated.props("hidden")
+
+    def choose(self, one: Mapping[str, Any] | None) -> None:
+        """Take what was chosen on the map."""
+        self._chosen = one
+        self.why.offer(one["id"] if one and one["what"] == "task" else None)
+
+    def _choose_named(self, what: str, name: str) -> None:
+        self._map.choose(what, name)
+        self.choose({"what": what, "id": name})
+
+
+def _how_found(plan: Mapping[str, Any]) -> None:
+    """The improvements that led to a plan, folded away."""
+    history = plan.get("history") or []
+    if len(history) < 2:
+        return
+    with ui.element("details").classes("more"):
+        with ui.element("summary"):
+            ui.label("How it was found")
+        Curve().show(history, plan.get("lower_bound"), plan.get("elapsed_s") or 0.0)
+
+
+def title_of(entry: PlanEntry) -> str:
+    """How a plan is named in a list."""
+    plan = entry.plan
+    objective = plan.get("objective") or {}
+    value = objective.get("value")
+    parts = [str(plan.get("allocator") or entry.origin)]
+    if value is not None:
+        parts.append(f"{objective.get('name', '')} {value:.2f} {objective_unit(plan)}".rstrip())
+    if plan.get("tasks_total") is not None:
+        parts.append(f"{plan.get('tasks_completed')} of {plan['tasks_total']} tasks")
+    return f"{entry.version}: {', '.join(parts)}, {ago(entry.at)}"

@@ -1,0 +1,86 @@
+"""What a log says of a run of real robots that a crash has ended: what was done, and what is left to do.
+
+A task that must be begun at most once (`across_partition`) and was begun, and whose end is not in the log, is not begun
+again: nobody knows how far it came.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from muster.execution import Deed, Past
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, plan_from
+from muster.report.record.mission_state import Situation
+
+BARRED = "it was begun before a crash, and may be begun at most once; its end is not known"
+_OURS = ("plan", "report", "command", "resumed", "robot_joins")
+_OUT = ("robot_fails", "robot_stuck")
+
+
+@dataclass(frozen=True)
+class Aftermath:
+    """The mission with tasks added and moved, the plan that was in force, and what was done."""
+
+    mission: Mission
+    plan: Plan
+    past: Past
+
+
+def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Aftermath:
+    """What a log says: entries with `time_s`, `kind`, `data`."""
+    situation = Situation(mission)
+    arrives: dict[str, float] = {}
+    starts: dict[str, float] = {}
+    done: dict[str, Deed] = {}
+    cancelled: dict[str, float] = {}
+    delays: dict[str, float] = {}
+    used: dict[str, float] = {}
+    failed: dict[str, float] = {}
+    routes: Mapping[str, Any] | None = None
+    for entry in log:
+        now, kind, data = float(entry["time_s"]), entry["kind"], entry["data"]
+        if kind not in _OURS:
+            situation.take(kind, data)
+        if "used" in data:
+            used[data["robot"]] = data["used"]
+        if kind == "plan":
+            routes = data["plan"]
+        elif kind == "arrives":
+            arrives[data["task"]] = now
+        elif kind == "starts":
+            starts[data["task"]] = now
+        elif kind == "ends":
+            task, robot = data["task"], data["robot"]
+            usage = (data["usage"][0], data["usage"][1])
+            done[task] = Deed(
+                robot=robot,
+                arrives_s=arrives.get(task, now),
+                starts_s=starts.get(task, now),
+                ends_s=now,
+                arrival_usage=data["arrival_usage"],
+                usage=usage,
+            )
+        elif kind == "cancel_task":
+            cancelled[data["task"]] = now
+        elif kind == "delay_task":
+            delays[data["task"]] = delays.get(data["task"], 0.0) + data["by_s"]
+        elif kind in _OUT:
+            failed[data["robot"]] = now
+        elif kind == "robot_returns":
+            failed.pop(data["robot"], None)
+    once = {name for name, task in situation.tasks.items() if task.across_partition == "at-most-once"}
+    barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
+    past = Past(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
+    names = tuple(robot.id for robot in mission.robots)
+    tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
+    whole = mission.at_once(tasks=tasks)
+    return Aftermath(whole, plan if routes is None else _of_those(routes, names), past)
+
+
+def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:
+    """The plan without routes of robots that joined: they are found again, or not."""
+    routes = [route for route in plan["routes"] if route["robot"] in robots]
+    return plan_from({**plan, "routes": routes}, "the log")

@@ -1,0 +1,174 @@
+"""The scribe of a run: all that is told while a mission is carried out, as entries of its log and as tracks.
+
+A run that is simulated again after a crash tells the same again: what the log has already is compared with it and not
+said twice.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.report.record.json_messages import json_bytes
+from muster.report.record.mission_state import Situation
+from muster.report.record.routes import RouteLines
+from muster.server.runs.log_lines import line_of
+from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
+
+RESUMED = "resumed"
+
+
+class DivergedError(MusterError):
+    """What was simulated again is not what the log says."""
+
+
+class Out(Protocol):
+    """Takes what is to be told."""
+
+    def entry(self, text: Mapping[str, Any]) -> None: ...
+    def stretch(self, from_s: float, until_s: float, data: bytes) -> None: ...
+
+
+class Scribe:
+    """Writes a run's log; a `Recorder`.
+
+    Parameters
+    ----------
+    mission
+        that is carried out.
+    out
+        is given what is new.
+    log
+        what the log has already, in order: `seq`, `time_s`, `kind`, `data`.
+    tracked_s
+        up to when tracks are kept already.
+    stretch_s
+        seconds of mission time a stretch.
+    again
+        whether what the log has will be told again, to be compared; otherwise it goes on behind it.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        out: Out,
+        *,
+        log: Iterable[Mapping[str, Any]] = (),
+        tracked_s: float = 0.0,
+        stretch_s: float = 5.0,
+        again: bool = True,
+    ) -> None:
+        entries = list(log)
+        self._out = out
+        self._situation = Situation(mission)
+        self._routes = RouteLines(mission)
+        self._said = deque(entries if again else ())
+        self._seq = 0 if again or not entries else int(entries[-1]["seq"])
+        self._track = Track(stretch_s)
+        self._tracked_s = tracked_s
+        self._held: list[Callable[[], None]] | None = None
+        self._now = float(entries[-1]["time_s"]) if entries and not again else 0.0
+        self.rows: dict[str, Row] = {}
+        self.rows_s = 0.0
+        for entry in entries if not again else ():
+            if entry["kind"] not in (RESUMED, "plan", "command", "report"):
+                self._situation.take(entry["kind"], entry["data"])
+
+    @property
+    def catching_up(self) -> bool:
+        """Whether the log still has what was not told again."""
+        self._skip_resumed()
+        return bool(self._said)
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        """See `Recorder`."""
+        states = np.column_stack([positions, headings, velocities])
+        rows = zip(self._situation.robots, states.tolist(), strict=True)
+        self.rows = {name: row for name, row in rows if all(map(math.isfinite, row))}
+        self.rows_s = float(now)
+        self._now = max(self._now, self.rows_s)
+        self._keep(self._track.add(self.rows_s, self.rows))
+
+    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        """See `Recorder`."""
+        self._situation.take(kind, data)
+        self.write(now, kind, data)
+
+    def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
+        """See `Recorder`: where robots are is in the steps."""
+
+    def on_plan(self, now: float, plan: Plan) -> None:
+        """See `Recorder`; the routes go with it as lines, from where robots are."""
+        places = {name: tuple(row[:3]) for name, row in self.rows.items()}
+        lines = self._routes.of(plan, self._situation, places)
+        self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines})
+
+    def on_report(self, report: Mapping[str, Any]) -> None:
+        """See `Recorder`."""
+        self._keep(self._track.take())
+        self.write(self._now, "report", report)
+
+    def hold(self) -> None:
+        """Keep back what is told from now on, until `write_first`."""
+        self._held = []
+
+    def write_first(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Write an entry, and then what was kept back."""
+        held, self._held = self._held or [], None
+        self.write(now, kind, data)
+        for write in held:
+            write()
+
+    def write(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        """The next entry of the log.
+
+        Raises
+        ------
+        DivergedError
+            if the log has another in its place.
+        """
+        if self._held is not None:
+            self._held.append(partial(self.write, now, kind, data))
+            return
+        if kind != RESUMED:
+            self._skip_resumed()
+        self._seq += 1
+        self._now = max(self._now, float(now))
+        plain = json.loads(json_bytes(data))
+        entry = {"seq": self._seq, "time_s": round(self._now, 9), "kind": kind, "data": plain}
+        if self._said:
+            self._compare(entry, self._said.popleft())
+        else:
+            self._out.entry({"type": "entry", **entry, "line": line_of(kind, plain)})
+
+    def _skip_resumed(self) -> None:
+        """That it was resumed before is not told again."""
+        while self._said and self._said[0]["kind"] == RESUMED:
+            self._said.popleft()
+            self._seq += 1
+
+    def _compare(self, made: Mapping[str, Any], said: Mapping[str, Any]) -> None:
+        for key in ("seq", "kind", "time_s", "data"):
+            if made[key] != said[key]:
+                was, now = (f"{one['kind']} at {one['time_s']:g} s" for one in (said, made))
+                where = f" ({key} differs)" if was == now else f", not {now}"
+                raise DivergedError(f"simulated again, entry {said['seq']} of the log should be {was}{where}")
+
+    def _keep(self, steps: Steps | None) -> None:
+        if steps is None:
+            return
+        if self._held is not None:
+            self._held.append(partial(self._keep, steps))
+            return
+        first, last = float(steps.times_s[0]), float(steps.times_s[-1])
+        if last > self._tracked_s + 1e-6:
+            self._out.stretch(first, last, packed(steps))

@@ -1,0 +1,248 @@
+"""Writes a run to the database, in small batches and off the event loop; while that refuses, keeps it in memory.
+
+What a run says comes in order, and is written in order: entries and tracks in one transaction, then the outcomes of
+users' actions, then the run's own fields. Entries are given on to watchers when they are kept, or cannot be.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from muster.exchange.mission_control import ConflictError, Entry, Stretch
+from muster.mission.errors import MusterError
+
+if TYPE_CHECKING:
+    from muster.server.store.store import Store
+
+BATCH_S = 0.1
+AGAIN_S = 2.0
+PATIENCE_S = 2.0
+ENTRIES_MOST = 100_000
+TRACKS_MOST = 64 * 2**20
+"""Seconds between two batches; until a database that refuses is asked again; until one that says nothing counts as one
+that refuses; what is kept in memory meanwhile.
+"""
+_AT_ONCE = 500
+_BEHIND = 5000
+
+_log = logging.getLogger("muster.runs")
+
+
+class Journal:
+    """Of one run.
+
+    Parameters
+    ----------
+    on_entries
+        is given entries, each once and in order, when they are kept, or the database refuses them.
+    on_trouble
+        is told why the database refuses, and the empty text when it works again.
+    on_lost
+        is told that somebody else has written this log: nothing more is.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        run: int,
+        *,
+        on_entries: Callable[[Sequence[Entry]], None],
+        on_trouble: Callable[[str], None],
+        on_lost: Callable[[str], None],
+    ) -> None:
+        self._store, self._run = store, run
+        self._on_entries, self._on_trouble, self._on_lost = on_entries, on_trouble, on_lost
+        self._entries: list[Entry] = []
+        self._stretches: list[Stretch] = []
+        self._fields: dict[str, Any] = {}
+        self._late: list[Callable[[], object]] = []
+        self._given = 0
+        self._last_stretch: int | None = None
+        self._dropped = 0
+        self._wake, self._drained = asyncio.Event(), asyncio.Event()
+        self._drained.set()
+        self._closing = False
+        self.trouble, self._lost = "", False
+        self._task = asyncio.create_task(self._go())
+
+    def add(self, entry: Entry) -> None:
+        """Keep an entry."""
+        self._entries.append(entry)
+        if self.trouble:
+            self._give([entry])
+        self._ask()
+
+    def add_stretch(self, from_s: float, until_s: float, data: bytes) -> None:
+        """Keep a stretch of tracks; those that cannot be kept for long are lost, the oldest first."""
+        self._stretches.append(Stretch(run=self._run, seq=0, from_s=from_s, until_s=until_s, data=data))
+        while self.trouble and sum(len(one.data) for one in self._stretches) > TRACKS_MOST:
+            self._drop_stretch()
+        self._ask()
+
+    def set(self, **fields: Any) -> None:
+        """Keep fields of the run."""
+        self._fields |= fields
+        self._ask()
+
+    def later(self, write: Callable[[], object]) -> None:
+        """Something else to be written behind what was said until now: the outcome of an action."""
+        self._late.append(write)
+        self._ask()
+
+    @property
+    def behind(self) -> bool:
+        """Whether a database that works does not keep up: who says more should wait."""
+        return len(self._entries) > _BEHIND and not self.trouble
+
+    @property
+    def full(self) -> bool:
+        """Whether more entries wait than are kept in memory."""
+        return len(self._entries) > ENTRIES_MOST
+
+    async def drained(self) -> None:
+        """Wait until all is in the database, or nothing more is written."""
+        await self._drained.wait()
+
+    async def given(self) -> None:
+        """Wait until all that was said is in the database, or it has refused it."""
+        while not self._drained.is_set() and not self.trouble:
+            await asyncio.sleep(BATCH_S / 4)
+
+    async def entries(self, after: int, limit: int | None = None) -> list[Entry]:
+        """Those beyond `after`: from the database, and behind them those that it has not.
+
+        Raises
+        ------
+        StoreError
+            if they can only be in the database, and it cannot be read.
+        """
+        waiting = [entry for entry in self._entries if entry.seq > after and entry.seq <= self._given]
+        if not waiting or waiting[0].seq > after + 1:
+            kept = await asyncio.to_thread(self._store.log.entries, self._run, after, limit)
+            waiting = [*kept, *(entry for entry in waiting if not kept or entry.seq > kept[-1].seq)]
+        return waiting[:limit]
+
+    async def close(self) -> bool:
+        """Try once more; returns whether all was written."""
+        self._closing = True
+        self._ask()
+        return await self._task
+
+    def _ask(self) -> None:
+        self._drained.clear()
+        self._wake.set()
+
+    async def _go(self) -> bool:
+        """Write until it is closed; returns whether all was written."""
+        while True:
+            await self._wake.wait()
+            self._wake.clear()
+            begun = time.monotonic()
+            works = await self._write()
+            if works and not (self._entries or self._stretches or self._fields or self._late):
+                self._drained.set()
+            if self._closing and (self._drained.is_set() or not works):
+                self._drained.set()
+                return works
+            if not works:
+                self._wake.set()
+            pause = (BATCH_S if works else AGAIN_S) - (time.monotonic() - begun)
+            if not self._closing:
+                await asyncio.sleep(max(0.0, pause))
+
+    async def _write(self) -> bool:
+        """One batch; returns whether the database took it."""
+        if self._lost:
+            self._forget()
+            return True
+        entries, stretches = self._entries[:_AT_ONCE], self._stretches[:_AT_ONCE]
+        fields, late = dict(self._fields), list(self._late)
+        whole = len(entries) == len(self._entries)
+        trouble = ""
+        try:
+            if entries or stretches:
+                await self._append_patiently(entries, stretches)
+            for write in late if whole else ():
+                await self._patiently(write)
+                self._late.remove(write)
+            if fields and whole:
+                await self._patiently(partial(self._store.runs.set, self._run, **fields))
+                self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
+        except ConflictError as error:  # which no other try would mend
+            self._lost = True
+            self._forget()
+            self._on_lost(str(error))
+            return True
+        except Exception as error:  # whatever it is: what cannot be written is kept, and tried again
+            known = isinstance(error, MusterError)
+            trouble = str(error) if known else f"an error of mission control: {type(error).__name__}: {error}"
+            if trouble != self.trouble and not known:
+                _log.exception("run %d", self._run)
+        self._give(entries if not trouble else list(self._entries))
+        self._be_troubled(trouble)
+        if self._entries or self._stretches:
+            self._wake.set()
+        return not trouble
+
+    async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
+        """Write the first entries and stretches; none of these is dropped meanwhile, nor another in its place."""
+        del self._stretches[: len(stretches)]
+        try:
+            await self._patiently(self._append, entries, stretches)
+        except BaseException:
+            self._stretches[:0] = stretches
+            raise
+        del self._entries[: len(entries)]
+
+    async def _patiently(self, write: Callable[..., object], *arguments: Any) -> None:
+        """Write in a thread; where that takes its time, what waits is given on meanwhile."""
+        writing = asyncio.create_task(asyncio.to_thread(write, *arguments))
+        done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
+        if not done:
+            self._be_troubled(self.trouble or "the database takes its time")
+            self._give(list(self._entries))
+        await writing
+
+    def _be_troubled(self, why: str) -> None:
+        """Why the database refuses; empty: it works."""
+        if why != self.trouble:
+            self.trouble = why
+            _log.warning("run %d: %s", self._run, why or f"the database works again; {self._kept()}")
+            self._dropped = 0
+            self._on_trouble(why)
+
+    def _drop_stretch(self) -> None:
+        """Lose the oldest tracks."""
+        if not self._dropped:
+            _log.warning("run %d: more than %d bytes of tracks wait; the oldest are lost", self._run, TRACKS_MOST)
+        del self._stretches[0]
+        self._dropped += 1
+
+    def _kept(self) -> str:
+        return f"all is kept but {self._dropped} stretches of tracks" if self._dropped else "all is kept"
+
+    def _forget(self) -> None:
+        """What is not written will not be."""
+        for waiting in (self._entries, self._stretches, self._late, self._fields):
+            waiting.clear()
+
+    def _append(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
+        """In a thread. Stretches are numbered as they are written, as some may have been lost."""
+        if self._last_stretch is None:
+            self._last_stretch = self._store.log.last_stretch(self._run)
+        numbered = [replace(one, seq=self._last_stretch + k) for k, one in enumerate(stretches, start=1)]
+        time_s = max([*(one.time_s for one in entries), *(one.until_s for one in stretches)])
+        self._store.log.append(self._run, time_s, entries, numbered)
+        self._last_stretch += len(numbered)
+
+    def _give(self, entries: Sequence[Entry]) -> None:
+        new = [entry for entry in entries if entry.seq > self._given]
+        if new:
+            self._given = new[-1].seq
+            self._on_entries(new)

@@ -1,0 +1,149 @@
+"""A plan carried out by real robots, from where they stand; after a crash what is left of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from muster.bridges.fleet import Fleet
+from muster.execution import Recorder, Report, Status, broken_off
+from muster.mission.model import Event, Mission
+from muster.mission.plan import Plan
+from muster.motion.grid import Floats
+from muster.motion.port import Telemetry
+from muster.running.live import Live, elsewhere, from_where_they_stand
+from muster.server.runs.crash_recovery import aftermath
+
+_OF_WORK = ("sets_out", "arrives", "starts", "ends")
+LOOK_S = 0.1
+"""Seconds between two looks at the robots, where nothing is heard before."""
+
+
+class RealCourse:
+    """See `performance.Course`.
+
+    Parameters
+    ----------
+    log
+        what was logged before a crash; empty for a run that begins.
+    begin_s
+        when it begins, or goes on.
+    at_end
+        what else robots are told when all is done.
+    """
+
+    real = True
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        fleet: Fleet,
+        recorder: Recorder,
+        *,
+        seed: int = 0,
+        log: Sequence[Mapping[str, Any]] = (),
+        begin_s: float = 0.0,
+        at_end: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
+        self._paused = False
+        found = aftermath(mission, plan, log)
+        there = from_where_they_stand(found.mission, fleet)
+        gauged = _Gauged(recorder)
+        self._live = Live(
+            there,
+            found.plan,
+            fleet,
+            seed=seed,
+            recorder=gauged,
+            past=found.past if log else None,
+            begin_s=begin_s,
+        )
+        gauged.live = self._live
+        if log:
+            self._live.executor.plan_again("resumed", {"how": "from where robots stand"})
+        else:
+            for line in elsewhere(mission, there):
+                self._live.executor.tell("elsewhere", {"what": line})
+
+    @property
+    def time_s(self) -> float:
+        return self._live.time_s
+
+    @property
+    def next_s(self) -> float:
+        return self.time_s
+
+    @property
+    def done(self) -> bool:
+        return self._live.done
+
+    @property
+    def status(self) -> Status:
+        return self._live.status
+
+    def go_on(self) -> None:
+        """Hear robots for a while, and send them on unless it is paused."""
+        self._live.hear(self.time_s + LOOK_S)
+        if self._paused:
+            self._live.tell_places()
+            return
+        self._live.look()
+        if self.done:
+            self._fleet.stop()
+            self._at_end()
+            self._recorder.on_report(self._live.result().as_dict())
+
+    def report(self, event: Event) -> None:
+        self._live.executor.come_to(self.time_s)
+        self._live.executor.report(event)
+
+    def break_off(self, reason: str) -> Report:
+        self._fleet.stop()
+        report = broken_off(self._live.result(), self._live.executor.account, reason)
+        self._recorder.on_report(report.as_dict())
+        return report
+
+    def pause(self) -> None:
+        self._live.pause()
+        self._paused = True
+
+    def resume(self) -> None:
+        self._live.resume()
+        self._paused = False
+
+    def close(self) -> None:
+        """Robots are told to stand, whatever ended it."""
+        try:
+            self._fleet.stop()
+        finally:
+            self._fleet.close()
+
+
+class _Gauged:
+    """A recorder that is told beside what robots do what they have used, so that the log alone can tell of it later."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self.live: Live | None = None
+
+    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        if kind in _OF_WORK and self.live is not None:
+            data = {**data, "used": self.live.executor.crew[data["robot"]].used}
+            if kind == "ends":
+                ledger, task = self.live.executor.ledger, data["task"]
+                data |= {"usage": list(ledger.usage[task]), "arrival_usage": ledger.arrival_usage[task]}
+        self._recorder.on_event(now, kind, data)
+
+    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
+        self._recorder.on_telemetry(now, robot, telemetry)
+
+    def on_plan(self, now: float, plan: Plan) -> None:
+        self._recorder.on_plan(now, plan)
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        self._recorder.on_step(now, positions, headings, velocities)
+
+    def on_report(self, report: dict[str, Any]) -> None:
+        self._recorder.on_report(report)

@@ -1,0 +1,139 @@
+"""What may be asked of a run: worlds, settings, speeds, actions, checked before anything is started."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
+
+SIMULATED = ("kinematic", "physics")
+_ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
+_WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
+SETTINGS: Mapping[str, Mapping[str, type]] = {
+    "kinematic": {"seed": int, **_WORLD},
+    "physics": {"seed": int, **_WORLD},
+    "ros1": {"seed": int, "master": str, "drive": str, "frame": str, "rate_hz": float, **_ROS},
+    "ros2": {"seed": int, "domain": int, "give": str, "by": str, **_ROS},
+    "mavlink": {
+        "seed": int,
+        "endpoints": dict,
+        "arm": bool,
+        "offboard": bool,
+        "height_m": float,
+        "low_battery": float,
+        "wait_s": float,
+        "at_end": str,
+    },
+}
+"""What each world may be told, and of which kind it is."""
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "drive": ("cmd_vel", "goals"),
+    "give": ("goals", "nav2"),
+    "by": ("dds", "rclpy"),
+    "at_end": ("hold", "return", "land"),
+}
+"""What settings that are words may be; those who understand them take long to import."""
+NOISE = (
+    "velocity",
+    "slip",
+    "odometry",
+    "motors",
+    "position_m",
+    "heading_rad",
+    "attitude_rad",
+    "gyro_radps",
+    "gyro_bias_radps",
+    "accelerometer_mps2",
+)
+"""The kinds of a simulation's noise."""
+_KINDS = {str: "a text", bool: "true or false", dict: "a mapping", int: "a whole number", float: "a number"}
+VERBS = ("pause", "resume", "speed", "cancel", "event")
+_FASTEST = 1e6
+
+
+def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, Any]) -> None:
+    """Raise ParameterError unless runs may be started in a world, with these settings."""
+    _require_choice("world", world, (*SIMULATED, *bridges))
+    for name, value in settings.items():
+        if name not in SETTINGS[world]:
+            known = ", ".join(SETTINGS[world])
+            raise ParameterError(f"{name}: no setting of world {world}; expected {known}")
+        _require_kind(name, value, SETTINGS[world][name])
+        if name in CHOICES:
+            _require_choice(name, value, CHOICES[name])
+    _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
+    if world in SIMULATED:
+        _require_number(settings, "dt_s", 0.001, 1.0)
+        noise = settings.get("noise", {})
+        for kind in noise:
+            _require_choice("noise", kind, NOISE)
+            _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
+    for robot, endpoint in settings.get("endpoints", {}).items():
+        _require_kind(f"endpoints.{robot}", endpoint, str)
+
+
+def _require_kind(name: str, value: object, kind: type) -> None:
+    """A whole number is a number, too; true and false are none."""
+    kinds = (int, float) if kind is float else (kind,)
+    if not isinstance(value, kinds) or (isinstance(value, bool) and kind is not bool):
+        raise ParameterError(f"{name}: {shown(value)}; expected {_KINDS[kind]}")
+
+
+def _require_choice(name: str, value: str, allowed: Sequence[str]) -> None:
+    if value not in allowed:
+        raise ParameterError(f"{name}: {value}; expected {', '.join(allowed)}{did_you_mean(value, allowed)}")
+
+
+def _require_number(values: Mapping[str, Any], name: str, least: float, most: float, *, whole: bool = False) -> None:
+    value = values.get(name, least)
+    right = isinstance(value, int) or (isinstance(value, float) and not whole)
+    if isinstance(value, bool) or not right or not least <= value <= most:
+        raise ParameterError(f"{name}: {value!r}; expected {'a whole' if whole else 'a'} number, {least:g} to {most:g}")
+
+
+def require_speed(speed: object) -> float | None:
+    """A speed: a number above 0, or None, as fast as it goes."""
+    if speed is None:
+        return None
+    if isinstance(speed, bool) or not isinstance(speed, int | float) or not 0 < speed <= _FASTEST:
+        raise ParameterError(f"speed: {speed!r}; expected a number above 0, at most {_FASTEST:g}, or null")
+    return float(speed)
+
+
+def _require_text(data: Mapping[str, Any]) -> None:
+    """What cannot be written as strict JSON in UTF-8 would end the runner that is told it."""
+    try:
+        json.dumps(data, ensure_ascii=False, allow_nan=False).encode()
+    except UnicodeEncodeError:
+        raise ParameterError("data: half a character; expected text in UTF-8") from None
+    except ValueError:
+        raise ParameterError("data: a number that is not finite; expected finite numbers") from None
+
+
+def require_action(verb: str, data: Mapping[str, Any]) -> dict[str, Any]:
+    """What a user asks for, as a runner is told it.
+
+    Raises
+    ------
+    ParameterError
+        if there is no such verb, or its data are not as expected. Whether an event fits the mission the runner says.
+    """
+    _require_choice("verb", verb, VERBS)
+    _require_text(data)
+    if verb == "speed":
+        if set(data) != {"speed"}:
+            raise ParameterError(f"data: {', '.join(data) or 'nothing'}; expected speed")
+        return {"speed": require_speed(data["speed"])}
+    if verb == "event":
+        if len(data) != 1 or "at_s" in data:
+            raise ParameterError(f"data: {', '.join(data) or 'nothing'}; expected one event, without at_s")
+        return dict(data)
+    if data:
+        raise ParameterError(f"data: {', '.join(data)}; expected none with {verb}")
+    return {}

@@ -1,0 +1,72 @@
+"""A plan carried out in a simulated world, by steps of fixed length, so that the same happens each time.
+
+What happens is a function of mission, plan, settings, and of what users did and when on the mission's clock: after a
+crash it is simulated again up to where the log reaches, and goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from muster.execution import Recorder, Report, Status
+from muster.mission.model import Event, Mission
+from muster.mission.plan import Plan
+from muster.running.simulation import Simulation
+from muster.simulation import Noise
+
+QUANTUM_S = 0.1
+"""Seconds of mission time between two moments at which users can have a say."""
+
+
+class SimulatedCourse:
+    """See `performance.Course`."""
+
+    real = False
+
+    def __init__(
+        self, mission: Mission, plan: Plan, world: str, settings: Mapping[str, Any], recorder: Recorder
+    ) -> None:
+        how = dict(settings)
+        noise = Noise(**how.pop("noise", {}))
+        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
+        self._quanta = 0
+
+    @property
+    def time_s(self) -> float:
+        return self._simulation.time_s
+
+    @property
+    def done(self) -> bool:
+        return self._simulation.done
+
+    @property
+    def status(self) -> Status:
+        return self._simulation.status
+
+    @property
+    def next_s(self) -> float:
+        """The mission's clock after the next step."""
+        return (self._quanta + 1) * QUANTUM_S
+
+    def go_on(self) -> None:
+        """One step."""
+        self._quanta += 1
+        until_s = self._quanta * QUANTUM_S
+        while not self.done and self.time_s < until_s - 1e-9:
+            self._simulation.advance(until_s)
+
+    def report(self, event: Event) -> None:
+        self._simulation.report(event)
+
+    def break_off(self, reason: str) -> Report:
+        return self._simulation.break_off(reason)
+
+    def pause(self) -> None:
+        """Nothing moves where time stands still."""
+
+    def resume(self) -> None:
+        """Time goes on."""
+
+    def close(self) -> None:
+        self._simulation.close()

@@ -1,0 +1,186 @@
+"""Who asks: a bearer's token, a session of the page, a reverse proxy's header, or whoever sits at this machine."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from starlette.requests import HTTPConnection
+
+from muster.exchange.mission_control import Who
+from muster.mission.errors import ParameterError
+from muster.server.security.origins import address_in
+from muster.server.security.refusal import RefusalError, printable
+from muster.server.security.sessions import COOKIE, SECURE_COOKIE, Session, Sessions, kept_secret
+from muster.server.security.tokens import Holder, Tokens
+from muster.server.settings import Settings
+
+SCOPE_KEY = "muster.asker"
+_FORWARDED = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-real-ip")
+
+
+@dataclass(frozen=True)
+class Asker:
+    """Who asks, and how that is known: neither a holder nor a session for whoever sits at this machine."""
+
+    who: Who
+    holder: Holder | None = None
+    session: Session | None = None
+
+
+class WrongTokenError(RefusalError):
+    """A token was given that nobody has."""
+
+    def __init__(self) -> None:
+        super().__init__(401, "nobody has this token; expected one of the server's tokens file")
+
+
+def who_of(connection: HTTPConnection) -> Who:
+    """Who asks; of every request and WebSocket behind the guard, and of a page: `who_of(client.request)`."""
+    asker: Asker = connection.scope[SCOPE_KEY]
+    return asker.who
+
+
+class Proxies:
+    """The reverse proxies that are believed.
+
+    Parameters
+    ----------
+    trusted
+        addresses, or networks: `10.0.0.0/24`.
+
+    Raises
+    ------
+    ParameterError
+        if one of them is none.
+    """
+
+    def __init__(self, trusted: Iterable[str]) -> None:
+        self._networks = []
+        for text in trusted:
+            try:
+                self._networks.append(ipaddress.ip_network(text))
+            except ValueError:
+                raise ParameterError(f"--trusted-proxy: {text!r}; expected an IP address or network") from None
+
+    def trust(self, address: str) -> bool:
+        found = address_in(address)
+        return found is not None and any(found in network for network in self._networks)
+
+    def address(self, peer: str, headers: Mapping[str, str]) -> str:
+        """Where a request comes from: the last hop that is no trusted proxy."""
+        if not self.trust(peer):
+            return peer
+        for hop in reversed(headers.get("x-forwarded-for", "").split(",")):
+            found = address_in(hop.strip())
+            if found is None:
+                break
+            if not self.trust(str(found)):
+                return str(found)
+        return peer
+
+
+class Asking:
+    """Finds out who asks.
+
+    Parameters
+    ----------
+    tokens, sessions
+        None: no token is asked for, and everybody who reaches this machine's own address may command.
+    user_header
+        in which proxies say who asks; believed of `proxies` alone.
+    """
+
+    def __init__(
+        self, tokens: Tokens | None, sessions: Sessions | None, user_header: str | None, proxies: Proxies
+    ) -> None:
+        self.tokens = tokens
+        self.sessions = sessions
+        self.proxies = proxies
+        self._user_header = user_header.lower() if user_header else None
+
+    @classmethod
+    def of(cls, settings: Settings) -> Asking:
+        """As the server was asked to be; reads the tokens, and makes the secret of sessions where there is none."""
+        proxies = Proxies(settings.trusted_proxies)
+        if settings.tokens is None:
+            return cls(None, None, None, proxies)
+        sessions = Sessions(kept_secret(Path(settings.folder) / "session.key"))
+        return cls(Tokens(settings.tokens), sessions, settings.user_header, proxies)
+
+    @property
+    def once(self) -> frozenset[str]:
+        """Headers that may be there once only, as it would be open which of them counts."""
+        return frozenset({"host", "origin", "authorization", "content-length", self._user_header or "host"})
+
+    def asker(self, headers: Mapping[str, str], peer: str, address: str) -> Asker | None:
+        """Who asks; None: they do not say.
+
+        Parameters
+        ----------
+        peer
+            the address of the connection.
+        address
+            from where the request came to the proxy, if there is one.
+
+        Raises
+        ------
+        WrongTokenError
+            if nobody has the token.
+        RefusalError
+            if it came through a proxy that this server knows nothing of.
+        """
+        if self.tokens is None:
+            if any(name in headers for name in _FORWARDED):
+                raise RefusalError(403, "it came through a proxy; expected a server with --tokens behind one")
+            return Asker(Who("local", "command", address))
+        user = self._user(headers)
+        if user and self.proxies.trust(peer):
+            holder = self.tokens.named(user) or self.tokens.named("*")
+            if holder is None:
+                return None
+            if not holder.digest:  # who has a token shows it: a proxy does not speak for them
+                return _held(holder, address, name=user)
+        scheme, _, token = headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer":
+            holder = self.tokens.holder(token.strip())
+            if holder is None:
+                raise WrongTokenError
+            return _held(holder, address)
+        return self._of_session(headers.get("cookie", ""), address)
+
+    def _user(self, headers: Mapping[str, str]) -> str:
+        """Whom a proxy names, if it is believed; `*`, which is everybody else in the file of tokens, names nobody."""
+        user = headers.get(self._user_header, "").strip() if self._user_header else ""
+        return "" if user == "*" else user
+
+    def _of_session(self, cookies: str, address: str) -> Asker | None:
+        assert self.tokens is not None
+        assert self.sessions is not None
+        for value in _session_cookies(cookies):
+            session = self.sessions.read(value)
+            holder = self.tokens.named(session.name) if session else None
+            if session and holder and holder.digest and holder.digest.startswith(session.token):
+                return _held(holder, address, session)
+        return None
+
+    def holds(self, asker: Asker) -> bool:
+        """Whether who asked a while ago may still do the same; asked of WebSockets, which stay."""
+        if asker.holder is None or self.tokens is None or self.sessions is None:
+            return True
+        if self.tokens.named(asker.holder.name) != asker.holder:
+            return False
+        return asker.session is None or self.sessions.holds(asker.session)
+
+
+def _held(holder: Holder, address: str, session: Session | None = None, name: str | None = None) -> Asker:
+    return Asker(Who(printable(name or holder.name, 64), holder.role, address), holder, session)
+
+
+def _session_cookies(header: str) -> Iterator[str]:
+    """What may be our cookie, the one that only this host can have set first."""
+    pairs = [pair.strip().partition("=") for pair in header.split(";")[:100]]
+    for wanted in (SECURE_COOKIE, COOKIE):
+        yield from (value for name, _, value in pairs if name == wanted)

@@ -1,0 +1,275 @@
+"""Missions: the list, their versions, and how they are checked, saved and uploaded.
+
+A text is parsed in a worker alone, never here. Only missions that can be read are stored.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any, Protocol
+
+from muster.exchange.mission_control import (
+    ConflictError,
+    MissionEntry,
+    MissionVersion,
+    NotFoundError,
+    VersionEntry,
+    Who,
+)
+from muster.mission.errors import MissionError, ParameterError
+from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
+from muster.server.services.uploads import as_text, check_sizes, findings_of, for_work, require_file_name
+from muster.server.store import Store
+
+_READ_AS_THEY_ARE = (".yaml", ".yml")
+_CONVERTED = (".csv", ".tsp", ".plan")
+
+
+class Workers(Protocol):
+    """What is needed of the pool of workers."""
+
+    async def run(self, task: str, arguments: Mapping[str, Any]) -> dict[str, Any]: ...
+
+
+class Missions:
+    """What can be done with missions. Those that come with Muster are listed, too, and stored once they are used."""
+
+    def __init__(self, store: Store, pool: Workers, refused: Refused = unheard) -> None:
+        self._table = store.missions
+        self._actions = Actions(store, refused)
+        self._pool = pool
+
+    async def get(self, mission: str, version: int | None = None) -> MissionVersion:
+        """A version with its files; without a number the newest, which is 0 of a shipped mission that nobody has used.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission or version.
+        """
+        return await asyncio.to_thread(self._get, mission, version)
+
+    async def stored(self, mission: str) -> MissionVersion:
+        """The newest version, which is in the database afterwards: plans and runs refer to it.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission.
+        """
+        return await asyncio.to_thread(self._stored, mission)
+
+    async def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+        """Versions, the newest first; those below `before`, if given.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission.
+        """
+        return await asyncio.to_thread(self._versions, mission, limit, before)
+
+    async def check(
+        self, text: str, files: Mapping[str, bytes], *, ignore: Sequence[str] = (), time_limit: float | None = None
+    ) -> dict[str, Any]:
+        """What is wrong with a mission: see `work.tasks.check`.
+
+        Raises
+        ------
+        ParameterError
+            if it is too large, or a file may not be called so.
+        WorkError
+            if no worker can say: it takes too long, or too much memory.
+        """
+        check_sizes(text, files)
+        asked = {"ignore": list(ignore), "time_limit": time_limit}
+        return await self._pool.run("check", {"mission": for_work(text, files, "mission"), **asked})
+
+    async def ground(self, mission: MissionVersion) -> dict[str, Any]:
+        """What lies under a mission: `floor` and `earth`, as `work.tasks.ground` says.
+
+        Raises
+        ------
+        WorkError
+            if it cannot be read.
+        """
+        return await self._pool.run("ground", {"mission": for_work(mission.text, mission.files, "mission")})
+
+    async def edit(self, text: str, change: str, *arguments: object) -> str:
+        """A text with one of `work.editing.changes.CHANGES`; nothing is kept.
+
+        Raises
+        ------
+        WorkError
+            if it cannot be changed so.
+        ParameterError
+        """
+        check_sizes(text, {})
+        wanted = {"text": text, "change": change, "with": arguments}
+        return str((await self._pool.run("edit", wanted))["text"])
+
+    async def look(self, text: str, *keys: str) -> dict[str, Any]:
+        """What stands at some keys of a text, right or wrong.
+
+        Raises
+        ------
+        WorkError
+            if it is no YAML, or too much of it.
+        ParameterError
+        """
+        check_sizes(text, {})
+        return dict((await self._pool.run("look", {"text": text, "keys": keys}))["data"])
+
+    async def create(
+        self, who: Who, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None
+    ) -> MissionVersion:
+        """A new mission, called `name`, or as its text says.
+
+        Raises
+        ------
+        MissionError
+            with everything that is wrong with it.
+        ForbiddenError, ParameterError, WorkError
+        """
+        async with self._actions.of(who, "mission.create", {"name": name or ""}):
+            return await self._create(who, text, files or {}, name)
+
+    async def save(
+        self,
+        who: Who,
+        mission: str,
+        text: str,
+        base_version: int,
+        files: Mapping[str, bytes] | None = None,
+        note: str = "",
+    ) -> MissionVersion:
+        """A new version, made from `base_version`; without `files` it has those of that version.
+
+        Raises
+        ------
+        ConflictError
+            if somebody else saved meanwhile.
+        MissionError
+            with everything that is wrong with it.
+        NotFoundError, ForbiddenError, ParameterError, WorkError
+        """
+        async with self._actions.of(who, "mission.save", {"mission": mission, "base_version": base_version}):
+            if base_version == 0 and mission in shipped_entries():
+                await self.stored(mission)
+                base_version = 1  # which is the same
+            kept = (await self.get(mission, base_version)).files if files is None else files
+            summary = await self._summary(text, kept, mission)
+            return await asyncio.to_thread(self._table.save, mission, text, kept, summary, who.name, note, base_version)
+
+    async def delete(self, who: Who, mission: str) -> None:
+        """Take it out of the list; its plans and runs stay.
+
+        Raises
+        ------
+        ConflictError
+            if it comes with Muster.
+        NotFoundError, ForbiddenError
+        """
+        async with self._actions.of(who, "mission.delete", {"mission": mission}):
+            if mission in shipped_entries():
+                raise ConflictError(f"mission {mission} comes with Muster; expected one that was made here")
+            await asyncio.to_thread(self._table.delete, mission)
+
+    async def restore(self, who: Who, mission: str) -> None:
+        """Take a deleted mission back into the list.
+
+        Raises
+        ------
+        NotFoundError, ForbiddenError
+        """
+        async with self._actions.of(who, "mission.restore", {"mission": mission}):
+            await asyncio.to_thread(self._table.restore, mission)
+
+    async def upload(
+        self, who: Who, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
+    ) -> MissionVersion:
+        """A new mission from a file: YAML as it is; a task-list CSV, TSPLIB or a plan of QGroundControl converted.
+
+        `beside` are files that belong to it; `options` are those of the task `convert`: `robots` and `suitability`,
+        which name some of them, `salesmen`, `depot`.
+
+        Raises
+        ------
+        MissionError
+            with everything that is wrong with it.
+        ForbiddenError, ParameterError, WorkError
+        """
+        async with self._actions.of(who, "mission.upload", {"file": filename[:200], "bytes": len(data)}):
+            require_file_name(filename)
+            path = PurePath(filename)
+            if path.suffix.lower() in _READ_AS_THEY_ARE:
+                text = as_text(filename, data)
+            elif path.suffix.lower() in _CONVERTED:
+                files = {**(beside or {}), filename: data}
+                check_sizes("", files)
+                packed = {name: base64.b64encode(content).decode("ascii") for name, content in files.items()}
+                text = (await self._pool.run("convert", {"name": filename, "files": packed, **options}))["text"]
+            else:
+                expected = f"a name that ends in {', '.join((*_READ_AS_THEY_ARE, *_CONVERTED))}"
+                raise ParameterError(f"{filename}: no mission; expected {expected}")
+            kept = (beside or {}) if path.suffix.lower() in _READ_AS_THEY_ARE else {}
+            return await self._create(who, text, kept, None, file=path.stem)
+
+    async def _create(
+        self, who: Who, text: str, files: Mapping[str, bytes], name: str | None, file: str = "mission"
+    ) -> MissionVersion:
+        summary = await self._summary(text, files, name or file)
+        called = name or str(summary["name"])
+        return await asyncio.to_thread(
+            lambda: self._table.create(called, text, files, summary, who.name, reserved=shipped_entries())
+        )
+
+    async def _summary(self, text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:
+        """What the list has of a mission that is about to be stored; one with errors is refused."""
+        check_sizes(text, files)
+        found = await self._pool.run("check", {"mission": for_work(text, files, name), "brief": True})
+        if found["errors"] or found["summary"] is None:
+            raise MissionError(findings_of(found["errors"]))
+        summary: dict[str, Any] = found["summary"]
+        return summary
+
+    def _get(self, mission: str, version: int | None) -> MissionVersion:
+        if version == 0 and mission in shipped_entries():
+            return shipped_version(mission)
+        try:
+            return self._table.get(mission, version)
+        except NotFoundError:
+            if version is None and mission in shipped_entries():
+                return shipped_version(mission)
+            raise
+
+    def _stored(self, mission: str) -> MissionVersion:
+        newest = self._get(mission, None)
+        if newest.version > 0:
+            return newest
+        try:
+            return self._table.create(
+                mission, newest.text, newest.files, shipped_summary(mission), AUTHOR, shipped=True
+            )
+        except ConflictError:  # somebody else was quicker
+            return self._table.get(mission)
+
+    def _versions(self, mission: str, limit: int, before: int | None) -> list[VersionEntry]:
+        try:
+            return self._table.versions(mission, limit, before)
+        except NotFoundError:
+            if mission not in shipped_entries():
+                raise
+            return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
+
+    async def list(self) -> list[MissionEntry]:
+        """Missions that were made here, the last changed first, then those that come with Muster."""
+        stored = {entry.id: entry for entry in await asyncio.to_thread(self._table.list)}
+        shipped = await asyncio.to_thread(shipped_entries)
+        own = [entry for entry in stored.values() if not entry.shipped]
+        own.sort(key=lambda entry: (entry.changed_at is not None, entry.changed_at), reverse=True)
+        return [*own, *(stored.get(name, entry) for name, entry in shipped.items())]

@@ -1,0 +1,146 @@
+"""Plans: the list, what the judge says of one, why it is so, files and pictures of it, and two side by side."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from collections import OrderedDict
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from muster.exchange.mission_control import PlanEntry, Who
+from muster.mission.errors import ParameterError
+from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.comparison import compared
+from muster.server.services.missions import Missions
+from muster.server.services.uploads import for_work
+from muster.server.store import Store
+from muster.server.work import Pool
+
+_MOST_VERDICTS = 16  # that are kept: plans never change
+
+
+class Plans:
+    """What can be done with plans. What takes thought is done by workers."""
+
+    def __init__(self, store: Store, pool: Pool, refused: Refused = unheard) -> None:
+        self._store = store
+        self._pool = pool
+        self._missions = Missions(store, pool)
+        self._actions = Actions(store, refused)
+        self._allocators: list[dict[str, Any]] = []
+        self._verdicts: OrderedDict[int, dict[str, Any]] = OrderedDict()
+
+    async def get(self, plan: int) -> PlanEntry:
+        """One plan, whole.
+
+        Raises
+        ------
+        NotFoundError
+            if there is none.
+        """
+        return await asyncio.to_thread(self._store.plans.get, plan)
+
+    async def allocators(self) -> list[dict[str, Any]]:
+        """Name, summary, whether it is anytime, whether it is the default, and parameters of each allocator."""
+        if not self._allocators:
+            self._allocators = (await self._pool.run("allocators", {}))["allocators"]
+        return self._allocators
+
+    async def upload(self, who: Who, mission: str, plan: Mapping[str, Any]) -> PlanEntry:
+        """Keep a plan of the newest version of a mission, also one from elsewhere, admissible or not.
+
+        Raises
+        ------
+        WorkError
+            with everything that is wrong with it as a plan file.
+        NotFoundError, ForbiddenError
+        """
+        async with self._actions.of(who, "plan.upload", {"mission": mission}):
+            version = await self._missions.stored(mission)
+            given = for_work(version.text, version.files, mission)
+            adopted = (await self._pool.run("adopt", {"mission": given, "plan": plan}))["plan"]
+            return await asyncio.to_thread(
+                self._store.plans.add, mission, version.version, "uploaded", who.name, adopted
+            )
+
+    async def verdict(self, plan: int) -> dict[str, Any]:
+        """What the judge says: as the task `verdict` gives it.
+
+        Raises
+        ------
+        NotFoundError, WorkError
+        """
+        if plan not in self._verdicts:
+            self._verdicts[plan] = await self._asked("verdict", plan)
+            while len(self._verdicts) > _MOST_VERDICTS:
+                self._verdicts.popitem(last=False)
+        self._verdicts.move_to_end(plan)
+        return self._verdicts[plan]
+
+    async def explain(self, plan: int, task: str | None = None) -> dict[str, Any]:
+        """Why tasks are left out; of one task, why this robot does it and not another: data, and `words`.
+
+        Raises
+        ------
+        NotFoundError, WorkError
+        """
+        return await self._asked("explain", plan, task=task)
+
+    async def export(self, plan: int, to: str, options: Mapping[str, Any] | None = None) -> dict[str, str]:
+        """Files for other tools by their names, in base64; what a person has to know before it flies is in NOTES.txt.
+
+        Raises
+        ------
+        NotFoundError
+        WorkError
+            also if the plan is not admissible.
+        """
+        answer = await self._asked("export", plan, to=to, options=dict(options or {}))
+        files: dict[str, str] = answer["files"]
+        if not answer["messages"]:
+            return files
+        notes = "".join(f"{message}\n" for message in answer["messages"])
+        return {**files, "NOTES.txt": base64.b64encode(notes.encode("utf-8")).decode("ascii")}
+
+    async def picture(self, plan: int, what: str, form: str) -> bytes:
+        """Routes on the map (`routes`) or over time (`gantt`), as `png`, `svg` or `pdf`.
+
+        Raises
+        ------
+        NotFoundError, WorkError
+        """
+        answer = await self._asked("picture", plan, what=what, format=form)
+        return base64.b64decode(answer["data"])
+
+    async def compare(self, a: int, b: int) -> dict[str, Any]:
+        """Two plans of one mission side by side: see `compared`.
+
+        Raises
+        ------
+        ParameterError
+            if they are of two missions.
+        NotFoundError, WorkError
+        """
+        first, second = await self.get(a), await self.get(b)
+        if first.mission != second.mission:
+            raise ParameterError(f"plan {b} is of {second.mission}; expected one of {first.mission}, as plan {a}")
+        return compared(first, await self.verdict(a), second, await self.verdict(b))
+
+    async def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+        """Plans, of one mission or all, the newest first, without routes, histories and books.
+
+        With ids below `before`, if given.
+        """
+        return await asyncio.to_thread(self._store.plans.list, mission, limit, before)
+
+    async def _asked(self, what: str, plan: int, /, **arguments: Any) -> dict[str, Any]:
+        """What a worker says of a plan and its mission."""
+        return await self._pool.run(what, partial(self._given, plan, arguments))
+
+    def _given(self, plan: int, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """What the worker needs, from the database."""
+        entry = self._store.plans.get(plan)
+        mission = self._store.missions.get(entry.mission, entry.mission_version)
+        return {"mission": for_work(mission.text, mission.files, entry.mission), "plan": entry.plan, **arguments}

@@ -1,0 +1,288 @@
+"""Runs: plans are carried out, in simulated worlds or by real robots; watched, steered, and resumed after a crash."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from contextlib import asynccontextmanager, suppress
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
+
+from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, Who, World
+from muster.mission.errors import MusterError, ParameterError
+from muster.server.runs.robot_claims import claims_of
+from muster.server.runs.run_session import TOO_LATE, Carrying
+from muster.server.runs.run_settings import SIMULATED, require_action, require_speed, require_world
+from muster.server.runs.subscribers import Feed
+from muster.server.runs.unsaved_actions import unkept
+from muster.server.services.actions import Actions, Refused, outcome_of, unheard
+from muster.server.services.database_lock import lock_of_runs
+from muster.server.settings import Settings
+from muster.server.work.temporary_folders import OF_RUNS, sweep
+
+if TYPE_CHECKING:
+    from muster.server.store.store import Store
+
+PATIENCE_S = 0.7
+"""Seconds for the database to take what a user asks of a run, before it is obeyed without: robots may have to stop."""
+
+_log = logging.getLogger("muster.runs")
+
+
+class Runs:
+    """All runs of a database, and those that are under way here."""
+
+    def __init__(self, store: Store, settings: Settings, refused: Refused = unheard) -> None:
+        self._store, self._settings = store, settings
+        self._actions = Actions(store, refused)
+        self._lock = lock_of_runs(settings)
+        self._live: dict[int, Carrying] = {}
+        self._tasks: dict[int, asyncio.Task[None]] = {}
+        self._beginning: list[frozenset[str]] = []  # what runs that are not under way yet claim
+        self._slow: set[asyncio.Task[Action]] = set()
+        self._last = datetime.now(UTC)
+
+    async def start_up(self) -> None:
+        """Go on with runs that a server left unfinished, however it ended."""
+        await asyncio.to_thread(sweep, OF_RUNS)
+        unfinished = await asyncio.to_thread(self._store.runs.unfinished)
+        for k, run in enumerate(unfinished):
+            later = next((other for other in unfinished[k + 1 :] if _claims(run) & _claims(other)), None)
+            if later is None:
+                self._carry(run)
+            else:  # which began when this one was over, and that could not be written
+                await self._leave(run, f"run {later.id}, which began later, commands its robots")
+
+    async def close(self) -> None:
+        """End all runners; the runs go on when a server is there again. Real robots are told to stand."""
+        await asyncio.gather(*(carrying.close() for carrying in self._live.values()))
+        await asyncio.gather(*self._tasks.values())
+        await asyncio.gather(*self._slow, return_exceptions=True)
+
+    async def start(
+        self, who: Who, plan: int, world: str = "kinematic", speed: float | None = 1.0, **settings: Any
+    ) -> Run:
+        """Begin to carry a plan out.
+
+        Raises
+        ------
+        ForbiddenError, NotFoundError, ParameterError
+            if they may only watch; there is no such plan; a world, speed or setting is none.
+        ConflictError
+            if a run that is under way commands robots that this one would (`claims_of`).
+        BusyError
+            if as many runs are under way as may be.
+        """
+        asked = {"plan": plan, "world": world, "speed": speed, "settings": settings}
+        async with self._written_if_refused(who, "run.start", asked):
+            require_world(world, self._settings.bridges, settings)
+            speed = require_speed(speed)
+            if world not in SIMULATED and speed != 1.0:
+                raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
+            claims = claims_of(world, settings)
+            self._require_unclaimed(claims)
+            if self.under_way + len(self._beginning) >= self._settings.runs:
+                raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
+            self._beginning.append(claims)
+            try:
+                return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
+            finally:
+                self._beginning.remove(claims)
+
+    async def list(self, limit: int = 200) -> Sequence[Run]:
+        """The newest first."""
+        runs = await asyncio.to_thread(self._store.runs.list, limit)
+        return [self._newest(run) for run in runs]
+
+    def present(self) -> Sequence[Run]:
+        """Those under way, the newest first; the database is not asked."""
+        return [self._live[run].run for run in sorted(self._live, reverse=True) if not self._live[run].over]
+
+    async def over(self, limit: int = 200) -> Sequence[Run]:
+        """Runs that are over, the newest first; also those of which the database does not know it yet."""
+        ended = {run: carrying.run for run, carrying in self._live.items() if carrying.over}
+        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
+        found = {run.id: run for run in kept} | ended
+        return [found[run] for run in sorted(found, reverse=True)[:limit]]
+
+    async def get(self, run: int) -> Run:
+        """One run, as it is now.
+
+        Raises
+        ------
+        NotFoundError
+        """
+        carrying = self._live.get(run)
+        return carrying.run if carrying is not None else await asyncio.to_thread(self._store.runs.get, run)
+
+    async def act(self, who: Who, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
+        """Ask something of a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
+
+        What comes of it is told to watchers, and is in the action later. It is in the database before it is obeyed;
+        where that refuses or takes its time, it is obeyed all the same, as robots may have to be stopped.
+
+        Raises
+        ------
+        ForbiddenError, NotFoundError, ParameterError
+        ConflictError
+            if the run is over.
+        """
+        async with self._written_if_refused(who, f"run.{verb}", {"run": run, "data": dict(data or {})}):
+            said = require_action(verb, data or {})
+            state = (await self.get(run)).state
+            carrying = self._live.get(run)
+            if carrying is None or carrying.over:
+                raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
+        action = await self._added(unkept(who, f"run.{verb}", said, run, self._moment()), who, carrying)
+        if not carrying.ask(action):
+            await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
+            raise ConflictError(f"run {run} is over: {carrying.run.state}; expected one that is under way")
+        return action
+
+    async def entries(self, run: int, after: int = 0, limit: int | None = None) -> Sequence[Entry]:
+        """The log of a run beyond an entry.
+
+        Raises
+        ------
+        NotFoundError
+        """
+        carrying = self._live.get(run)
+        if carrying is not None:
+            return await carrying.journal.entries(after, limit)
+        await asyncio.to_thread(self._store.runs.get, run)
+        return await asyncio.to_thread(self._store.log.entries, run, after, limit)
+
+    async def kept(self, run: int) -> None:
+        """Wait until all that is known of a run here is in the database.
+
+        Raises
+        ------
+        StoreError
+            if that refuses it.
+        """
+        carrying = self._live.get(run)
+        if carrying is not None:
+            await carrying.journal.given()
+            if carrying.journal.trouble:
+                raise StoreError(f"run {run} is not kept yet: {carrying.journal.trouble}")
+
+    def feed(self, run: int) -> Feed | None:
+        """What watchers of a run are told; None where it is not under way."""
+        carrying = self._live.get(run)
+        return None if carrying is None else carrying.feed
+
+    def pid(self, run: int) -> int | None:
+        """The process that carries a run out; None where there is none."""
+        carrying = self._live.get(run)
+        return None if carrying is None else carrying.pid
+
+    @property
+    def under_way(self) -> int:
+        """How many runs are under way."""
+        return len(self.present())
+
+    @property
+    def watchers(self) -> int:
+        """How many watch, in all."""
+        return sum(carrying.feed.watchers for carrying in self._live.values())
+
+    @property
+    def troubles(self) -> Sequence[str]:
+        """Why runs under way are not being kept, a line each."""
+        live = tuple(self._live.items())
+        return tuple(f"run {run}: {each.journal.trouble}" for run, each in live if each.journal.trouble)
+
+    def statuses(self) -> Sequence[str]:
+        """The newest `status` of each run under way, as watchers were told it."""
+        texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
+        return tuple(text for text in texts if text)
+
+    @asynccontextmanager
+    async def _written_if_refused(self, who: Who, verb: str, asked: Mapping[str, Any]) -> AsyncIterator[None]:
+        """Around what writes itself down once it is done: here it is if it is refused; of no run, as there may be none.
+
+        Whoever asked is told why, whether the database takes it or not, however long that lasts.
+
+        Raises
+        ------
+        ForbiddenError
+            if they may only watch.
+        """
+        self._actions.require_command(who, verb)
+        try:
+            yield
+        except MusterError as error:
+            with suppress(MusterError):  # `_written` says so
+                await self._patiently(self._store.actions.refused, who, verb, asked, outcome_of(error))
+            raise
+
+    def _require_unclaimed(self, claims: frozenset[str]) -> None:
+        """Raise ConflictError where another run commands such robots, or begins to."""
+        others = [(f"run {run}", _claims(each.run)) for run, each in self._live.items() if not each.over]
+        for whose, theirs in [*others, *(("another run", theirs) for theirs in self._beginning)]:
+            if both := claims & theirs:
+                what = ", ".join(sorted(both))
+                raise ConflictError(f"{whose} commands robots on {what}; expected others, or that it is over")
+
+    def _add(self, who: Who, plan: int, world: str, speed: float | None, settings: Mapping[str, Any]) -> Run:
+        entry = self._store.plans.get(plan)
+        return self._store.runs.add(
+            entry.mission, entry.mission_version, plan, cast("World", world), settings, speed, who.name, by=who
+        )
+
+    def _carry(self, run: Run) -> Carrying:
+        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock), self._settings.memory_mb)
+        task = self._tasks[run.id] = asyncio.create_task(carrying.go())
+        task.add_done_callback(lambda _: self._forget(run.id))
+        return carrying
+
+    async def _leave(self, run: Run, why: str) -> None:
+        """Do not go on with a run."""
+        _log.warning("run %d: not gone on with: %s", run.id, why)
+        with suppress(StoreError):  # the next server is to find out again
+            await asyncio.to_thread(self._store.runs.set, run.id, state="failed", remark=why)
+
+    def _forget(self, run: int) -> None:
+        self._live.pop(run, None)
+        self._tasks.pop(run, None)
+
+    def _newest(self, run: Run) -> Run:
+        carrying = self._live.get(run.id)
+        return run if carrying is None else carrying.run
+
+    async def _added(self, action: Action, who: Who, carrying: Carrying) -> Action:
+        """An action as the database has it; or as it is, where that refuses it or takes its time."""
+        if carrying.journal.trouble or self._slow:  # it would do so again
+            return action
+        what = (who, action.verb, action.data, action.run, action.at)
+        return await self._patiently(self._store.actions.add, *what) or action
+
+    async def _patiently(self, write: Callable[..., Action], *what: Any) -> Action | None:
+        """Have an action written down; None where the database refuses that, or takes its time and goes on with it."""
+        writing = asyncio.create_task(asyncio.to_thread(write, *what))
+        writing.add_done_callback(self._written)
+        done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
+        if not done:
+            self._slow.add(writing)
+            return None
+        try:
+            return writing.result()
+        except StoreError:
+            return None
+
+    def _written(self, writing: asyncio.Task[Action]) -> None:
+        self._slow.discard(writing)
+        if not writing.cancelled() and (error := writing.exception()) is not None:
+            _log.warning("an action was not written down: %s", error)
+
+    def _moment(self) -> datetime:
+        """Now, and later than the last time."""
+        self._last = max(datetime.now(UTC), self._last + timedelta(microseconds=1))
+        return self._last
+
+
+def _claims(run: Run) -> frozenset[str]:
+    return claims_of(run.world, run.settings)

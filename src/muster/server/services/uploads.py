@@ -1,0 +1,75 @@
+"""Missions as strangers send them: how large their parts may be, and what files may be called."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.value_types import shown
+
+LONGEST_TEXT = 16 * 2**20
+LARGEST_FILES = 32 * 2**20
+MOST_FILES = 64
+LONGEST_FILE_NAME = 120
+FILE_NAME = r"[^\W_][\w. ()+-]*"
+_EXPECTED_NAME = f"letters, digits, and ._-+() or spaces between, at most {LONGEST_FILE_NAME}, no folders"
+
+
+def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
+    """Refuse what is too large, and names that lead out of a mission's folder or would be hidden in it.
+
+    Raises
+    ------
+    ParameterError
+        if something does not fit.
+    """
+    if len(text) > LONGEST_TEXT:
+        raise ParameterError(f"a mission of {len(text)} characters; expected at most {LONGEST_TEXT}")
+    if len(files) > MOST_FILES:
+        raise ParameterError(f"a mission with {len(files)} files; expected at most {MOST_FILES}")
+    size = sum(len(data) for data in files.values())
+    if size > LARGEST_FILES:
+        raise ParameterError(f"a mission with files of {size} bytes; expected at most {LARGEST_FILES}")
+    for name in files:
+        require_file_name(name)
+
+
+def require_file_name(name: str) -> None:
+    """Raise ParameterError unless it may be the name of a file beside a mission."""
+    if (
+        len(name) > LONGEST_FILE_NAME
+        or not re.fullmatch(FILE_NAME, name)
+        or name.endswith((".", " "))
+        or not name.isprintable()
+    ):
+        raise ParameterError(f"a file called {shown(name)}; expected {_EXPECTED_NAME}")
+
+
+def for_work(text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:
+    """A mission as workers are given it."""
+    packed = {file: base64.b64encode(data).decode("ascii") for file, data in files.items()}
+    return {"text": text, "files": packed, "name": name}
+
+
+def as_text(name: str, data: bytes) -> str:
+    """A file's text.
+
+    Raises
+    ------
+    MissionError
+        if it is none.
+    """
+    try:
+        return data.decode("utf-8").removeprefix("\ufeff")
+    except UnicodeDecodeError as error:
+        line = 1 + data.count(b"\n", 0, error.start)
+        found = Finding(name, line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")
+        raise MissionError([found]) from None
+
+
+def findings_of(errors: list[dict[str, Any]]) -> list[Finding]:
+    """What a worker found wrong."""
+    return [Finding(**error) for error in errors]

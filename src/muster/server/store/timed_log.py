@@ -1,0 +1,25 @@
+"""The log of runs, of which it is told how long each writing took."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from muster.exchange.mission_control import Entry, Stretch
+from muster.server.store.database import Database
+from muster.server.store.log import LogTable
+
+
+class TimedLog(LogTable):
+    """As a log is; `observe` is told the seconds of each `append`, whether it failed or not."""
+
+    def __init__(self, database: Database, observe: Callable[[float], None]) -> None:
+        super().__init__(database)
+        self._observe = observe
+
+    def append(self, run: int, time_s: float, entries: Sequence[Entry], stretches: Sequence[Stretch] = ()) -> int:
+        began = time.perf_counter()
+        try:
+            return super().append(run, time_s, entries, stretches)
+        finally:
+            self._observe(time.perf_counter() - began)

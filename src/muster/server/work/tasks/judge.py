@@ -1,0 +1,45 @@
+"""What the judge says of a plan, when robots are where, and their ways over the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from muster.mission.model import Mission
+from muster.report.route_lines import Places, Trace, traces
+from muster.server.work.missions import mission_of, plan_of
+from muster.verification import Verdict, verify
+
+
+def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """`{"mission", "plan"}` -> what `muster verify --format json` prints, `waiting_s`, `routes` and `lines`.
+
+    `routes` has for each robot, in mission order, its figures and `visits` with their times. `lines` has for each
+    robot's id `travel`, `work` and `end`, each a list of polylines in metres of the map frame.
+    """
+    mission = mission_of(arguments["mission"])
+    verdict = verify(mission, plan_of(arguments["plan"]))
+    routes = [asdict(route) for route in verdict.routes]
+    return {**verdict.as_dict(), "waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
+
+
+def lines(mission: Mission, verdict: Verdict) -> dict[str, dict[str, list[list[list[float]]]]]:
+    """The ways of all robots, by id: what is travelled, what is worked along, and the leg to where a route ends."""
+    return {trace.robot.id: _lines(trace) for trace in traces(mission, verdict, mission.dimensions)}
+
+
+def _lines(trace: Trace) -> dict[str, list[list[list[float]]]]:
+    parts = {"travel": trace.travel, "work": trace.work, "end": trace.end}
+    return {name: list(_polylines(places)) for name, places in parts.items()}
+
+
+def _polylines(places: Places) -> Iterator[list[list[float]]]:
+    """Polylines that rows of NaN part; millimetres are enough for what is drawn."""
+    gaps = np.flatnonzero(np.isnan(places).any(axis=1))
+    for piece in np.split(places, gaps):
+        line = np.round(piece[~np.isnan(piece).any(axis=1)], 3)
+        if len(line) > 1:
+            yield line.tolist()

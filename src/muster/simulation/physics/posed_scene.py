@@ -1,0 +1,81 @@
+"""A stage to look at: bodies are put where one wants them, in colours that tell them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from muster.motion.grid import Floats
+from muster.simulation.physics.bodies import Build
+from muster.simulation.physics.buildings import Rgba
+from muster.simulation.physics.model import UNSEEN
+from muster.simulation.physics.simulated_model import Stage
+
+GROUND_RGBA: Rgba = (0.97, 0.975, 0.98, 1.0)
+_LIGHT = 0.55
+"""From everywhere: what lies level is as bright as its colour."""
+_SLICES = 40
+_AWAY_M = -1000.0
+"""The height of a robot that is not there."""
+_SAMPLES = 4
+
+
+class Tableau:
+    """Takes the place of a world for a `Renderer`.
+
+    Parameters
+    ----------
+    stage
+        its own: see `PhysicsWorld.replica`.
+    colors
+        of the robots, in order.
+    smooth
+        whether edges are, which takes four times as long.
+    """
+
+    def __init__(self, stage: Stage, colors: Sequence[Rgba], *, smooth: bool = False) -> None:
+        self._robots = stage
+        self.model: Any = stage.model
+        self.data: Any = stage.data
+        self.ground_m = float(self.model.geom("ground").pos[2])
+        self.model.geom("ground").rgba = GROUND_RGBA
+        for k, color in enumerate(colors):
+            self._paint(k, color)
+        self.model.vis.headlight.ambient = (_LIGHT,) * 3
+        self.model.vis.quality.numslices = _SLICES
+        if smooth:
+            self.model.vis.quality.offsamples = _SAMPLES
+
+    @property
+    def stage(self) -> Tableau:
+        """What a renderer draws."""
+        return self
+
+    def put(self, frames: Floats, turns: Floats) -> None:
+        """Put the bodies somewhere.
+
+        Parameters
+        ----------
+        frames, turns
+            (n, 3) metres, and (n, 4) quaternions, w first, in the map frame; who has NaN is not there.
+        """
+        there = np.isfinite(frames).all(axis=1, keepdims=True)
+        places = self._robots.places
+        self.data.qpos[places[:, :3]] = np.where(there, frames, (0.0, 0.0, _AWAY_M))
+        self.data.qpos[places[:, 3:]] = np.where(there, turns, (1.0, 0.0, 0.0, 0.0))
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def _paint(self, robot: int, color: Rgba) -> None:
+        """Its rotors, or what of it is broadest."""
+        model, body = self.model, self._robots.bodies[robot]
+        seen = np.flatnonzero((model.geom_bodyid == body) & (model.geom_group != UNSEEN))
+        if self._robots.robots[robot].body.build is Build.WHEELS:
+            painted = seen[:1]
+        else:
+            painted = seen[model.geom_type[seen] == mujoco.mjtGeom.mjGEOM_CYLINDER]
+        for k in painted:
+            model.geom_rgba[k] = color

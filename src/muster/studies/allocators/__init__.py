@@ -1,5 +1,0 @@
-"""All allocators on all shipped missions and all objectives."""
-
-from muster.studies.allocators.study import Allocators
-
-__all__ = ["Allocators"]

@@ -1,5 +1,0 @@
-"""Market paper, sections 4.2, 4.3 and 5: three robots with lasers search an arena and track their ways."""
-
-from muster.studies.market_5.study import MARKET_5
-
-__all__ = ["MARKET_5"]

@@ -1,5 +1,0 @@
-"""Market paper, sections 4.2 to 6: its search and rescue scenario carried out."""
-
-from muster.studies.rescue.study import RESCUE
-
-__all__ = ["RESCUE"]

@@ -1,0 +1,67 @@
+"""The study: which tables there are, and how they are made."""
+
+from __future__ import annotations
+
+from muster_studies.auction_5.auctions import Auction, Held, hold
+from muster_studies.auction_5.paths import Paths, Positions
+from muster_studies.auction_5.rounds import Bids, SubmittedBids
+from muster_studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
+
+_NOT_AS_DESCRIBED = (
+    "average is the bid that the text and the literature describe: the growth of the sum of the path lengths at which "
+    "the tasks are reached. It gives the paths of Table 5.19 again, not those of Table 5.20, with append and insert "
+    "alike. average-as-printed, the number of tasks times the length of the path, is fitted to Table 5.20."
+)
+
+_TABLES: tuple[Reproduction[Auction, Held], ...] = (
+    Bids("5.2"),
+    Bids("5.3"),
+    SubmittedBids("5.4"),
+    Bids("5.5"),
+    SubmittedBids("5.6"),
+    Bids("5.7"),
+    SubmittedBids("5.8"),
+    Bids("5.9"),
+    SubmittedBids("5.10"),
+    Bids("5.11"),
+    SubmittedBids("5.12"),
+    Bids("5.13"),
+    SubmittedBids("5.14"),
+    Paths("5.15", bids=("total",), placements=("append",)),
+    SCENARIO_1,
+    Positions(),
+    Paths("5.18", bids=("total",), placements=("insert",)),
+    Paths("5.19", bids=("max",), placements=("append", "insert")),
+    Paths(
+        "5.20",
+        bids=("average-as-printed", "average"),
+        placements=("insert",),
+        remarks=(("average", _NOT_AS_DESCRIBED),),
+    ),
+    SCENARIO_2,
+    SCENARIO_3,
+    SCENARIO_3_LEAST_CONTESTED,
+)
+
+_LEGEND = (
+    "MiniSum, MiniMax and MiniAve are the bids total, max and average. append: a task goes to the end of the path; "
+    "insert: to where the path grows least. The lowest bid wins, unless a title says otherwise.",
+    "Own bids are those of the auction's book; with the one decimal that the thesis prints here, in full in the data. "
+    "-: no bid (-1 in the thesis). ✓: equal, to the printed digit.",
+    "Lengths in metres, those of published paths too, are recomputed by muster.verify. total: of all paths; max: of "
+    "the longest; average: of the way to a task.",
+    "done: tasks completed; most: tasks of the drone that has most; idle: drones without tasks; ms: processor time of "
+    "the allocator.",
+)
+
+AUCTION_5 = Repetition(
+    name="auction-5",
+    summary="sequential auction of tasks among drones, auction thesis, chapter 5",
+    document="auction thesis, chapter 5",
+    legend=_LEGEND,
+    reproductions=_TABLES,
+    perform=one_by_one(hold),
+    seeds=lambda _: None,
+)
+"""Sequential single-item auction of tasks among drones, bid by bid and under each rule."""

@@ -1,0 +1,38 @@
+"""Words that say how an own number stands to the published one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from muster_studies.runs import Sample
+from muster_studies.tables import Cell
+
+TOLERANCE = 0.011
+"""Of a published figure: the document rounds or cuts off after two decimals."""
+
+EQUAL, REACHED, NOT_REACHED, INFORMATION, ERRATUM = "✓", "reached", "not reached", "for information", "erratum"
+
+
+def equal(published: float, own: float) -> bool:
+    """Whether a figure is the published one, as far as that is printed."""
+    return abs(own - published) <= TOLERANCE
+
+
+def differences(published: Mapping[str, Any], own: Mapping[str, Cell], columns: Iterable[str]) -> str:
+    """A check mark if all published figures come out, else those that do not, with what they are more or less."""
+    found = []
+    for column in columns:
+        there, here = published.get(column), own.get(column)
+        if isinstance(there, int | float) and isinstance(here, int | float) and not equal(there, here):
+            found.append(f"{column} {here - there:+.2f}")
+    return ", ".join(found) or EQUAL
+
+
+def reached(sample: Sample, value: float, tasks: int | None) -> str:
+    """Whether a random algorithm does as well as the published run: more tasks, or as many at no more cost."""
+    needed = sample.best.verdict.tasks_total if tasks is None else tasks
+    runs = sum(
+        (-outcome.verdict.tasks_completed, outcome.value) <= (-needed, value + TOLERANCE) for outcome in sample.outcomes
+    )
+    return f"{REACHED} {runs}/{len(sample.outcomes)}" if runs else NOT_REACHED

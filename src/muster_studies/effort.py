@@ -1,0 +1,63 @@
+"""How much of a study is done, and how thoroughly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster_studies.tables import span
+
+SEEDS, QUICK_SEEDS = 10, 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effort:
+    """What a study is asked for.
+
+    Parameters
+    ----------
+    seeds
+        random algorithms run with seeds 0 to seeds - 1; by default 10, and 2 if `quick`.
+    iterations
+        of random algorithms, instead of the study's own counts.
+    quick
+        few and short runs, to see that everything works.
+    tables
+        the numbers of the tables wanted; all by default.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    seeds: int | None = None
+    iterations: int | None = None
+    quick: bool = False
+    tables: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.seeds is not None and self.seeds < 1:
+            raise ParameterError(f"seeds: {self.seeds}; expected a whole number of at least 1")
+        if self.iterations is not None and self.iterations < 0:
+            raise ParameterError(f"iterations: {self.iterations}; expected a whole number of at least 0")
+
+    @property
+    def seed_count(self) -> int:
+        return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+
+    def wanted(self, tables: Sequence[str]) -> tuple[str, ...]:
+        """Those of a study's tables that are asked for.
+
+        Raises
+        ------
+        ParameterError
+            if there is no table of that number.
+        """
+        for number in self.tables:
+            if number not in tables:
+                hint = did_you_mean(number, tables)
+                raise ParameterError(f"table: {number}; expected {span(tables)}{hint}")
+        return self.tables or tuple(tables)

@@ -1,0 +1,56 @@
+"""What stands in the arena for lasers to see, and how they and all else err: chosen here, but for the laser.
+
+The paper's survivors are white cylinders (section 5). Its gripper takes what is up to 50 mm wide, so that is their
+width. Where they and the landmarks stand it shows in pictures only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from muster.perception.errors import GroundErrors
+from muster.perception.laser import Scanner
+from muster.perception.spikes import Search
+from muster_studies.rescue.flights import NOISE
+
+SURVIVORS: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {
+        "survivor1": (0.3, 1.1),
+        "survivor2": (0.55, 1.7),
+        "survivor3": (1.3, 0.9),
+        "survivor4": (1.7, 1.35),
+        "survivor5": (1.45, 1.6),
+    }
+)
+"""Where their cylinders stand: beside the places at which the mission has robots work, 0.14 to 0.15 m off, and at least
+as far from all ways."""
+
+BEACONS = ((0.12, 0.12), (1.88, 0.12), (1.88, 1.88), (0.12, 1.88), (1.0, 1.88), (0.12, 1.0))
+"""Where landmarks stand that every robot knows: cylinders like the survivors'."""
+
+CYLINDER_RADIUS_M = 0.025
+CYLINDERS = np.array([(*place, CYLINDER_RADIUS_M) for place in (*SURVIVORS.values(), *BEACONS)])
+
+SCANNER = Scanner(range_m=0.01)
+"""The paper's: 240 degrees, 4 m, 0.36 degrees. The error of a range is ours."""
+SEARCH = Search(depth_m=0.07, smallest_m=0.012, largest_m=0.04)
+"""Cylinders of this size, noise and beams allowed for: robots and the ends of obstacles are wider."""
+
+RANGE_M, BEARING_RAD = 0.005, math.radians(0.36)
+"""How far the centre of a cylinder is off in one scan: standard deviations that are counted with."""
+
+ERRORS = GroundErrors(
+    odometry_share=NOISE.odometry,
+    odometry_mps=0.002,
+    odometry_slip=NOISE.slip,
+    heading_rad=NOISE.heading_rad,
+    range_m=RANGE_M,
+    bearing_rad=BEARING_RAD,
+)
+"""What robots count with."""
+START_M, START_RAD = 0.001, 0.001
+"""Within which they know where they stand at the beginning."""

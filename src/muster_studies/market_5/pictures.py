@@ -1,0 +1,70 @@
+"""Pictures like Figures 7 and 8: rangeBot's way and what its laser finds on the map, and the metrics as bars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import fmean, stdev
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
+from muster.running.simulation import WORLDS
+from muster_studies.effort import Effort
+from muster_studies.market_5.arena import BEACONS, SURVIVORS
+from muster_studies.market_5.searches import PLACES, TRUE, Search, Searched, performed, searches
+from muster_studies.market_5.tracks import SHOWN, measured, team
+from muster_studies.picture_files import draw_figures
+from muster_studies.rescue.flights import repetitions
+from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
+from muster_studies.rescue.teams import ARENA, mission_of
+from muster_studies.rescue.tracking import deviations, legs, track
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_WORLD = WORLDS[-1]
+"""That of the pictures: the paper simulates with physics."""
+
+
+def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
+    """The pictures of these tables that have one; the files made."""
+    return draw_figures(folder, effort, numbers, {"Figure 7": _tracking, "Figure 8": _metrics})
+
+
+def _tracking(effort: Effort) -> Figure:
+    first: Search = searches(effort, [_WORLD])[0]
+    found = performed(first)
+    tasks = tuple(visit.task for visit in found.flown[TRUE].visits[SHOWN_ROBOT])
+    reference = legs(ARENA, SHOWN_ROBOT, tasks)
+    flights = []
+    for place in PLACES:
+        way, times = track(found.flown[place], SHOWN_ROBOT), found.flown[place].times
+        aside = deviations(reference, way)
+        flights.append(Tracked(name=place, places=way, times=times[: len(way)], aside=aside))
+    points = {
+        "its last scan": found.hits[SHOWN_ROBOT],
+        "landmark": np.array(BEACONS),
+        "survivor": np.array(list(SURVIVORS.values())),
+        "found": np.array([point.position for point in found.points([SHOWN_ROBOT])]).reshape(-1, 2),
+    }
+    title = f"{SHOWN_ROBOT}: its way, and what it finds (as Figure 7)"
+    return plot_tracking(mission_of(ARENA).map, np.concatenate(reference), flights, {}, title, points)
+
+
+def _metrics(effort: Effort) -> Figure:
+    found = [performed(job) for job in searches(effort, [_WORLD])]
+    measures = [_measure(found, metric, place, team(effort)) for place in PLACES for metric in SHOWN]
+    title = f"Metrics, mean and spread; searches: {repetitions(effort)} (as Figure 8)"
+    return plot_measures(measures, title, columns=len(SHOWN))
+
+
+def _measure(found: Sequence[Searched], metric: Metric, place: str, robots: Sequence[str]) -> Measure:
+    values = {robot: measured(found, metric, robot, place) for robot in robots}
+    return Measure(
+        label=f"{metric.label}\n{place}",
+        means={robot: fmean(each) for robot, each in values.items()},
+        spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
+        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", TRUE) else None,
+    )

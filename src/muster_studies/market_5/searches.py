@@ -1,0 +1,144 @@
+"""What is run: the market's plan carried out with noise, while all three robots scan; and what they found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from muster.motion.grid import Floats
+from muster.perception.clusters import by_density
+from muster.perception.interest import PointOfInterest, points_of_interest
+from muster.perception.matching import ErrorTable, error_table
+from muster.running.simulation import WORLDS, Simulation
+from muster_studies.effort import Effort
+from muster_studies.market_5.arena import SURVIVORS
+from muster_studies.market_5.localisation import Eyes, Seen, raw_estimates
+from muster_studies.market_rescue.scenario import market_case
+from muster_studies.rescue.flights import NOISE, Flown, Log, repetitions
+from muster_studies.rescue.teams import ARENA, mission_of, plan_of
+from muster_studies.rescue.tracking import Tracking, tracking
+
+TRUE, ODOMETRY, LASER = "true", "odometry", "laser"
+PLACES = (TRUE, ODOMETRY, LASER)
+"""Where a robot was; where it was by odometry; and by odometry with landmarks."""
+
+STEP_S, SCAN_S = 0.1, 0.5
+APART_M, LEAST = 0.06, 5
+"""Sightings so near to each other are of one thing, which is there when it was seen so often."""
+TOGETHER_S = 2.0
+"""Within which sightings of one robot count as one: they share where it takes itself to be."""
+FARTHEST_M = 0.1
+"""From a survivor, what is found is none."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Searched:
+    """One search.
+
+    Parameters
+    ----------
+    flown
+        by place, with the positions that are meant; times and all else are the same.
+    off
+        by robot and place other than true, (t,) metres that it was off.
+    surprise
+        by robot and place, (t,): squared error of x and y in units of its covariance; 2 in the mean of one that knows
+        its errors.
+    seen
+        all sightings of what is no landmark, in order of time.
+    hits
+        by robot what its last scan hit, (k, 2) in the map, from where it took itself to be.
+    """
+
+    flown: Mapping[str, Flown]
+    off: Mapping[tuple[str, str], Floats]
+    surprise: Mapping[tuple[str, str], Floats]
+    seen: tuple[Seen, ...]
+    hits: Mapping[str, Floats]
+
+    def tracking(self, robot: str, place: str) -> Tracking:
+        return tracking(ARENA, self.flown[place], robot)
+
+    def found(self, robots: Sequence[str] = ()) -> ErrorTable:
+        """What these robots together found of the survivors; all by default."""
+        places = [point.position for point in self.points(robots)]
+        return error_table(places, SURVIVORS, FARTHEST_M)
+
+    def points(self, robots: Sequence[str] = ()) -> tuple[PointOfInterest, ...]:
+        """The places at which these robots found something."""
+        raw = raw_estimates([one for one in self.seen if not robots or one.robot in robots])
+        return points_of_interest(raw, by_density(raw.positions, APART_M, LEAST), independent_after_s=TOGETHER_S)
+
+    def sightings(self, survivor: str, robot: str | None = None) -> list[Seen]:
+        """Those that are within `FARTHEST_M` of it."""
+        there = SURVIVORS[survivor]
+        by = [one for one in self.seen if robot is None or one.robot == robot]
+        return [one for one in by if math.dist(one.place.mean, there) <= FARTHEST_M]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """The plan carried out once in one of the worlds; `seed` is of all errors, `iterations` of the market's."""
+
+    world: str
+    iterations: int
+    seed: int
+
+    def perform(self) -> Searched:
+        mission = mission_of(ARENA)
+        log = Log(mission)
+        how: dict[str, Any] = {"world": self.world, "seed": self.seed, "noise": NOISE, "recorder": log}
+        with closing(Simulation(mission, plan_of(ARENA, self.iterations), **how)) as simulation:
+            eyes = [Eyes(simulation.world, robot.id, self.seed) for robot in mission.robots]
+            states, seen = [_states(eyes)], list[Seen]()
+            while not simulation.done:
+                simulation.advance(simulation.time_s + STEP_S)
+                for one in eyes:
+                    one.move()
+                if len(states) % round(SCAN_S / STEP_S) == 0:
+                    for one in eyes:
+                        seen += one.look([other.fused.mean[:2] for other in eyes if other is not one])
+                states.append(_states(eyes))
+        hits = {one.robot: one.hits for one in eyes}
+        return _searched(log.flown(simulation.result()), np.array(states), tuple(seen), hits)
+
+
+@cache
+def performed(search: Search) -> Searched:
+    """What it found; tables and pictures share it."""
+    return search.perform()
+
+
+def searches(effort: Effort, worlds: Sequence[str] = WORLDS) -> list[Search]:
+    """In each world the repetitions."""
+    iterations = market_case(effort).iterations or 0
+    seeds = range(repetitions(effort))
+    return [Search(world=world, iterations=iterations, seed=seed) for world in worlds for seed in seeds]
+
+
+def _states(eyes: Sequence[Eyes]) -> list[list[Floats]]:
+    """Of each robot, by odometry and with landmarks: x, y and their covariance, (6,)."""
+    return [
+        [np.concatenate([one.mean[:2], one.covariance[:2, :2].ravel()]) for one in (each.odometry, each.fused)]
+        for each in eyes
+    ]
+
+
+def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...], hits: Mapping[str, Floats]) -> Searched:
+    """`states` (t, n, 2, 6) as `_states` gives them, at the times of the flight."""
+    places, off, surprise = {TRUE: flown}, {}, {}
+    for k, place in enumerate((ODOMETRY, LASER)):
+        believed, spread = states[:, :, k, :2], states[:, :, k, 2:].reshape(*states.shape[:2], 2, 2)
+        places[place] = replace(flown, positions=believed)
+        apart = believed - flown.positions
+        squares = np.einsum("tni,tnij,tnj->tn", apart, np.linalg.inv(spread), apart)
+        for number, robot in enumerate(flown.visits):
+            off[robot, place] = np.linalg.norm(apart[:, number], axis=1)
+            surprise[robot, place] = squares[:, number]
+    return Searched(flown=places, off=off, surprise=surprise, seen=seen, hits=hits)

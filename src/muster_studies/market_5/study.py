@@ -1,0 +1,30 @@
+"""The study: which tables there are, how they are made, and the pictures beside them."""
+
+from __future__ import annotations
+
+from muster_studies.market_5.pictures import draw
+from muster_studies.market_5.searches import Search, Searched, performed
+from muster_studies.market_5.targets import Figure7, Targets
+from muster_studies.market_5.tracks import Figure8, Localisation
+from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from muster_studies.rescue.flights import repetitions
+
+_TABLES: tuple[Reproduction[Search, Searched], ...] = (Figure7(), Figure8(), Targets(), Localisation())
+
+_LEGEND = (
+    "The mission is market-rescue-arena, carried out in the kinematic and in the physics world, where the paper took "
+    "V-REP; robots know their places by odometry and laser landmarks. Places, noise and landmarks are chosen here. "
+    "Allocation, times and failing robots: study rescue.",
+)
+
+MARKET_5 = IllustratedRepetition(
+    name="market-5",
+    summary="search and tracking with lasers, market paper, section 5 (needs the extra physics)",
+    document="market paper, sections 4.2, 4.3 and 5",
+    legend=_LEGEND,
+    reproductions=_TABLES,
+    perform=one_by_one(performed),
+    seeds=repetitions,
+    pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
+)
+"""Three robots track their ways and search with lasers: Figures 7 and 8, targets, localisation."""

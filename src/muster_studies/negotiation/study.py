@@ -1,0 +1,75 @@
+"""The study: what agreeing without a centre costs, as a table and a picture."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from muster.report.files import save_figure
+from muster_studies.effort import Effort
+from muster_studies.negotiation.cost import LOSSES, Cost, Said, Talk, hold
+from muster_studies.repetition import IllustratedRepetition, one_by_one
+from muster_studies.tables import Table
+
+_held = cache(hold)
+
+
+def _hold(talk: Talk) -> Said:
+    """Hold an auction, once for the table and the picture."""
+    return _held(talk)
+
+
+_DO = one_by_one(_hold)
+
+
+def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
+    """Draw messages and bytes a task over the size of the team; the file made."""
+    cost = Cost()
+    if cost.number not in numbers:
+        return []
+    found = _DO(cost.jobs(effort), effort, 1, None).found
+    path = folder / "negotiation.png"
+    save_figure(_figure(cost.table(effort, found)), path)
+    return [path]
+
+
+def _figure(table: Table) -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from muster.report.styles import PALETTE
+
+    figure = Figure(figsize=(10, 3.6), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    records = table.records()
+    for ax, (column, label) in zip(figure.subplots(1, 3), _SHOWN, strict=True):
+        for k, method in enumerate(dict.fromkeys(str(row["method"]) for row in records)):
+            for loss, style in zip(LOSSES, ("-", "--"), strict=True):
+                rows = [row for row in records if row["method"] == method and row["loss %"] == round(100 * loss)]
+                name = f"{method}, {100 * loss:.0f} % lost"
+                points = [row["robots"] for row in rows], [row[column] for row in rows]
+                ax.plot(*points, style, marker="o", markersize=3.5, color=PALETTE[k], label=name)
+        ax.set_xscale("log")
+        ax.set_xticks([row["robots"] for row in rows], [str(row["robots"]) for row in rows])
+        ax.minorticks_off()
+        ax.set_xlabel("robots")
+        ax.set_title(label, fontsize=9)
+        ax.grid(alpha=0.3)
+        ax.set_ylim(bottom=0)
+    ax.legend(fontsize=7)
+    return ax
+
+
+_SHOWN = (("all a task", "messages a task"), ("kB a task", "kB a task"), ("gap %", "objective above search, %"))
+
+NEGOTIATION = IllustratedRepetition[Talk, Said](
+    name="negotiation",
+    summary="what agreeing without a centre costs as the team grows, and how good the plans are",
+    document="no publication: simulated network, 50 ms each way",
+    legend=(),
+    reproductions=(Cost(),),
+    perform=_DO,
+    pictures=draw,
+)
+"""The auction and bundles without a centre, beside search in one process, with and without loss."""

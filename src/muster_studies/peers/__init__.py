@@ -1,0 +1,5 @@
+"""`search` against solvers from elsewhere: OR-Tools, PyVRP, VROOM. Needs the extra `bench`."""
+
+from muster_studies.peers.study import Peers
+
+__all__ = ["Peers"]

@@ -1,0 +1,193 @@
+"""One run of one solver on one mission, judged; and the runs of all solvers on all missions, one after the other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from statistics import fmean
+
+from muster.allocation.problem import Problem
+from muster.allocation.registry import allocator_named
+from muster.allocation.stop import Stop
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.verification import verify
+from muster_studies.bench import large_mission
+from muster_studies.peers.cp_sat import CpSat
+from muster_studies.peers.instance import Instance
+from muster_studies.peers.peer import Answer, Peer
+from muster_studies.peers.pyvrp_peer import PyVRP
+from muster_studies.peers.routing import Routing
+from muster_studies.peers.vroom_peer import Vroom
+from muster_studies.runs import mission_named
+
+OWN = "search"
+"""The allocator that is compared."""
+PEERS: Mapping[str, Peer] = {peer.name: peer for peer in (Routing(), CpSat(), PyVRP(), Vroom())}
+
+_GENERATED = "uniform-"
+_TRIES = 3
+_UNDISTURBED = 0.9
+"""A run that had less of a processor, because others use the machine, is repeated."""
+_TOO_SHORT_S = 0.05
+_ROUNDING = 1e-4
+"""What a peer's own count of the objective may be off, relative."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Match:
+    """A mission and an objective; `mission` is shipped, or `uniform-TASKS-ROBOTS`."""
+
+    mission: str
+    objective: str
+    ignored: tuple[str, ...] = ()
+
+    def problem(self) -> Problem:
+        return Problem.compile(mission_of(self.mission), self.objective, self.ignored).ready()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """A solver's run on a match. Without randomness one seed is all there is."""
+
+    match: Match
+    solver: str
+    seconds: float
+    seed: int = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What came of a run.
+
+    `fault` says why there is no value that counts: the solver cannot express the mission, found no plan, or the judge
+    rejects it. Times are seconds: `took_s` from when the model is handed over, `build_s` until then.
+    """
+
+    run: Run
+    fault: str | None = None
+    value: float = 0.0
+    weight: float = 0.0
+    tasks: int = 0
+    tasks_total: int = 0
+    took_s: float = 0.0
+    build_s: float = 0.0
+    cpu_s: float = 0.0
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Lower is better: more tasks first, then the objective."""
+        return -self.weight, self.value
+
+    @property
+    def share(self) -> float:
+        """How much of a processor the machine gave the run; 1 of a run too short to tell."""
+        return min(1.0, self.cpu_s / self.took_s) if self.took_s > _TOO_SHORT_S else 1.0
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The runs of one solver on one match, by seed. Not empty."""
+
+    results: tuple[Result, ...]
+
+    @property
+    def fault(self) -> str | None:
+        """The first fault of any run."""
+        return next((result.fault for result in self.results if result.fault is not None), None)
+
+    @property
+    def mean(self) -> float:
+        return fmean(result.value for result in self.results)
+
+    @property
+    def worst(self) -> Result:
+        return max(self.results, key=lambda result: result.rank)
+
+    @property
+    def same_tasks(self) -> bool:
+        """Whether all runs do as much."""
+        return len({result.weight for result in self.results}) == 1
+
+
+@cache
+def mission_of(name: str) -> Mission:
+    """A shipped mission, or a generated one."""
+    if not name.startswith(_GENERATED):
+        return mission_named(name)
+    tasks, robots = map(int, name.removeprefix(_GENERATED).split("-"))
+    return large_mission(tasks, robots)
+
+
+def perform(run: Run) -> Result:
+    """Run a solver and judge its plan."""
+    problem = run.match.problem()
+    begin, cpu = time.perf_counter(), time.process_time()
+    if run.solver == OWN:
+        stop = Stop(time_limit=run.seconds)
+        plan = allocator_named(OWN).solve(problem, stop, seed=run.seed)
+        return _judged(run, problem, plan, Answer(None), begin, cpu)
+    instance, peer = Instance(problem), PEERS[run.solver]
+    unable = peer.cannot(instance)
+    if unable is not None:
+        return Result(run=run, fault=unable)
+    answer = peer.solve(instance, run.seconds, run.seed)
+    if answer.routes is None:
+        took_s, cpu_s = time.perf_counter() - begin - answer.build_s, time.process_time() - cpu
+        return Result(run=run, fault="no plan", took_s=took_s, build_s=answer.build_s, cpu_s=cpu_s)
+    return _judged(run, problem, instance.plan(answer.routes, run.solver), answer, begin, cpu)
+
+
+def undisturbed(run: Run) -> Result:
+    """The first result that had a processor to itself; after some tries the one that had most of one."""
+    results: list[Result] = []
+    while len(results) < _TRIES and (not results or results[-1].share < _UNDISTURBED):
+        results.append(perform(run))
+    return max(results, key=lambda result: result.share)
+
+
+def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float, cpu: float) -> Result:
+    took_s, cpu_s = time.perf_counter() - begin - answer.build_s, time.process_time() - cpu
+    verdict = verify(problem.mission, plan)
+    value = verdict.value(run.match.objective) or 0.0  # none of a plan that deadlocks, which is invalid
+    fault = None
+    if not verdict.valid:
+        found = verdict.violations[0]
+        fault = f"invalid: {found.kind} {found.robot or found.task or ''} {found.detail}"
+    elif answer.claimed is not None and abs(answer.claimed - value) > _ROUNDING * max(1e-9, value):
+        fault = f"claims {answer.claimed:.6g}, the judge says {value:.6g}"
+    return Result(
+        run=run,
+        fault=fault,
+        value=value,
+        weight=verdict.weight_completed,
+        tasks=verdict.tasks_completed,
+        tasks_total=verdict.tasks_total,
+        took_s=took_s,
+        build_s=answer.build_s,
+        cpu_s=cpu_s,
+    )
+
+
+def perform_all(
+    runs: Sequence[Run], on_done: Callable[[int, int], None] | None = None
+) -> Mapping[tuple[Match, str], Standing]:
+    """All runs, one at a time, so that none takes the processor from another."""
+    results: dict[tuple[Match, str], list[Result]] = {}
+    for done, run in enumerate(runs, 1):
+        results.setdefault((run.match, run.solver), []).append(undisturbed(run))
+        if on_done is not None:
+            on_done(done, len(runs))
+    return {key: Standing(tuple(found)) for key, found in results.items()}
+
+
+def runs_of(matches: Iterable[Match], solvers: Sequence[str], seconds: float, seeds: int) -> list[Run]:
+    """The runs of all solvers on all matches, those on one match together, whatever else the machine does then."""
+    return [
+        Run(match=match, solver=solver, seconds=seconds, seed=seed)
+        for match in matches
+        for solver in solvers
+        for seed in range(seeds if solver == OWN or PEERS[solver].random else 1)
+    ]

@@ -1,0 +1,146 @@
+"""PyVRP: iterated local search. It minimises the total; other objectives need a sweep over caps."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+
+from muster_studies.peers.costs import Integers
+from muster_studies.peers.instance import Instance
+from muster_studies.peers.peer import Answer, missing
+from muster_studies.peers.sweep import OBJECTIVES, Routed, answered
+
+_FORBIDDEN = 10
+"""A leg to a task that a robot may not do takes so many times a prize; profiles are how PyVRP restricts vehicles."""
+
+
+class PyVRP:
+    """PyVRP with its own defaults."""
+
+    name = "PyVRP"
+    distribution = "pyvrp"
+    settings = "iterated local search, its defaults; with max the runs of a sweep go on from the best plan"
+    random = True
+
+    def cannot(self, instance: Instance) -> str | None:
+        if instance.has_prerequisites:
+            return "no prerequisites"
+        return None if instance.objective in OBJECTIVES else f"no {instance.objective}"
+
+    def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
+        return answered(instance, lambda: _Model(instance, seed).run, seconds)
+
+
+class _Model:
+    """The mission as PyVRP's data; robots that are alike are one type of vehicle."""
+
+    def __init__(self, instance: Instance, seed: int) -> None:
+        try:
+            import pyvrp
+        except ImportError:
+            raise missing("PyVRP") from None
+        self._pyvrp: Any = pyvrp
+        self.instance, self._seed = instance, seed
+        profiles = [self._profile(i) for i in range(instance.robot_count)]
+        self._profile_of = {profile: k for k, profile in enumerate(dict.fromkeys(profiles))}
+        self._types: dict[Hashable, list[int]] = {}
+        for i, profile in enumerate(profiles):
+            key = profile, instance.starts[i], instance.ends[i], instance.capacity[i]
+            self._types.setdefault(key, []).append(i)
+        self._data = self._make_data()
+        self._best: tuple[int, list[Any]] | None = None  # the value, and the routes as PyVRP has them
+
+    def _profile(self, robot: int) -> tuple[int, bytes]:
+        """What a robot's table depends on."""
+        return self.instance.usage.kinds[robot], self.instance.allowed[robot].tobytes()
+
+    def _make_data(self) -> Any:
+        instance, pyvrp = self.instance, self._pyvrp
+        prize = instance.usage.bound if instance.optional else 0
+        tables = [self._table(kind, row) for kind, row in self._profile_of]
+        nodes = range(instance.node_count + 1)
+        return pyvrp.ProblemData(
+            locations=[pyvrp.Location(0, 0) for _ in nodes],
+            clients=[
+                pyvrp.Client(location=j, prize=prize * weight, required=not instance.optional)
+                for j, weight in enumerate(instance.weights)
+            ],
+            depots=[pyvrp.Depot(location=node) for node in nodes[len(instance.tasks) :]],
+            vehicle_types=self._vehicle_types(None),
+            distance_matrices=tables,
+            duration_matrices=[np.zeros_like(tables[0])] * len(tables),
+        )
+
+    def _table(self, kind: int, row: bytes) -> Integers:
+        table = self.instance.usage.arriving(kind)
+        forbidden = np.flatnonzero(~np.frombuffer(row, dtype=np.bool_))
+        table[:, forbidden] = _FORBIDDEN * self.instance.usage.bound * max(self.instance.weights)
+        np.fill_diagonal(table, 0)
+        return table
+
+    def _vehicle_types(self, cap: int | None) -> list[Any]:
+        instance = self.instance
+        found = []
+        for robots in self._types.values():
+            i = robots[0]
+            most = [limit for limit in (cap, instance.capacity[i]) if limit is not None]
+            found.append(
+                self._pyvrp.VehicleType(
+                    num_available=len(robots),
+                    start_depot=instance.starts[i] - len(instance.tasks),
+                    end_depot=instance.ends_or_anywhere[i] - len(instance.tasks),
+                    profile=self._profile_of[self._profile(i)],
+                    **({"max_distance": min(most)} if most else {}),
+                )
+            )
+        return found
+
+    def run(self, cap: int | None, seconds: float) -> Routed | None:
+        """One run under a cap."""
+        from pyvrp.stop import MaxRuntime
+
+        data = self._data if cap is None else self._data.replace(vehicle_types=self._vehicle_types(cap))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # that a cap is hard to keep, which is what a sweep wants to know
+            result = self._pyvrp.solve(
+                data,
+                MaxRuntime(seconds),
+                seed=self._seed,
+                collect_stats=False,
+                display=False,
+                initial_solution=self._known(data),
+            )
+        if not result.best.is_feasible():
+            return None
+        routed = self._routed(result.best)
+        value = routed.value(self.instance.objective)
+        if self._best is None or value < self._best[0]:
+            self._best = value, result.best.routes()
+        return routed
+
+    def _known(self, data: Any) -> Any:
+        """The best plan so far, which may be above the cap of the data; None where the start had better be random.
+
+        For `max` it is a good start, as caps become tighter and tighter; for total+max it is too close to one cap.
+        """
+        if self._best is None or self.instance.objective != "max":
+            return None
+        routes = [
+            self._pyvrp.Route(data, [step.idx for step in route if step.is_client()], route.vehicle_type())
+            for route in self._best[1]
+        ]
+        return self._pyvrp.Solution(data, routes)
+
+    def _routed(self, solution: Any) -> Routed:
+        """The routes, those of one type of vehicle given to its robots one after the other."""
+        left = [list(robots) for robots in self._types.values()]
+        routes: list[list[int]] = [[] for _ in range(self.instance.robot_count)]
+        lengths = [0] * self.instance.robot_count
+        for route in solution.routes():
+            robot = left[route.vehicle_type()].pop(0)
+            routes[robot] = [step.idx for step in route if step.is_client()]
+            lengths[robot] = route.distance()
+        return Routed(routes, lengths)

@@ -1,0 +1,241 @@
+"""The study: `search` against solvers from elsewhere, one table for each objective and one for large missions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from statistics import fmean
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import OBJECTIVES
+from muster_studies.effort import Effort
+from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, Standing, perform_all, runs_of
+from muster_studies.peers.machine import machine, versions
+from muster_studies.tables import Cell, Notes, Report, Table
+
+LARGE = "large"
+IGNORED = ("prerequisites", "suitability")
+_FREE = "free"
+_TEAMS = ("31T-6R", "31T-6R-as-run", "31T-6R50", "31T-3R44-3R26", "16T-3R", "24T-5R")
+_OTHERS = ("eil51-3", "eil51-5", "eil51-7", "berlin52-5", "eil76-7", "market-rescue-20")
+_LARGE = ("uniform-1000-50", "uniform-5000-200")
+_QUICK = ("6T-2R", "uniform-12-3")
+_QUICK_LARGE = ("uniform-40-5",)
+_SEEDS, _QUICK_SEEDS = 3, 1
+
+_SOLVERS: Mapping[str, tuple[str, ...]] = {
+    "total+max": (OWN, "OR-Tools", "PyVRP", "VROOM"),
+    "total": (OWN, "OR-Tools", "PyVRP", "VROOM"),
+    "max": (OWN, "OR-Tools", "PyVRP", "VROOM"),
+    "average": (OWN, "OR-Tools", "CP-SAT"),
+    "makespan": (OWN, "OR-Tools", "CP-SAT"),
+}
+_LARGE_SOLVERS = ("OR-Tools", "PyVRP", "VROOM")
+
+Standings = Mapping[tuple[Match, str], Standing]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Seconds that solvers have: all of them on a shipped mission; `search`, and its peers, on a large one."""
+
+    all: float
+    own_large: float
+    peers_large: float
+
+
+_USUAL, _SHORT = Limits(2.0, 1.0, 60.0), Limits(0.3, 0.1, 0.5)
+
+
+class Peers:
+    """`search` against OR-Tools, PyVRP and VROOM at equal time; needs the extra `bench`."""
+
+    name = "peers"
+    summary = "search against OR-Tools, PyVRP and VROOM at equal time (needs the extra bench)"
+    tables: tuple[str, ...] = (*OBJECTIVES, LARGE)
+
+    def __init__(self, seconds: float | None = None, large_seconds: float | None = None) -> None:
+        """Take other time limits than usual: of each run, and of a peer's run on a large mission.
+
+        Raises
+        ------
+        ParameterError
+            if one is not above 0.
+        """
+        for name, value in (("seconds", seconds), ("large_seconds", large_seconds)):
+            if value is not None and not value > 0:
+                raise ParameterError(f"{name}: {value}; expected a number above 0")
+        self._seconds, self._large_seconds = seconds, large_seconds
+
+    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
+        """Run the tables asked for; one run at a time whatever `workers` says, for equal conditions.
+
+        Raises
+        ------
+        ParameterError
+            if there is no such table, or for iterations, which no two solvers have in common.
+        MissingExtraError
+            if a peer is not installed.
+        """
+        if effort.iterations is not None:
+            raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
+        found = versions(PEERS.values())
+        wanted = effort.wanted(self.tables)
+        seeds = effort.seeds or (_QUICK_SEEDS if effort.quick else _SEEDS)
+        limits = self._limits(effort.quick)
+        runs = list(chain.from_iterable(_runs(number, effort.quick, limits, seeds) for number in wanted))
+        standings = perform_all(runs, on_done)
+        results = [result for standing in standings.values() for result in standing.results]
+        return Report(
+            study=self.name,
+            document="search against solvers from elsewhere",
+            seeds=seeds,
+            runs=len(results),
+            cpu_s=sum(result.cpu_s for result in results),
+            legend=(*_legend(found, limits, seeds), _shares(results)),
+            tables=tuple(_table(number, effort.quick, standings) for number in wanted),
+        )
+
+    def _limits(self, quick: bool) -> Limits:
+        usual = _SHORT if quick else _USUAL
+        return Limits(self._seconds or usual.all, usual.own_large, self._large_seconds or usual.peers_large)
+
+
+def _matches(number: str, quick: bool) -> list[Match]:
+    if number == LARGE:
+        return [Match(mission=name, objective="total+max") for name in (_QUICK_LARGE if quick else _LARGE)]
+    if quick:
+        return [Match(mission=name, objective=number) for name in _QUICK]
+    teams = [Match(mission=name, objective=number, ignored=rules) for name in _TEAMS for rules in ((), IGNORED)]
+    return [*teams, *(Match(mission=name, objective=number) for name in _OTHERS)]
+
+
+def _runs(number: str, quick: bool, limits: Limits, seeds: int) -> list[Run]:
+    matches = _matches(number, quick)
+    if number != LARGE:
+        return runs_of(matches, _SOLVERS[number], limits.all, seeds)
+    own = runs_of(matches, (OWN,), limits.own_large, seeds)
+    return [*own, *runs_of(matches, _LARGE_SOLVERS, limits.peers_large, 1)]
+
+
+def _legend(found: Mapping[str, str], limits: Limits, seeds: int) -> list[str]:
+    return [
+        f"Machine: {machine()}. Versions: {', '.join(f'{name} {number}' for name, number in found.items())}.",
+        f"Every solver has {limits.all:g} s of wall time for each plan and one thread, and runs alone; handing over "
+        "the model comes on top (milliseconds; in the table of large missions it is a column). Whole numbers that "
+        "solvers want are rounded at 1e-7 of the longest way. All values are by muster.verify, lower is better; where "
+        "tasks are left out their number done is told, and more tasks come before a lower value.",
+        f"search and PyVRP are random: mean and worst of {'seed 0' if seeds == 1 else f'seeds 0 to {seeds - 1}'}. The "
+        "others are not, and run once. Columns with / hold the mean of a solver by the mean of search: above 1, search "
+        "is better.",
+        f"{_FREE}: with --ignore {','.join(IGNORED)}. The other missions have neither of these rules.",
+        *(f"{peer.name}: {peer.settings}." for peer in PEERS.values()),
+        "PyVRP and VROOM minimise the total alone. For max and total+max they have the best of a sweep over a cap on "
+        "the route length, judged by the objective: at least one run without a cap and runs with caps, the time "
+        "limit split over 8 of them (of VROOM, which ends by itself, as many more as fit). They cannot express "
+        "prerequisites, average, or waiting: those cells are empty, and tables are left out. OR-Tools' routing "
+        "library has all rules and objectives: total+max as arcs and a global span, max as a global span, average as "
+        "soft bounds of 0 on the usage at each task, makespan as the global span of a time with waiting, prerequisites "
+        "as precedences in that time. CP-SAT has all of it too. Who may do a task (suitability, skills, locks) is told "
+        "to OR-Tools as allowed vehicles, to PyVRP as ways too long to go, to VROOM as skills, to CP-SAT as legs "
+        "that are not there; capacities all have as limits of a route's length.",
+    ]
+
+
+def _shares(results: Sequence[Result]) -> str:
+    shares = [result.share for result in results]
+    return (
+        "A run that had less than 0.9 of a processor, because others used the machine, is repeated, at most twice, and "
+        f"the one with most counts: the runs that count had {fmean(shares):.2f} of one on average, {min(shares):.2f} "
+        "at least."
+    )
+
+
+def _table(number: str, quick: bool, standings: Standings) -> Table:
+    if number == LARGE:
+        return _large_table(quick, standings)
+    solvers, notes = _SOLVERS[number], Notes()
+    columns = _columns(solvers)
+    rows = [_row(match, solvers, standings, notes) for match in _matches(number, quick)]
+    title = f"Objective {number}: each solver's values, and those by the mean of search"
+    return Table(number, title, columns, (*rows, _mean_row(columns, rows)), notes.lines(), decimals=3)
+
+
+def _columns(solvers: tuple[str, ...]) -> tuple[str, ...]:
+    columns = ["mission", OWN, f"{OWN}, worst"]
+    for solver in solvers[1:]:
+        columns += [solver, *([f"{solver}, worst"] if PEERS[solver].random else []), f"{solver} / {OWN}"]
+    return tuple(columns)
+
+
+def _row(match: Match, solvers: tuple[str, ...], standings: Standings, notes: Notes) -> tuple[Cell, ...]:
+    own = standings[match, OWN]
+    cells: list[Cell] = [match.mission + (f", {_FREE}" if match.ignored else ""), _mean(own, notes), _worst(own)]
+    for solver in solvers[1:]:
+        standing = standings[match, solver]
+        worst = [_worst(standing)] if PEERS[solver].random else []
+        cells += [_mean(standing, notes), *worst, _ratio(standing, own)]
+    return tuple(cells)
+
+
+def _mean_row(columns: tuple[str, ...], rows: list[tuple[Cell, ...]]) -> tuple[Cell, ...]:
+    """The mean of each column of ratios, over the missions that have one."""
+    cells: list[Cell] = ["mean"]
+    for k, column in list(enumerate(columns))[1:]:
+        ratios = [cell for row in rows if isinstance(cell := row[k], float)]
+        cells.append(fmean(ratios) if ratios and column.endswith(f"/ {OWN}") else None)
+    return tuple(cells)
+
+
+def _mean(standing: Standing, notes: Notes) -> Cell:
+    """The mean over seeds where all do the same tasks, else that of the worst; a fault as a note."""
+    if standing.fault is not None:
+        return _fault(standing.fault, notes)
+    if not standing.same_tasks:
+        return _worst(standing)
+    result = standing.results[0]
+    return standing.mean if result.tasks == result.tasks_total else f"{standing.mean:.3f} ({result.tasks} tasks)"
+
+
+def _fault(fault: str, notes: Notes) -> Cell:
+    """Nothing where the mission cannot be expressed, which the legend tells; else what went wrong, with a note."""
+    if fault.startswith("no prerequisites"):
+        return None
+    return f"{fault.split(':')[0]} {notes.number(fault)}" if ":" in fault or fault.startswith("claims") else fault
+
+
+def _worst(standing: Standing) -> Cell:
+    if standing.fault is not None:
+        return None
+    worst = standing.worst
+    return worst.value if worst.tasks == worst.tasks_total else f"{worst.value:.3f} ({worst.tasks} tasks)"
+
+
+def _ratio(standing: Standing, own: Standing) -> Cell:
+    if standing.fault is not None or own.fault is not None or own.mean == 0:
+        return None
+    if not (standing.same_tasks and own.same_tasks) or standing.worst.weight != own.worst.weight:
+        return "fewer tasks" if standing.worst.weight < own.worst.weight else "more tasks"
+    return standing.mean / own.mean
+
+
+def _large_table(quick: bool, standings: Standings) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    notes = Notes()
+    for match in _matches(LARGE, quick):
+        own = standings[match, OWN]
+        for solver in (OWN, *_LARGE_SOLVERS):
+            standing = standings[match, solver]
+            result = standing.results[0]
+            took = max(result.took_s for result in standing.results)
+            figures = _mean(standing, notes), _worst(standing), _ratio(standing, own)
+            rows.append((match.mission, solver, result.run.seconds, took, result.build_s, *figures))
+    columns = ("mission", "solver", "limit [s]", "took [s]", "model [s]", "F", "worst", f"/ {OWN}")
+    title = "Large missions, total+max: search after a short time, the others after a long one"
+    more = (
+        "Tasks and robots at random places of a square of 1000 m, routes open; uniform-TASKS-ROBOTS. took: the longest "
+        "run, which overruns the limit where a solver looks at the clock too seldom; model: handing over the model, "
+        "beyond the limit.",
+    )
+    return Table(LARGE, title, columns, tuple(rows), (*more, *notes.lines()), decimals=3)

@@ -1,0 +1,77 @@
+"""The studies by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Protocol, runtime_checkable
+
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster_studies.allocators import Allocators
+from muster_studies.auction_5 import AUCTION_5
+from muster_studies.effort import Effort
+from muster_studies.market_5 import MARKET_5
+from muster_studies.market_rescue import MARKET_RESCUE
+from muster_studies.negotiation.study import NEGOTIATION
+from muster_studies.peers import Peers
+from muster_studies.repetition import OnDone
+from muster_studies.rescue import RESCUE
+from muster_studies.rvo import RVO
+from muster_studies.tables import Report
+from muster_studies.thesis_3_3 import THESIS_3_3
+from muster_studies.thesis_6 import THESIS_6
+from muster_studies.thesis_6_1 import THESIS_6_1
+
+
+class Study(Protocol):
+    """A published experiment that can be repeated; `tables` are the numbers of its tables."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def tables(self) -> tuple[str, ...]: ...
+
+    def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
+
+
+@runtime_checkable
+class Illustrated(Protocol):
+    """A study with pictures of the tables that are wanted."""
+
+    def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
+
+
+_IMPLEMENTATIONS: tuple[Study, ...] = (
+    THESIS_3_3,
+    THESIS_6,
+    THESIS_6_1,
+    AUCTION_5,
+    MARKET_RESCUE,
+    Allocators(),
+    Peers(),
+    RVO,
+    RESCUE,
+    MARKET_5,
+    NEGOTIATION,
+)
+
+STUDIES: Mapping[str, Study] = MappingProxyType({study.name: study for study in _IMPLEMENTATIONS})
+
+
+def study_named(name: str) -> Study:
+    """The study of that name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in STUDIES:
+        raise ParameterError(f"study: {name}; expected {' or '.join(STUDIES)}{did_you_mean(name, STUDIES)}")
+    return STUDIES[name]

@@ -1,0 +1,138 @@
+"""A study that is a number of tables: which runs they need, and the tables made of what these found."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, Protocol, TypeVar
+
+from muster_studies.effort import Effort
+from muster_studies.processes import run_cases
+from muster_studies.runs import Case, Sample
+from muster_studies.tables import Report, Table
+
+OnDone = Callable[[int, int], None]
+"""Called with the number of runs done, and of all runs."""
+
+Job = TypeVar("Job")
+Found = TypeVar("Found")
+FoundIn = TypeVar("FoundIn", contravariant=True)
+
+
+class Reproduction(Protocol[Job, FoundIn]):
+    """One table repeated. Jobs that are equal, of several tables too, are done once."""
+
+    @property
+    def number(self) -> str: ...
+
+    def jobs(self, effort: Effort) -> Iterable[Job]: ...
+
+    def table(self, effort: Effort, found: Mapping[Job, FoundIn]) -> Table: ...
+
+
+@dataclass(frozen=True)
+class Performed(Generic[Job, Found]):
+    """What all jobs found, in how many runs, and the processor time of these."""
+
+    found: Mapping[Job, Found]
+    runs: int
+    cpu_s: float
+
+
+Performer = Callable[[Iterable[Job], Effort, int, OnDone | None], Performed[Job, Found]]
+"""Does jobs, which may be equal, with an effort and on a number of processes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repetition(Generic[Job, Found]):
+    """A study by its tables.
+
+    Parameters
+    ----------
+    document
+        what is repeated.
+    reproductions
+        the tables, in order.
+    perform
+        does the jobs.
+    seeds
+        how many seeds there are for an effort; None where nothing is random.
+    """
+
+    name: str
+    summary: str
+    document: str
+    legend: tuple[str, ...]
+    reproductions: tuple[Reproduction[Job, Found], ...]
+    perform: Performer[Job, Found]
+    seeds: Callable[[Effort], int | None] = lambda effort: effort.seed_count
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        return tuple(table.number for table in self.reproductions)
+
+    def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report:
+        """Repeat all tables, or those that `effort` names.
+
+        Raises
+        ------
+        ParameterError
+            if there is no such table.
+        """
+        numbers = effort.wanted(self.tables)
+        wanted = [table for table in self.reproductions if table.number in numbers]
+        done = self.perform([job for table in wanted for job in table.jobs(effort)], effort, workers, on_done)
+        return Report(
+            study=self.name,
+            document=self.document,
+            seeds=self.seeds(effort),
+            runs=done.runs,
+            cpu_s=done.cpu_s,
+            legend=self.legend,
+            tables=tuple(table.table(effort, done.found) for table in wanted),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class IllustratedRepetition(Repetition[Job, Found]):
+    """One with pictures: `pictures` draws those of some tables into a folder, and returns the files made."""
+
+    pictures: Callable[[Effort, Path, tuple[str, ...]], list[Path]]
+
+    def draw(self, effort: Effort, folder: Path) -> list[Path]:
+        """Draw the pictures of the tables that `effort` names; the files made.
+
+        Raises
+        ------
+        ParameterError
+            if there is no such table.
+        """
+        return self.pictures(effort, folder, effort.wanted(self.tables))
+
+
+def one_by_one(do: Callable[[Job], Found]) -> Performer[Job, Found]:
+    """Each job is one run, in this process, whatever the number of processes."""
+
+    def perform(
+        jobs: Iterable[Job], effort: Effort, workers: int, on_done: OnDone | None = None
+    ) -> Performed[Job, Found]:
+        different, begin = list(dict.fromkeys(jobs)), time.process_time()
+        found: dict[Job, Found] = {}
+        for job in different:
+            found[job] = do(job)
+            if on_done is not None:
+                on_done(len(found), len(different))
+        return Performed(found, len(found), time.process_time() - begin)
+
+    return perform
+
+
+def over_seeds(
+    cases: Iterable[Case], effort: Effort, workers: int, on_done: OnDone | None = None
+) -> Performed[Case, Sample]:
+    """Each case is run with all seeds, spread over processes."""
+    samples = run_cases(cases, effort.seed_count, workers, on_done)
+    outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
+    return Performed(samples, len(outcomes), sum(outcome.cpu_s for outcome in outcomes))

@@ -1,0 +1,60 @@
+"""Pictures like Figures 7 and 8: reference and flown way on the map, and the metrics as bars with their spread."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from statistics import fmean, stdev
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.motion.grid import Floats
+from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
+from muster_studies.effort import Effort
+from muster_studies.picture_files import draw_figures
+from muster_studies.rescue.flights import Flown, repetitions
+from muster_studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
+from muster_studies.rescue.teams import mission_of
+from muster_studies.rescue.tracking import Tracking, deviations, legs, track
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
+    """The pictures of these tables that have one; the files made."""
+    return draw_figures(folder, effort, numbers, {"Figure 7": _tracking, "Figure 8": _metrics})
+
+
+def _tracking(effort: Effort) -> Figure:
+    calm, *disturbed = Figure7().jobs(effort)
+    mission, flown = mission_of(calm.team), calm.perform()
+    tasks = tuple(visit.task for visit in flown.visits[SHOWN_ROBOT])
+    reference = legs(calm.team, SHOWN_ROBOT, tasks)
+    flights = [_tracked("without noise", flown, reference)]
+    flights += [_tracked("with noise", flight.perform(), reference) for flight in disturbed]
+    goals = {task.id: (task.position[0], task.position[1]) for task in mission.tasks if task.id in tasks}
+    title = f"{SHOWN_ROBOT}: reference and flown way (as Figure 7)"
+    return plot_tracking(mission.map, np.concatenate(reference), flights, goals, title)
+
+
+def _tracked(name: str, flown: Flown, reference: Sequence[Floats]) -> Tracked:
+    places = track(flown, SHOWN_ROBOT)
+    return Tracked(name=name, places=places, times=flown.times[: len(places)], aside=deviations(reference, places))
+
+
+def _metrics(effort: Effort) -> Figure:
+    found = measured(effort, {flight: flight.perform() for flight in noisy(effort)})
+    measures = [_measure(metric, found) for metric in METRICS]
+    return plot_measures(measures, f"Metrics, mean and spread; flights with noise: {repetitions(effort)} (as Figure 8)")
+
+
+def _measure(metric: Metric, found: Mapping[str, Sequence[Tracking]]) -> Measure:
+    values = {robot: [float(getattr(one, metric.name)) for one in each] for robot, each in found.items()}
+    return Measure(
+        label=metric.label,
+        means={robot: fmean(each) for robot, each in values.items()},
+        spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
+        printed=printed_goal_error_m() if metric.name == "goal_error" else None,
+    )

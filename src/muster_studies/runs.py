@@ -1,0 +1,142 @@
+"""One run of an allocator, judged; and the runs of one case with different seeds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from statistics import fmean, stdev
+from typing import Any
+
+from muster.allocation.problem import Problem
+from muster.allocation.registry import allocator_named
+from muster.allocation.stop import Progress, Stop
+from muster.mission.errors import MusterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, Route
+from muster.planning.loading import load
+from muster.verification import Verdict, verify
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """What is run. Without a limit the allocator ends by itself, and the seed makes no difference."""
+
+    mission: str
+    allocator: str
+    ignored: tuple[str, ...] = ()
+    objective: str = "total+max"
+    iterations: int | None = None
+    time_limit: float | None = None
+
+    @property
+    def random(self) -> bool:
+        return self.iterations is not None or self.time_limit is not None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One run: what the judge says of its plan, the allocator's processor time, and when it had found the plan."""
+
+    case: Case
+    seed: int
+    verdict: Verdict
+    iterations: int
+    cpu_s: float
+    found_s: float
+
+    @property
+    def value(self) -> float:
+        value = self.verdict.value(self.case.objective)
+        assert value is not None  # of an admissible plan every objective has a value
+        return value
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Lower is better: more tasks first, then the objective."""
+        return -self.verdict.weight_completed, self.value
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The runs of one case. Not empty."""
+
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def best(self) -> Outcome:
+        return min(self.outcomes, key=lambda outcome: outcome.rank)
+
+    @property
+    def worst(self) -> Outcome:
+        return max(self.outcomes, key=lambda outcome: outcome.rank)
+
+    @property
+    def mean(self) -> float:
+        return fmean(outcome.value for outcome in self.outcomes)
+
+    @property
+    def deviation(self) -> float | None:
+        """Standard deviation of a sample; None of a single run."""
+        return stdev(outcome.value for outcome in self.outcomes) if len(self.outcomes) > 1 else None
+
+    @property
+    def cpu_s(self) -> float:
+        return fmean(outcome.cpu_s for outcome in self.outcomes)
+
+
+@cache
+def mission_named(name: str) -> Mission:
+    """A shipped mission, read once."""
+    return load(name)
+
+
+def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
+    """What the judge says of routes that state nothing else."""
+    stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
+    return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
+
+
+def accepted(mission: Mission, plan: Plan, whose: str) -> Verdict:
+    """What the judge says of a plan that is right; `whose` it is, is told where it is not.
+
+    Raises
+    ------
+    MusterError
+        if the judge rejects the plan.
+    """
+    verdict = verify(mission, plan)
+    if not verdict.valid:
+        raise MusterError(f"{whose}: the judge rejects the plan: {rejection(verdict)}")
+    return verdict
+
+
+def rejection(verdict: Verdict) -> str:
+    """The first thing that is wrong with a plan."""
+    found = verdict.violations[0]
+    place = " ".join(part for part in (found.robot, found.task) if part)
+    return f"{found.kind}: {place + ', ' if place else ''}{found.detail}"
+
+
+def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -> Outcome:
+    """Run a case; `unwanted` is asked now and then, and ends the run early.
+
+    Raises
+    ------
+    MusterError
+        if the judge rejects the plan, which no allocator may make happen.
+    """
+    mission, allocator = mission_named(case.mission), allocator_named(case.allocator)
+    problem = Problem.compile(mission, case.objective, case.ignored).ready()
+
+    def end_if_unwanted(_: Progress) -> None:
+        if unwanted is not None and unwanted():
+            stop.interrupt()
+
+    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, on_progress=end_if_unwanted)
+    begin = time.process_time()
+    plan = allocator.solve(problem, stop, seed=seed)
+    cpu_s = time.process_time() - begin
+    verdict = accepted(mission, plan, f"internal error: {case.allocator} for {case.mission} with seed {seed}")
+    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])

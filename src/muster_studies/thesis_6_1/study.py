@@ -1,0 +1,65 @@
+"""The study: which tables there are, and how they are made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from muster.perception.optional_parts import require_physics
+from muster_studies.effort import Effort
+from muster_studies.repetition import IllustratedRepetition, OnDone, Performed, Performer, Reproduction, one_by_one
+from muster_studies.thesis_6_1.clusters import Clusterings
+from muster_studies.thesis_6_1.drifts import Drifts
+from muster_studies.thesis_6_1.errors import TagErrors
+from muster_studies.thesis_6_1.flights import Flight, Flown, fly
+from muster_studies.thesis_6_1.pictures import draw
+from muster_studies.thesis_6_1.published import points, seed_count
+from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
+
+_TABLES: tuple[Reproduction[Flight, Flown], ...] = (
+    DroneUsages(),
+    DroneTotals(),
+    TagErrors(
+        number="6.4",
+        title="Thirty tags found by three drones",
+        below_m=(0.05, points()["6.4"]["mean_error"]),
+        thesis={"error": "thesis"},
+    ),
+    TagErrors(
+        number="6.5",
+        title="Six tags found by one drone from the views of Table A.10",
+        below_m=(points()["6.5"]["mean_error"], points()["6.5"]["mean_error_real"]),
+        thesis={"error_real": "real", "error": "Gazebo"},
+    ),
+    Clusterings(),
+    Drifts(),
+)
+
+_LEGEND = (
+    "Three drones carry the corrected plans of Table 6.2 out among the tags of Table 6.4 (16T-3R-tags), one flies to "
+    "the views of Table A.10 (six-tags). physics: bodies move in MuJoCo, pictures of 640 x 480 are drawn, and "
+    "AprilTags looked for in them. kinematic: bodies keep their velocities, and tags are seen by geometry.",
+    "Sightings are put together by tag and filtered by covariance; what was seen three times and is known to 0.15 m is "
+    "found.",
+)
+
+
+def _fly_all(
+    jobs: Iterable[Flight], effort: Effort, workers: int, on_done: OnDone | None = None
+) -> Performed[Flight, Flown]:
+    """All flights, one by one; what they need is asked for before the first."""
+    require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
+    perform: Performer[Flight, Flown] = one_by_one(fly)
+    return perform(jobs, effort, workers, on_done)
+
+
+THESIS_6_1 = IllustratedRepetition(
+    name="thesis-6.1",
+    summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5, A6.1",
+    document="TCF thesis, section 6.1",
+    legend=_LEGEND,
+    reproductions=_TABLES,
+    perform=_fly_all,
+    seeds=seed_count,
+    pictures=draw,
+)
+"""Collaborative aerial observation in a physics world."""

@@ -1,0 +1,150 @@
+"""Tables 6.2 and 6.3: what the drones used, calculated, in Gazebo, and in both worlds here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from muster.running.simulation import WORLDS
+from muster_studies.comparison_marks import EQUAL, ERRATUM, differences, equal
+from muster_studies.effort import Effort
+from muster_studies.misprints import corrected, errata, printed
+from muster_studies.runs import judged
+from muster_studies.tables import Cell, Notes, Table, row
+from muster_studies.thesis_6.published import PublishedPlan, excess, plans, tables
+from muster_studies.thesis_6.totals import total_and_greatest
+from muster_studies.thesis_6_1.flights import Flight, Flown
+from muster_studies.thesis_6_1.published import flown_plan, thirty
+
+
+def _flights(effort: Effort, plan: PublishedPlan) -> dict[str, Flight]:
+    """By world; a plan that the thesis did not carry out is not flown in physics where time is short."""
+    worlds = WORLDS if plan is flown_plan() or not effort.quick else WORLDS[:1]
+    return {world: thirty(plan, world=world) for world in worlds}
+
+
+def _calculated(plan: PublishedPlan) -> list[float]:
+    """As the thesis calculates: to the middle of a task, and a typed cost there."""
+    return [route.usage for route in judged(plan.mission, plan.ignored, dict(plan.sequences)).routes]
+
+
+@dataclass(frozen=True)
+class DroneUsages:
+    """Table 6.2: a row for each robot of each plan."""
+
+    number: str = "6.2"
+    columns: tuple[str, ...] = (
+        "figure", "robot", "tasks", "thesis", "own", "mark", "Gazebo", "Gazebo %",
+        "ways", "kinematic", "physics", "physics %", "in plane",
+    )  # fmt: skip
+
+    def jobs(self, effort: Effort) -> Iterator[Flight]:
+        for plan in plans("6.2"):
+            yield from _flights(effort, plan).values()
+
+    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+        notes, rows, remarks = Notes(), [], []
+        for plan in plans("6.2"):
+            flown = {world: found[flight] for world, flight in _flights(effort, plan).items()}
+            for k, (robot, own) in enumerate(zip(plan.routes, _calculated(plan), strict=True)):
+                cells = _published(plan, robot, own, notes) | _flown_cells(flown, k)
+                rows.append(row(self.columns, cells))
+            remarks += [_remark(plan, world, one) for world, one in flown.items()]
+        title = f"{tables()['6.2']['title']}: usage of each robot, metres"
+        return Table(self.number, title, self.columns, tuple(rows), (*notes.lines(), *remarks, *_NOTES))
+
+
+_NOTES = (
+    "own: calculated as the thesis does, to the middle of a task and a typed cost there. ways: planned in space with "
+    "the ways of the tasks and the climb to them. kinematic, physics: flown, by odometry; physics %: against ways. in "
+    "plane: how far the body went in physics, heights not counted, which is what the thesis measured.",
+    "Gazebo %: against own. The thesis' drones stop short of goals by a threshold that is not printed.",
+)
+
+
+def _published(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[str, Cell]:
+    there, gazebo = plan.usage(robot), plan.usage(robot, "gazebo")
+    assert there is not None  # every plan was calculated
+    marks = [ERRATUM + " " + notes.number(f"{plan.figure}, {robot}: {text}.") for text in errata(plan.routes[robot])]
+    return {
+        "figure": plan.figure,
+        "robot": robot,
+        "tasks": plan.printed_tasks(robot),
+        "thesis": printed(plan.routes[robot])["usage"],
+        "own": own,
+        "mark": " ".join([EQUAL if equal(there, own) else f"{own - there:+.2f}", *marks]),
+        "Gazebo": gazebo,
+        "Gazebo %": None if gazebo is None else excess(gazebo, own),
+    }
+
+
+def _flown_cells(flown: Mapping[str, Flown], k: int) -> dict[str, Cell]:
+    ways = flown["kinematic"].planned.routes[k].usage
+    cells: dict[str, Cell] = {"ways": ways, **{world: one.usages[k] for world, one in flown.items()}}
+    if "physics" in flown:
+        used = flown["physics"].usages[k]
+        cells |= {"physics %": excess(used, ways), "in plane": flown["physics"].in_plane_m[k]}
+    return cells
+
+
+def _remark(plan: PublishedPlan, world: str, flown: Flown) -> str:
+    report = flown.report
+    apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"
+    return (
+        f"{plan.figure} ({plan.allocator}) in the {world} world: {len(report.tasks_done)} of "
+        f"{flown.planned.tasks_total} tasks done, {report.contacts or 'no'} contact"
+        f"{'' if report.contacts == 1 else 's'}{apart}; {report.mission_time_s:.0f} s, {flown.looks} pictures."
+    )
+
+
+@dataclass(frozen=True)
+class DroneTotals:
+    """Table 6.3: totals of each plan."""
+
+    number: str = "6.3"
+    columns: tuple[str, ...] = ("plan", "values", "C", "C %", "F", "F %", "mark")
+
+    def jobs(self, effort: Effort) -> Iterator[Flight]:
+        yield from DroneUsages().jobs(effort)
+
+    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+        notes, rows = Notes(), []
+        for plan in plans("6.2"):
+            flown = {world: found[flight] for world, flight in _flights(effort, plan).items()}
+            label = f"{plan.figure} {plan.allocator}"
+            rows += [row(self.columns, {"plan": label, **cells}) for cells in self._rows(plan, flown, notes)]
+        remark = "%: more than own. in plane, physics: as the thesis measured it, heights not counted."
+        return Table(self.number, tables()["6.3"]["title"], self.columns, tuple(rows), (*notes.lines(), remark))
+
+    def _rows(self, plan: PublishedPlan, flown: Mapping[str, Flown], notes: Notes) -> Iterator[dict[str, Cell]]:
+        own = _calculated(plan)
+        base = total_and_greatest(own)
+        for record in (record for record in tables()["6.3"]["rows"] if record["allocator"] == plan.allocator):
+            measured = "measured" in record
+            sums = total_and_greatest(plan.usages("gazebo")) if measured else base
+            right = {"C": corrected(record)["total_cost"], "F": corrected(record)["total+max"]}
+            marks = [ERRATUM + " " + notes.number(f"{plan.figure}: {text}.") for text in errata(record)]
+            yield {
+                "values": "thesis, Gazebo" if measured else "thesis",
+                **({"C %": excess(right["C"], base[0]), "F %": excess(right["F"], base[1])} if measured else {}),
+                "C": printed(record)["total_cost"],
+                "F": printed(record)["total+max"],
+                "mark": " ".join([differences(right, dict(zip("CF", sums, strict=True)), "CF"), *marks]),
+            }
+        yield {"values": "own", "C": base[0], "F": base[1]}
+        yield _totals("ways", [route.usage for route in flown["kinematic"].planned.routes], base)
+        for world, one in flown.items():
+            yield _totals(world, one.usages, base)
+        if "physics" in flown:
+            yield _totals("in plane, physics", flown["physics"].in_plane_m, base)
+
+
+def _totals(values: str, usages: list[float] | tuple[float, ...], base: tuple[float, float]) -> dict[str, Cell]:
+    total, objective = total_and_greatest(usages)
+    return {
+        "values": values,
+        "C": total,
+        "C %": excess(total, base[0]),
+        "F": objective,
+        "F %": excess(objective, base[1]),
+    }

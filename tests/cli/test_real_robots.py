@@ -1,0 +1,103 @@
+"""What the verbs that command real robots share: a simulated world stands behind the fleet, in virtual time."""
+
+import signal
+import socket
+import threading
+
+import pytest
+from tests.running.test_live import WorldAsFleet, mission
+
+import muster
+from muster.cli import real_robots as real
+from muster.cli.interrupt import ctrl_c_halts
+from muster.cli.main import run
+from muster.cli.real_robots import Wishes, carried_out, reported
+from muster.mission.interrupts import TO_END
+from muster.running.live import wait_for_robots
+
+ASKED = {
+    **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
+    "seed": 0,
+    "time_limit": 0.1,
+    "require_complete": False,
+    "form": "table",
+    "quiet": True,
+    "verbose": False,
+}
+
+
+def carry_out(wishes, **how):
+    there = mission()
+    halt = how.pop("halt", threading.Event())
+    report = carried_out(there, muster.solve(there, iterations=50), WorldAsFleet(there), wishes, halt, **how)
+    return there, report, halt
+
+
+def test_robots_are_told_how_to_end_before_anything_is_drawn(tmp_path):
+    page, seen = tmp_path / "page.html", []
+    carry_out(Wishes(**{**ASKED, "html": page}), at_end=lambda: seen.append(page.exists()))
+    assert seen == [False]
+    assert page.exists()
+
+
+def test_the_report_counts_more_than_what_is_drawn_of_it(tmp_path, monkeypatch, capsys):
+    def full(*_):
+        raise OSError(28, "No space left on device", "page.html")
+
+    monkeypatch.setattr("muster.cli.record_output.draw_record", full)
+    wishes = Wishes(**{**ASKED, "html": tmp_path / "page.html"})
+    there, report, halt = carry_out(wishes)
+    assert reported(there, report, wishes, halt, "") == 0
+    out, err = capsys.readouterr()
+    assert "tasks done        4 of 4" in out
+    assert err == "warning: [Errno 28] No space left on device: 'page.html'\n"
+
+
+@pytest.mark.parametrize("number", TO_END)
+def test_a_signal_to_end_halts_once_and_is_as_before_afterwards(number):
+    before = signal.getsignal(number)
+    with ctrl_c_halts(TO_END) as halt:
+        signal.raise_signal(number)
+        assert halt.is_set()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(number)
+    assert signal.getsignal(number) is before
+
+
+def test_who_was_interrupted_hears_what_robots_do(capsys):
+    halt = threading.Event()
+    halt.set()
+    wishes = Wishes(**ASKED)
+    there, report, _ = carry_out(wishes, halt=halt)
+    assert reported(there, report, wishes, halt, "robots hover") == 130
+    assert capsys.readouterr().err == "interrupted at 0.0 s of the mission; robots hover\n"
+
+
+def test_robots_that_do_not_say_where_they_are_are_named():
+    class Silent:
+        def unheard(self):
+            return {"r_0": "nothing on /r_0/odom", "r_1": "nothing on /r_1/odom"}
+
+    with pytest.raises(muster.MusterError, match=r"robot r_0: nothing on /r_0/odom within 0.1 s \(and 1 more\)"):
+        wait_for_robots(Silent(), threading.Event(), 0.1)
+
+
+def test_a_plan_that_breaks_a_rule_moves_no_robot(tmp_path):
+    there = mission()
+    text = '{"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["t_0", "t_9"]}]}'
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(muster.PlanError, match=r"plan.json.*t_9.*expected an admissible plan of mission mission"):
+        real.read_wanted(Wishes(**{**ASKED, "plan": tmp_path / "plan.json"}), there)
+
+
+def test_a_port_that_is_taken_is_told_before_robots_move():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(muster.MusterError, match=rf"--foxglove: 127.0.0.1:{port}: Address already in use"):
+            real.require_outputs(Wishes(**{**ASKED, "foxglove": port}), ())
+
+
+@pytest.mark.parametrize("name", ["9 bad/", "a-b", "a//b", "é"])
+def test_a_namespace_that_is_none_is_told(name, capsys):
+    assert run(["ros2", "6T-2R", "--namespace", name]) == 2
+    assert f"Invalid value for '--namespace': {name!r}; expected names such as" in capsys.readouterr().err

@@ -1,0 +1,45 @@
+"""Hints at the known word that a misspelt one may stand for."""
+
+import difflib
+
+import pytest
+
+from muster.mission.near_matches import did_you_mean
+
+IDS = [f"task_{k}" for k in range(20_000)]
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("tsak_17123", "task_17123"),  # wrong at the beginning
+        ("xtask_17123", "task_17123"),
+        ("Task-17123", "task_17123"),
+        ("task_1712a", "task_1712"),  # and at the end
+        ("task_199999", "task_19999"),
+    ],
+)
+def test_among_many_words_the_nearest_is_named(word, hint):
+    assert did_you_mean(word, IDS) == f"; did you mean '{hint}'?"
+
+
+def test_a_word_like_no_other_gets_no_hint():
+    assert did_you_mean("quay", IDS) == ""
+    assert did_you_mean("quay", IDS[:5]) == ""
+
+
+def test_of_words_that_differ_in_case_the_first_is_named():
+    assert did_you_mean("taks_7", ["Task_7", "task_7"]) == "; did you mean 'Task_7'?"
+
+
+def test_many_known_words_cost_no_more_comparisons_than_a_few(monkeypatch):
+    compared = []
+
+    def close_matches(word, candidates, n, cutoff):
+        compared.append(len(candidates))
+        return []
+
+    monkeypatch.setattr(difflib, "get_close_matches", close_matches)
+    for count in (10, 100, 20_000):
+        did_you_mean("tsak_7", IDS[:count])
+    assert max(compared) <= 100

@@ -1,0 +1,55 @@
+"""The time chart of what was carried out: the same bars as the plan's, where all goes by the plan."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.report.test_gantt import bars
+from tests.report.voyages import carry_out
+
+from muster import verify
+from muster.report import plot_gantt
+from muster.report.record import Happening, RecordWriter, read_record
+from muster.report.recorded_gantt import plot_flown_gantt
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("mcap")
+
+
+@pytest.fixture
+def recorded(mission, plan, tmp_path):
+    def record(**how):
+        with RecordWriter(tmp_path / "r.mcap", mission) as writer:
+            carry_out(mission, plan, writer, dt=0.5, **how)
+        return read_record(tmp_path / "r.mcap")
+
+    return record
+
+
+def test_carried_out_by_the_plan_it_looks_like_the_plan(mission, plan, recorded, drawn):
+    planned, flown = plot_gantt(mission, verify(mission, plan)), plot_flown_gantt(recorded())
+    for gid in ("work-ada", "waiting-ada", "travel-ada", "work-bob"):
+        np.testing.assert_allclose(bars(drawn(flown, gid)), bars(drawn(planned, gid)))
+    assert drawn(flown, "prerequisite-d-c")
+    assert drawn(flown, "travel-idle") == []
+
+
+def test_it_ends_where_the_record_breaks_off(recorded, drawn):
+    ax = plot_flown_gantt(replace(recorded(until=10.0), complete=False))
+    (end,) = drawn(ax, "end")
+    assert end.get_xdata()[0] == pytest.approx(10.0)
+    (alarm,) = drawn(ax, "alarm")
+    assert "breaks off" in alarm.get_text()
+    assert bars(drawn(ax, "travel-ada"))[-1][0] + bars(drawn(ax, "travel-ada"))[-1][1] == pytest.approx(10.0)
+
+
+def test_robots_that_joined_have_rows(recorded, drawn):
+    recording = recorded(until=10.0)
+    joins = (
+        Happening(2.0, "robot_joins", {"robot": {"id": "eve", "position": [0, 0]}}),
+        Happening(2.0, "sets_out", {"robot": "eve", "task": "e"}),
+        Happening(2.2, "robot_fails", {"robot": "eve"}),
+    )
+    ax = plot_flown_gantt(replace(recording, events=(*joins, *recording.events)))
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["ada", "bob", "idle", "eve"]
+    assert bars(drawn(ax, "travel-eve"))[0][:2] == pytest.approx((2.0, 0.2))

@@ -1,0 +1,168 @@
+"""Robots heard through filters in the worlds: nearer to the truth, by as much as filters say; and all is done so."""
+
+import math
+from dataclasses import replace
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+import muster
+from muster import Event, Robot, Simulation, Task
+from muster.execution import Executor
+from muster.mission.plan import Plan, Route
+from muster.motion.frames import wrapped
+from muster.motion.port import Waypoint
+from muster.perception import ground_fusion
+from muster.perception.tracking import AirTracker, GroundTracker
+from muster.running.simulation import carry_out, world_named
+from muster.running.state_estimation import FusedHearing, FusedPorts, air_errors, ground_errors, heard
+from muster.simulation import KinematicWorld, Noise
+
+NOISE = Noise(position_m=0.1, heading_rad=0.05, slip=0.05)
+WORLDS = [
+    "kinematic",
+    pytest.param("physics", marks=pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")),
+]
+
+
+class Watched(FusedHearing):
+    """Keeps by how much robots are off at each step, as they say and fused, and what their filters make of it."""
+
+    def __init__(self, world):
+        self.places, self.headings, self.innovations = [], [], {name: [] for name in world.ports}
+        self.bodies = world
+        super().__init__(world)
+
+    def _listen(self):
+        super()._listen()
+        said = [port.telemetry() for port in self.bodies.ports.values()]
+        fused = [port.telemetry() for port in self.ports.values()]
+        truth = self.bodies.positions
+        self.places.append([np.array([one.position for one in told]) - truth for told in (said, fused)])
+        facing = self.bodies.headings
+        self.headings.append([wrapped(np.array([one.heading for one in told]) - facing) for told in (said, fused)])
+        for name, port in self.ports.items():
+            if port.tracker.fix is not None:
+                self.innovations[name].append(port.tracker.fix.nis)
+
+
+def watched(name, world, noise=NOISE, seed=1):
+    """A plan of a shipped mission carried out to the end."""
+    mission = muster.load(name)
+    hearing = Watched(bodies := world_named(world)(mission, seed=seed, noise=noise))
+    executor = Executor(mission, muster.solve(mission, iterations=100), hearing.ports)
+    executor.tick(0.0)
+    while not executor.done:
+        hearing.advance(bodies.time_s + 0.5)
+        executor.tick(bodies.time_s)
+    assert executor.lost() == {}
+    return mission, hearing
+
+
+@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("name", ["6T-2R", "11T-2R", "auction-1"])
+def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
+    """Each robot's, place and heading; and filters know by how much they err: innovations are chi-square."""
+    mission, hearing = watched(name, world)
+    said, fused = np.sqrt((np.array(hearing.places) ** 2).sum(axis=3).mean(axis=0))
+    assert said == pytest.approx(0.1 * math.sqrt(mission.dimensions), rel=0.1)
+    assert (fused < 0.35 * said).all()
+    said, fused = np.sqrt((np.array(hearing.headings) ** 2).mean(axis=0))
+    assert said == pytest.approx(0.05, rel=0.15)
+    assert (fused < 0.3 * said).all()
+    for nis in hearing.innovations.values():
+        freedom = mission.dimensions * len(nis)
+        low, high = chi2.ppf([0.0005, 0.9995], freedom)
+        assert low < sum(nis) < high
+
+
+def test_filters_learn_what_wheels_slip_and_gyros_have_too_much():
+    noise = replace(NOISE, gyro_bias_radps=0.02, gyro_radps=0.005)
+    _, hearing = watched("11T-2R", "kinematic", noise)
+    for name, port in hearing.ports.items():
+        bias, slip = port.tracker.estimate.mean[[ground_fusion.BIAS, ground_fusion.SLIP]]
+        assert bias == pytest.approx(hearing.bodies.ports[name]._bias_radps, abs=0.005)
+        assert slip == pytest.approx(0.025, abs=0.008)  # of 0 to 0.05 in each step
+
+
+@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("name", ["6T-2R-actions", "11T-2R", "market-rescue-arena", "auction-1"])
+def test_all_tasks_are_done_where_robots_err(name, world):
+    mission = muster.load(name)
+    noise = replace(NOISE, velocity=0.05, odometry=0.02, gyro_radps=0.01, gyro_bias_radps=0.01, accelerometer_mps2=0.1)
+    report = carry_out(mission, muster.solve(mission, iterations=100), world=world, noise=noise, seed=2)
+    assert (len(report.tasks_done), report.contacts) == (len(mission.tasks), 0)
+
+
+def test_usage_is_what_wheels_count_not_the_way_of_fused_poses():
+    mission = muster.load("6T-2R")
+    plan = muster.solve(mission, iterations=100)
+    exact, err = (
+        carry_out(mission, plan, noise=noise, seed=1) for noise in (Noise(slip=0.05), Noise(slip=0.05, position_m=0.1))
+    )
+    for one, other in zip(exact.robots, err.robots, strict=True):
+        assert other.usage_flown == pytest.approx(one.usage_flown, rel=0.005)
+        assert other.usage_flown > 1.015 * other.usage_planned
+
+
+@pytest.mark.parametrize("noise", [Noise(), Noise(slip=0.1, odometry=0.1, gyro_radps=0.1), Noise(attitude_rad=0.1)])
+def test_where_poses_are_exact_nothing_is_filtered(noise):
+    world = KinematicWorld(muster.load("6T-2R"), noise=noise)
+    assert heard(world) is world
+
+
+def test_who_says_where_it_is_says_the_fused_place():
+    mission = muster.load("6T-2R")
+    simulation = Simulation(mission, muster.solve(mission, iterations=100), noise=NOISE, seed=1)
+    simulation.advance(10.0)
+    truth = dict(zip(simulation._world.ports, simulation._world.positions, strict=True))
+    for name, place in simulation.positions.items():
+        raw = simulation._world.ports[name].telemetry().position
+        assert place != raw
+        assert math.dist(place, truth[name]) < 0.1
+
+
+def test_who_joins_is_fused_too():
+    mission = replace(muster.load("6T-2R"), events=())
+    plan = Plan(routes=(Route("r_0", tuple(task.id for task in mission.tasks)), Route("r_1", ())))
+    simulation = Simulation(mission, plan, noise=NOISE)
+    late = Robot(id="late", position=(0.0, 0.0), kinematics="differential-drive", radius_m=0.2)
+    simulation.report(Event(at_s=0, robot_joins=late))
+    simulation.report(Event(at_s=0, new_task=Task(id="new", position=(1.0, 1.0), only_robots=("late",))))
+    while not simulation.done:
+        simulation.advance(1000.0)
+    assert "new" in simulation.result().tasks_done
+    assert isinstance(simulation._hearing.ports, FusedPorts)
+    assert isinstance(simulation._hearing.ports["late"].tracker, GroundTracker)
+    assert math.dist(simulation.positions["late"], simulation._world.positions[2]) < 0.1
+
+
+def test_it_hears_each_step_and_stops_where_something_was_passed():
+    mission = muster.Mission(robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=())
+    worlds = [KinematicWorld(mission, noise=NOISE, seed=3) for _ in range(2)]
+    fused, plain = heard(worlds[0]), worlds[1]
+    for hearing in (fused, plain):
+        hearing.ports["r"].send([Waypoint((1.0, 0.0, 0.0), label="there"), Waypoint((2.0, 0.0, 0.0))])
+    for _ in range(4):
+        assert fused.advance(5.0) == plain.advance(5.0)
+        assert worlds[0].time_s == worlds[1].time_s
+    assert worlds[0].time_s == pytest.approx(5.0)
+    assert list(fused.ports) == ["r"]
+    assert len(fused.ports) == 1
+    assert isinstance(fused.ports["r"].tracker, AirTracker)
+
+
+def test_a_filter_counts_with_the_worlds_noise_and_with_nothing_exact():
+    robot = Robot(id="r", position=(0.0, 0.0), kinematics="differential-drive", speed_mps=0.5, yaw_rate_radps=2.0)
+    ground = ground_errors(robot, replace(NOISE, odometry=0.1, gyro_radps=0.02), 0.1)
+    assert (ground.position_m, ground.heading_rad, ground.gyro_radps) == (0.1, 0.05, 0.02)
+    assert (ground.odometry_share, ground.odometry_slip) == (0.1, 0.05)
+    assert ground_errors(robot, NOISE, 0.1).odometry_share == pytest.approx(0.05 / 3)
+    air = air_errors(robot, replace(NOISE, accelerometer_mps2=0.3), 0.1)
+    assert (air.position_m, air.heading_rad, air.odometry_slip) == (0.1, 0.05, 0.05)
+    assert air.acceleration_mps2 > 0.3
+    for errors in (ground_errors(robot, Noise(), 0.1), air_errors(robot, Noise(), 0.1)):
+        assert (errors.position_m, errors.heading_rad) == (0.001, 0.001)
+        assert errors.gyro_radps == errors.gyro_bias_radps == 0.001

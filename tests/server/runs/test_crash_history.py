@@ -1,0 +1,42 @@
+"""Runners that die again and again are not followed by others for ever."""
+
+import pytest
+
+from muster.server.runs.crash_history import DEATHS, KILLS, Deaths
+
+
+class Clock:
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.mark.parametrize(("killed", "most"), [(False, DEATHS), (True, KILLS)])
+def test_without_getting_further(killed, most):
+    deaths = Deaths(real=False)
+    assert [deaths.too_often((5.0, 7), killed=killed) for _ in range(most)] == [False] * (most - 1) + [True]
+
+
+@pytest.mark.parametrize("further", [(0.1, 0), (0.0, 1)])
+def test_a_simulated_world_gets_further_by_its_clock_or_its_log(further):
+    deaths, reached = Deaths(real=False), (0.0, 0)
+    for _ in range(10 * DEATHS):
+        reached = (reached[0] + further[0], reached[1] + further[1])
+        assert not deaths.too_often(reached, killed=False)
+        assert not deaths.too_often(reached, killed=False)
+        assert deaths.count == 2
+
+
+def test_of_real_robots_it_counts_how_long_each_has_lived():
+    clock = Clock()
+    deaths = Deaths(real=True, clock=clock)
+
+    def dies_after(seconds, at):
+        deaths.born()
+        clock.now += seconds
+        return deaths.too_often((at, int(at)), killed=False)
+
+    assert [dies_after(90.0, 90.0 * k) for k in range(1, 10)] == [False] * 9
+    assert [dies_after(2.0, 900.0 + k) for k in range(DEATHS - 1)] == [False, True]

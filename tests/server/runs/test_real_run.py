@@ -1,0 +1,138 @@
+"""Drones of a simulated autopilot, in real time: paused, and found again after a kill of their runner or server."""
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections import Counter
+
+import pytest
+from tests.bridges.mavlink.drones import ORIGIN
+from tests.server.runs.process import gone, serving, until
+from tests.server.runs.store import ADA, planned, settings_of
+
+from muster.bridges.mavlink.dialect import mavlink
+from muster.bridges.mavlink.simulated_earth import origin_at
+from muster.mission.model import Mission, Robot, Rules, Task
+from muster.server.services.runs import Runs
+from muster.server.store.store import Store
+
+ONCE = {"across_partition": "at-most-once"}
+
+
+def mission():
+    robots = tuple(
+        Robot(id=f"r_{k}", position=(0.0, 6.0 * k, 0.0), kind="air", radius_m=0.3, speed_mps=5.0) for k in range(2)
+    )
+    near = tuple(Task(id=f"t_{k}", position=(8.0, 6.0 * k, 6.0)) for k in range(2))
+    far = tuple(Task(id=f"u_{k}", position=(20.0, 6.0 * k, 6.0), duration_s=4.0) for k in range(1))
+    once = Task(id="once", position=(20.0, 6.0, 6.0), duration_s=4.0, only_robots=("r_1",), **ONCE)
+    return Mission(robots=robots, tasks=(*near, *far, once), origin_wgs84=ORIGIN, rules=Rules(objective="max"))
+
+
+@pytest.fixture
+def sky():
+    ports, drones = [], []
+    for k, robot in enumerate(mission().robots):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            ports.append(free.getsockname()[1])
+        at = origin_at(ORIGIN, robot.position)
+        command = [sys.executable, "-m", "muster.bridges.mavlink.simulated_autopilot", "--port", str(ports[-1])]
+        drones.append(
+            subprocess.Popen(
+                [*command, "--system", str(k + 1), "--at", f"{at.lat_deg},{at.lon_deg}"], stdout=subprocess.DEVNULL
+            )
+        )
+    yield {f"r_{k}": f"udp:127.0.0.1:{port}" for k, port in enumerate(ports)}
+    for drone in drones:
+        drone.kill()
+        drone.wait()
+
+
+def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
+    there = mission()
+    plan = planned(store, there)
+
+    async def story():
+        runs = Runs(store, settings_of(store, bridges=("mavlink",)))
+        run = await runs.start(ADA, plan, "mavlink", endpoints=sky, arm=True)
+        at_work = False
+        async for text in runs.feed(run.id).watch(0):
+            said = json.loads(text)
+            what = (said.get("kind"), said.get("data", {}).get("task"))
+            if what == ("ends", "t_0"):
+                await runs.act(ADA, run.id, "pause")
+                await asyncio.sleep(1.0)
+                await runs.act(ADA, run.id, "resume")
+            if what == ("starts", "once") and not at_work:
+                at_work = True
+                os.kill(runs.pid(run.id), signal.SIGKILL)
+        while runs.feed(run.id) is not None:
+            await asyncio.sleep(0.02)
+        await runs.close()
+        return store.runs.get(run.id), store.log.entries(run.id)
+
+    run, log = asyncio.run(story())
+    assert (run.state, run.resumed, run.remark) == ("ended", 1, "")
+    assert Counter(run.report["tasks_done"]) == dict.fromkeys(("t_0", "t_1", "u_0"), 1)
+    (lost,) = run.report["tasks_lost"]
+    assert lost["task"] == "once"
+    assert "may be begun at most once" in lost["reason"]
+    assert Counter(e.data["task"] for e in log if e.kind == "starts")["once"] == 1
+    assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
+    assert sum(row["usage_flown"] for row in run.report["robots"]) > 36
+    pause, resume = (entry for entry in log if entry.kind == "command")
+    assert (pause.data["outcome"], resume.data["outcome"]) == ("done", "done")
+    assert resume.time_s - pause.time_s < 0.8  # of the second that it lasted: the mission's clock stood still
+
+
+def heard(endpoint, seconds):
+    """Where a drone says that it is, while nobody else listens: (lat, lon, height, speed) in 1e-7 deg, mm, cm/s."""
+    said, reader = [], mavlink.MAVLink(None)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
+        end.bind(("127.0.0.1", int(endpoint.rpartition(":")[2])))
+        end.settimeout(10.0)
+        while not said or said[-1][0] < said[0][0] + 1000 * seconds:
+            told = reader.parse_buffer(end.recv(65535)) or ()
+            places = (one for one in told if one.get_type() == "GLOBAL_POSITION_INT")
+            said += [(one.time_boot_ms, one.lat, one.lon, one.relative_alt, one.vx) for one in places]
+    return [place for _, *place in said]
+
+
+def test_drones_stand_when_the_server_is_killed_and_go_on_when_it_is_back(tmp_path, sky):
+    database = f"sqlite:///{tmp_path / 'muster.db'}"
+    store = Store.open(database)
+    there = mission()
+    body = {"plan": planned(store, there), "world": "mavlink", "settings": {"endpoints": sky, "arm": True}}
+    with serving(database, "--bridge", "mavlink") as first:
+        run = first.http.post("/runs", json=body).json()["id"]
+
+        def done(server):
+            log = server.http.get(f"/runs/{run}/events").json()
+            return {entry["data"]["task"] for entry in log if entry["kind"] == "ends"}
+
+        until(lambda: len(done(first)) >= 2)
+        before = done(first)
+        (runner,) = first.children("muster.server.runs.runner")
+        first.kill()
+        until(lambda: gone(runner))
+    for endpoint in sky.values():
+        places = heard(endpoint, 0.5)
+        assert places[0][2] > 4000  # in the air
+        assert all(abs(a - b) <= 50 for a, b in zip(places[0], places[-1], strict=True))  # half a metre
+    with serving(database, "--bridge", "mavlink") as again:
+        until(lambda: again.http.get(f"/runs/{run}").json()["state"] == "ended")
+        again.end()
+    found, log = store.runs.get(run), store.log.entries(run)
+    store.close()
+    assert (found.state, found.resumed) == ("ended", 1)
+    told = [*found.report["tasks_done"], *(lost["task"] for lost in found.report["tasks_lost"])]
+    assert sorted(told) == sorted(task.id for task in there.tasks)
+    (resumed,) = (entry for entry in log if entry.kind == "resumed")
+    assert not before & {entry.data["task"] for entry in log[resumed.seq :] if entry.kind in ("sets_out", "starts")}
+    assert Counter(e.data["task"] for e in log if e.kind == "ends") == Counter(found.report["tasks_done"])
+    assert [entry.seq for entry in log] == list(range(1, len(log) + 1))

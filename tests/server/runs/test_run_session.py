@@ -1,0 +1,316 @@
+"""What may happen to a run between two moments: crashes, an end, a closing server, a database that refuses."""
+
+import asyncio
+import threading
+
+import pytest
+from sqlalchemy import event
+from tests.server.runs.played import PLAN, REPORT, entry, play
+from tests.server.runs.store import ADA, planned
+
+import muster
+from muster.exchange.mission_control import ConflictError, Entry, NotFoundError, StoreError
+from muster.mission.errors import ParameterError
+from muster.server.services.runs import Runs
+from muster.server.settings import Settings
+
+
+@pytest.fixture
+def run(store):
+    plan = store.plans.get(planned(store, muster.load("31T-6R50"), iterations=1))
+    return store.runs.add(plan.mission, plan.mission_version, plan.id, "kinematic", {}, None, "ada").id
+
+
+def logged(store, run, *said):
+    store.log.append(run, 0.0, [Entry(run=run, **{k: s[k] for k in ("seq", "time_s", "kind", "data")}) for s in said])
+
+
+def command(seq, action, verb="pause", **data):
+    return entry(seq, "command", action=action, verb=verb, data=data, who="ada", outcome="done")
+
+
+def carried(store, story):
+    """Run a story with a server without faces."""
+
+    async def whole():
+        runs = Runs(store, Settings())
+        await runs.start_up()
+        try:
+            return await asyncio.wait_for(story(runs), 20)
+        finally:
+            await asyncio.wait_for(runs.close(), 20)
+
+    return asyncio.run(whole())
+
+
+async def gone(runs, run):
+    while runs.feed(run) is not None:
+        await asyncio.sleep(0.01)
+
+
+async def stays(child, begin):
+    yield {"type": "mission", "mission": {}}
+    if not begin["log"]:
+        yield PLAN
+    yield {"type": "going"}
+    await child.gone.wait()
+
+
+async def ends(child, begin):
+    yield {"type": "mission", "mission": {}}
+    yield PLAN
+    yield entry(2, "report", **REPORT)
+
+
+def refused(store, table, method, times):
+    """The next so many calls are refused by the database."""
+    kept, left = getattr(table, method), list(range(times))
+
+    def refusing(*arguments, **named):
+        if left:
+            left.pop()
+            raise StoreError("the database is gone; start it")
+        return kept(*arguments, **named)
+
+    object.__setattr__(table, method, refusing)
+
+
+def test_actions_are_settled_by_a_log_that_was_whole_before_a_crash(store, run):
+    obeyed, late = (store.actions.add(ADA, f"run.{verb}", {}, run=run) for verb in ("pause", "resume"))
+    logged(store, run, PLAN, command(2, obeyed.id), entry(3, "report", **REPORT))
+    carried(store, lambda runs: gone(runs, run))
+    assert (store.runs.get(run).state, store.runs.get(run).ended_at) == ("ended", store.log.entries(run)[-1].at)
+    outcomes = {action.id: action.outcome for action in store.actions.list(run=run)}
+    assert outcomes == {obeyed.id: "done", late.id: "the run was over before"}
+
+
+def test_who_asked_before_a_crash_is_obeyed_before_who_asks_after_it(store, run, monkeypatch):
+    started = play(monkeypatch, stays)
+    before = store.actions.add(ADA, "run.pause", {}, run=run)
+    reading, unsettled = threading.Event(), store.actions.unsettled
+
+    def slow(run):
+        reading.wait(10)
+        return unsettled(run)
+
+    monkeypatch.setattr(store.actions, "unsettled", slow)
+
+    async def story(runs):
+        after = await runs.act(ADA, run, "resume")
+        reading.set()
+        while not started or started[0].told.qsize() < 2:
+            await asyncio.sleep(0.01)
+        assert [started[0].told.get_nowait()["id"] for _ in range(2)] == [before.id, after.id]
+
+    carried(store, story)
+
+
+def test_a_run_that_is_resumed_begins_where_watchers_have_seen_it(store, run, monkeypatch):
+    begins = []
+
+    async def seen(child, begin):
+        begins.append(begin)
+        yield {"type": "mission", "mission": {}}
+        if not begin["log"]:
+            yield PLAN
+            yield {"type": "states", "time_s": 5.5}
+            return
+        yield entry(2, "report", **REPORT)
+
+    play(monkeypatch, seen)
+    carried(store, lambda runs: gone(runs, run))
+    assert [begin["until_s"] for begin in begins] == [0.0, 5.5]
+
+
+@pytest.mark.parametrize("patience_s", [30.0, 0.5])
+def test_who_asks_while_it_ends_is_told_so(store, run, monkeypatch, patience_s):
+    """The database takes the action when the run is over: while it is waited for, or after that."""
+    monkeypatch.setattr("muster.server.services.runs.PATIENCE_S", patience_s)
+    started = play(monkeypatch, stays)
+    add, adding, over = store.actions.add, threading.Event(), threading.Event()
+
+    def slow(*arguments, **named):
+        adding.set()
+        over.wait(10)
+        return add(*arguments, **named)
+
+    async def story(runs):
+        monkeypatch.setattr(store.actions, "add", slow)
+        asking = asyncio.create_task(runs.act(ADA, run, "pause"))
+        await asyncio.to_thread(adding.wait)
+        while not started:
+            await asyncio.sleep(0.01)
+        runs._live[run]._reported = True
+        started[0].gone.set()
+        await gone(runs, run)
+        if patience_s > 1.0:
+            over.set()
+        with pytest.raises(ConflictError, match="is over"):
+            await asking
+        over.set()
+
+    carried(store, story)
+    assert [action.outcome for action in store.actions.list(run=run)] == ["the run was over before"]
+
+
+def test_a_runner_that_dies_each_time_it_has_gone_on_fails_the_run(store, run, monkeypatch):
+    async def dies(child, begin):
+        yield {"type": "mission", "mission": {}}
+        yield entry(len(begin["log"]) + 1, "resumed", how="") if begin["log"] else PLAN
+
+    started = play(monkeypatch, dies)
+    carried(store, lambda runs: gone(runs, run))
+    assert len(started) == 3
+    assert store.runs.get(run).state == "failed"
+
+
+def test_a_server_that_closes_while_a_run_begins_does_not_wait_for_it(store, run, monkeypatch):
+    started, reading, get = play(monkeypatch, stays), threading.Event(), store.plans.get
+
+    def slow(plan):
+        reading.wait(10)
+        return get(plan)
+
+    monkeypatch.setattr(store.plans, "get", slow)
+
+    async def story(runs):
+        closing = asyncio.create_task(runs.close())
+        await asyncio.sleep(0.1)
+        reading.set()
+        await asyncio.wait_for(closing, 5)
+
+    carried(store, story)
+    assert all(child.gone.is_set() for child in started)
+    assert store.runs.get(run).state == "starting"
+
+
+def test_a_server_can_be_closed_while_the_database_refuses_the_end_of_a_run(store, run, monkeypatch):
+    play(monkeypatch, ends)
+
+    async def story(runs):
+        refused(store, store.log, "append", 10**6)
+        while (await runs.get(run)).state != "ended":
+            await asyncio.sleep(0.01)
+        await asyncio.wait_for(runs.close(), 10)
+
+    carried(store, story)
+    assert store.runs.get(run).state == "starting"
+
+
+@pytest.mark.parametrize("what", ["log.entries", "actions.unsettled", "missions.get", "plans.get"])
+def test_a_database_that_cannot_be_read_for_a_while_does_not_end_a_run(store, run, monkeypatch, what):
+    started = play(monkeypatch, stays)
+    asked = store.actions.add(ADA, "run.pause", {}, run=run)
+    table, method = what.split(".")
+    refused(store, getattr(store, table), method, 1)
+
+    async def story(runs):
+        while not started or not started[0].told.qsize():
+            await asyncio.sleep(0.01)
+        assert started[0].told.get_nowait()["id"] == asked.id
+
+    carried(store, story)
+    assert store.runs.get(run).state == "running"
+
+
+def test_an_error_of_ours_ends_the_runner_too(store, run, monkeypatch):
+    async def says_nonsense(child, begin):
+        yield {"type": "entry"}
+        await child.gone.wait()
+
+    started = play(monkeypatch, says_nonsense)
+    carried(store, lambda runs: gone(runs, run))
+    assert started[0].gone.is_set()
+    assert "an error of mission control: KeyError" in store.runs.get(run).remark
+
+
+@pytest.mark.parametrize("error", [NotFoundError("no run"), RuntimeError("odd")])
+def test_whatever_keeps_a_log_from_being_written_is_said_and_tried_again(store, run, monkeypatch, error):
+    play(monkeypatch, stays)
+    append, broken = store.log.append, [True]
+
+    def odd(*arguments):
+        if broken:
+            raise error
+        return append(*arguments)
+
+    monkeypatch.setattr(store.log, "append", odd)
+
+    async def story(runs):
+        while not (await runs.get(run)).remark:
+            await asyncio.sleep(0.01)
+        broken.clear()
+        while (await runs.get(run)).remark:
+            await asyncio.sleep(0.01)
+
+    carried(store, story)
+    assert len(store.log.entries(run)) == 1
+
+
+def test_actions_that_the_database_refused_have_numbers_of_their_own_after_a_crash(store, run, monkeypatch):
+    play(monkeypatch, stays)
+    numbers = []
+    for _ in range(2):
+
+        async def story(runs):
+            refused(store, store.actions, "add", 2)
+            numbers.extend([(await runs.act(ADA, run, verb)).id for verb in ("pause", "resume")])
+
+        carried(store, story)
+    assert len(set(numbers)) == 4
+    assert max(numbers) < 0
+
+
+def test_actions_that_the_database_refused_are_written_once_and_as_of_when_they_were_asked_for(store, run, monkeypatch):
+    async def obeys(child, begin):
+        yield {"type": "mission", "mission": {}}
+        yield PLAN
+        asked = await child.told.get()
+        yield command(2, asked["id"], asked["verb"])
+        yield entry(3, "report", **REPORT)
+
+    play(monkeypatch, obeys)
+
+    async def story(runs):
+        refused(store, store.actions, "add", 2)
+        one, other = await runs.act(ADA, run, "pause"), await runs.act(ADA, run, "resume")
+        refused(store, store.actions, "settle", 1)
+        await gone(runs, run)
+        return one, other
+
+    asked = carried(store, story)
+    found = store.actions.list(run=run)[::-1]
+    assert [(a.verb, a.at, a.outcome) for a in found] == [
+        (asked[0].verb, asked[0].at, "done"),
+        (asked[1].verb, asked[1].at, "the run was over before"),
+    ]
+
+
+def test_a_run_whose_start_cannot_be_written_down_is_not_there(store, run):
+    plan = store.runs.get(run).plan
+    store.runs.set(run, state="failed")
+
+    @event.listens_for(store.database._engine, "before_cursor_execute")
+    def refuse(connection, cursor, statement, *_):
+        if statement.startswith("INSERT INTO actions"):
+            cursor.execute("INSERT INTO no_such_table VALUES (1)")
+
+    async def story(runs):
+        with pytest.raises(StoreError):
+            await runs.start(ADA, plan)
+
+    carried(store, story)
+    assert store.runs.unfinished() == []
+
+
+def test_what_no_pipe_can_carry_is_refused(store, run, monkeypatch):
+    play(monkeypatch, stays)
+
+    async def story(runs):
+        with pytest.raises(ParameterError, match="half a character"):
+            await runs.act(ADA, run, "event", {"cancel_task": "\ud800"})
+        with pytest.raises(ParameterError, match="not finite"):
+            await runs.act(ADA, run, "event", {"delay_task": {"task": "3", "by_s": float("nan")}})
+
+    carried(store, story)
+    assert store.actions.list(run=run) == []

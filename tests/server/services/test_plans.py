@@ -1,0 +1,269 @@
+"""Plans: judged, explained, exported, drawn and compared, the same as by the command."""
+
+import asyncio
+import base64
+import json
+
+import pytest
+from tests.exchange.bay import BAY, bay_plan
+from tests.server.services.opened import TINY, WATCHER, WHO, told
+
+import muster
+from muster.cli.main import run as command
+from muster.exchange.mission_control import BusyError, ForbiddenError, NotFoundError
+from muster.mission.errors import ParameterError
+from muster.server.work import Pool, WorkError
+
+ROUTES = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["a", "b"]}, {"robot": "r_1", "tasks": []}]}
+OTHER = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["a"]}, {"robot": "r_1", "tasks": ["b"]}]}
+
+
+@pytest.fixture(scope="module")
+def workers():
+    """One pool for all tests of this file, and what runs them."""
+    with asyncio.Runner() as runner:
+        pool = Pool(workers=1, memory_mb=1024)
+        yield runner, pool
+        runner.run(pool.close())
+
+
+@pytest.fixture
+def in_desk(tmp_path, workers):
+    """Runs a story of the desk to its end."""
+    runner, pool = workers
+    return lambda story: runner.run(told(tmp_path, story, pool=pool))
+
+
+@pytest.fixture
+def files(tmp_path):
+    """The mission `tiny` and its two plans as files."""
+    (tmp_path / "tiny.yaml").write_text(TINY, encoding="utf-8")
+    for name, plan in (("a.json", ROUTES), ("b.json", OTHER)):
+        (tmp_path / name).write_text(json.dumps(plan), encoding="utf-8")
+    return tmp_path
+
+
+def said(capsys, *arguments):
+    """What the command prints, as data."""
+    command([*map(str, arguments), "--format", "json"])
+    return json.loads(capsys.readouterr().out)
+
+
+def test_an_uploaded_plan_is_kept_with_the_figures_of_the_judge(in_desk, files):
+    async def story(desk):
+        entry = await desk.plans.upload(WHO, "tiny", {**ROUTES, "seed": 4, "rubbish": "x" * 100})
+        assert (entry.id, entry.version, entry.origin, entry.author) == (1, 1, "uploaded", "ann")
+        assert entry == await desk.plans.get(1)
+        verdict = muster.verify(muster.load(files / "tiny.yaml"), muster.read_plan(files / "a.json"))
+        assert entry.plan["objective"] == {"name": "total+max", "value": verdict.value()}
+        assert (entry.plan["total_cost"], entry.plan["tasks_completed"], entry.plan["seed"]) == (9.0, 2, 4)
+        assert "rubbish" not in entry.plan
+        (listed,) = await desk.plans.list("tiny")
+        assert listed.plan["total_cost"] == 9.0
+        assert "routes" not in listed.plan
+        assert [action.outcome for action in desk.store.actions.list()] == ["done"]
+
+    in_desk(story)
+
+
+def test_an_uploaded_plan_that_is_none_is_refused(in_desk):
+    async def story(desk):
+        with pytest.raises(
+            WorkError, match=r"^plan: schema: missing; expected muster-plan/1 \(and 1 more\)$"
+        ) as refused:
+            await desk.plans.upload(WHO, "tiny", {"routes": 3})
+        assert [finding.field for finding in refused.value.findings] == ["schema", "routes"]
+        with pytest.raises(NotFoundError):
+            await desk.plans.upload(WHO, "nowhere", ROUTES)
+        with pytest.raises(ForbiddenError):
+            await desk.plans.upload(WATCHER, "tiny", ROUTES)
+        assert await desk.plans.list() == []
+
+    in_desk(story)
+
+
+def test_the_verdict_is_that_of_the_command(in_desk, files, capsys):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        answer = await desk.plans.verdict(1)
+        assert answer == await desk.plans.verdict(1)
+        return answer
+
+    answer = in_desk(story)
+    printed = said(capsys, "verify", files / "tiny.yaml", files / "a.json")
+    assert {key: answer[key] for key in printed} == printed
+    assert answer["lines"]["r_0"]["travel"] == [[[0, 0], [1, 0], [9, 0]]]
+
+
+@pytest.mark.parametrize("task", [None, "a", "c"])
+def test_explanations_are_those_of_the_command(in_desk, files, capsys, task):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        return await desk.plans.explain(1, task)
+
+    answer = in_desk(story)
+    words, tables = answer.pop("words"), answer.pop("tables")
+    asked = () if task is None else ("--task", task)
+    assert answer == said(capsys, "explain", files / "tiny.yaml", files / "a.json", *asked)
+    assert tables
+    assert words
+    assert all(line.endswith(".") for line in words)
+
+
+@pytest.mark.parametrize("ask", ["verdict", "explain"])
+def test_what_is_refused_reads_nothing(in_desk, monkeypatch, ask):
+    async def story(desk):
+        async def busy(*_, **__):
+            raise BusyError("64 requests wait")
+
+        monkeypatch.setattr(desk.pool, "run", busy)
+        monkeypatch.setattr(desk.store.plans, "get", lambda plan: pytest.fail("a plan is read"))
+        with pytest.raises(BusyError):
+            await getattr(desk.plans, ask)(1)
+
+    in_desk(story)
+
+
+def test_explanations_in_words(in_desk):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        return [(await desk.plans.explain(1, task))["words"] for task in (None, "b", "c")]
+
+    left_out, done, missing = in_desk(story)
+    assert left_out == [
+        "1 task is left out: c.",
+        "c could be done by r_0 with this change: skill crane.",
+    ]
+    assert done == [
+        "Task b is done by r_0, as number 2 of 2.",
+        "r_0 arrives at 9.00 s and ends at 9.00 s.",
+        "With r_1 the objective would be 15.00 less: 3.00.",
+    ]
+    assert missing[0] == "Task c is left out."
+    assert "r_0 could not: skill, lacks crane." in missing
+    assert missing[-1] == "Smallest change: r_0: skill crane."
+
+
+def test_a_task_that_is_not_there(in_desk):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        with pytest.raises(WorkError, match=r"^--task: z; expected the id of a task of this mission"):
+            await desk.plans.explain(1, "z")
+        with pytest.raises(NotFoundError):
+            await desk.plans.explain(2)
+
+    in_desk(story)
+
+
+def test_exports_are_those_of_the_command(in_desk, tmp_path, capsys):
+    (tmp_path / "bay.yaml").write_text(BAY, encoding="utf-8")
+    bay_plan().save(tmp_path / "bay.json")
+    inputs = tmp_path / "bay.yaml", tmp_path / "bay.json"
+
+    async def story(desk):
+        desk.store.missions.create("bay", BAY, {}, {"name": "bay"}, "ann")
+        await desk.plans.upload(WHO, "bay", bay_plan().as_dict())
+        forms = ("csv", "geojson", "gpx", "kml", "json")
+        answers = {form: await desk.plans.export(1, form) for form in forms}
+        answers["qgc"] = await desk.plans.export(1, "qgc", {"firmware": "ardupilot", "altitude": 5})
+        return answers
+
+    answers = in_desk(story)
+    for form in ("csv", "geojson", "gpx", "kml"):
+        assert command(["export", *map(str, inputs), "--to", form]) == 0
+        (file,) = answers[form].values()
+        assert base64.b64decode(file).decode("utf-8") == capsys.readouterr().out
+    assert json.loads(base64.b64decode(answers["json"]["bay.json"]))["routes"][0]["tasks"] == ["b", "c"]
+    folder = tmp_path / "plans"
+    wishes = ("--firmware", "ardupilot", "--altitude", "5", "-o", str(folder))
+    assert command(["export", *map(str, inputs), "--to", "qgc", *wishes]) == 0
+    written = {file.name: file.read_bytes() for file in folder.iterdir()}
+    notes = capsys.readouterr().err.encode("utf-8")
+    assert {name: base64.b64decode(data) for name, data in answers["qgc"].items()} == {**written, "NOTES.txt": notes}
+
+
+@pytest.mark.parametrize(
+    ("to", "options", "line"),
+    [
+        ("pdf", {}, 'to: "pdf"; expected qgc, geojson'),
+        ("csv", {"altitude": 5}, "options: .*; expected none with csv"),
+        ("qgc", {"height": 5}, 'options: "height"; expected altitude'),
+        ("qgc", {"altitude": -5}, "altitude: -5; expected metres"),
+        ("qgc", {"firmware": "own"}, 'firmware: "own"; expected px4 or ardupilot'),
+        ("gpx", {}, ".*.*origin_wgs84"),
+    ],
+)
+def test_an_export_that_cannot_be_is_one_line(in_desk, to, options, line):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        with pytest.raises(WorkError, match=f"^{line}[^\n]*$"):
+            await desk.plans.export(1, to, options)
+
+    in_desk(story)
+
+
+def test_a_plan_that_breaks_rules_is_kept_and_not_exported(in_desk):
+    async def story(desk):
+        wrong = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["c"]}]}
+        entry = await desk.plans.upload(WHO, "tiny", wrong)
+        assert not (await desk.plans.verdict(entry.id))["valid"]
+        with pytest.raises(WorkError, match=r"^plan: skill: r_0, c, .*; expected an admissible plan"):
+            await desk.plans.export(entry.id, "csv")
+
+    in_desk(story)
+
+
+@pytest.mark.parametrize("what", ["routes", "gantt"])
+def test_pictures(in_desk, what):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        png, svg = [await desk.plans.picture(1, what, form) for form in ("png", "svg")]
+        assert png.startswith(b"\x89PNG\r\n")
+        assert b"<svg" in svg
+        with pytest.raises(WorkError, match=r"^format: \"gif\"; expected png or svg or pdf$"):
+            await desk.plans.picture(1, what, "gif")
+
+    in_desk(story)
+
+
+def test_two_plans_side_by_side(in_desk):
+    async def story(desk):
+        for plan in (ROUTES, OTHER):
+            await desk.plans.upload(WHO, "tiny", plan)
+        answer = await desk.plans.compare(1, 2)
+        assert [head["id"] for head in answer["plans"].values()] == [1, 2]
+        figures = {figure["name"]: figure for figure in answer["figures"]}
+        assert figures["total_cost"] == {"name": "total_cost", "a": 9.0, "b": 2.0, "change": -7.0, "better": "b"}
+        assert figures["tasks_completed"]["better"] is None
+        assert figures["equality_index"]["better"] == "b"
+        assert (answer["moved"], answer["same"]) == ([{"task": "b", "a": "r_0", "b": "r_1"}], 1)
+        desk.store.missions.create("other", TINY, {}, {"name": "tiny"}, "ann")
+        await desk.plans.upload(WHO, "other", ROUTES)
+        with pytest.raises(ParameterError, match=r"^plan 3 is of other; expected one of tiny, as plan 1$"):
+            await desk.plans.compare(1, 3)
+
+    in_desk(story)
+
+
+def test_the_allocators_are_asked_for_once(in_desk, monkeypatch):
+    async def story(desk):
+        first = await desk.plans.allocators()
+        monkeypatch.setattr(desk.pool, "run", None)
+        assert await desk.plans.allocators() == first
+        assert {"greedy", "search"} <= {allocator["name"] for allocator in first}
+
+    in_desk(story)
+
+
+def test_looking_at_plans_does_not_wait_for_planning(in_desk):
+    async def story(desk):
+        await desk.plans.upload(WHO, "tiny", ROUTES)
+        jobs = [await desk.jobs.ask_plan(WHO, "tiny", time_limit=300.0) for _ in range(3)]
+        while desk.pool.busy < 1:
+            await asyncio.sleep(0.01)
+        async with asyncio.timeout(30):
+            assert (await desk.plans.verdict(1))["valid"]
+        for job in jobs:
+            await desk.jobs.cancel(WHO, job.id)
+
+    in_desk(story)

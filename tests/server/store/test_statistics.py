@@ -1,0 +1,28 @@
+"""What metrics say of a database."""
+
+import pytest
+
+from muster.server.store.statistics import figures
+
+
+def plan_of(value, bound):
+    return {"objective": {"name": "max", "value": value}, "lower_bound": bound, "routes": []}
+
+
+def made(store, plan):
+    job = store.jobs.add("plan", "Yard", 1, {}, "ann")
+    store.jobs.begin(job.id)
+    store.jobs.end_with_plan(job.id, plan, "", {"objective": 12.0, "bound": 6.0})  # how far it was when last heard of
+
+
+def test_the_gap_is_that_of_plans_not_of_what_was_heard_on_the_way(filled):
+    store = filled.store
+    assert (figures(store).gap, figures(store).job_s) == (None, None)
+    made(store, plan_of(10.0, 10.0))
+    assert figures(store).gap == 0.0
+    made(store, plan_of(10.0, 8.0))
+    made(store, plan_of(10.0, None))
+    store.plans.add("Yard", 1, "uploaded", "ann", plan_of(10.0, 1.0))  # a bound that nobody here has proven
+    assert figures(store).gap == pytest.approx(0.1)
+    assert figures(store).job_s >= 0.0
+    assert figures(store).jobs == {"done": 3}
