@@ -6,6 +6,7 @@ import io
 import threading
 import zipfile
 
+from muster.server.services import archives
 from muster.server.services.archives import parcel
 
 
