@@ -16,8 +16,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
+from muster.planning.judging import verify
 from muster.planning.loading import load
-from muster.planning.planning import verify
 from muster_studies.bench_auction import AUCTION_BENCHES
 from muster_studies.bench_avoidance import compared
 from muster_studies.bench_execution import EXECUTION_BENCHES
