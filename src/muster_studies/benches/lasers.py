@@ -17,7 +17,7 @@ _AIM = ">= 100"
 
 
 def lasers(runs: int) -> list[Measurement]:
-    """Scans a second of the paper's scanner, in each world, on one core.
+    """Scans a second of the scanner of [market-paper], in each world, on one core.
 
     Raises
     ------

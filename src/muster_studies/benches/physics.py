@@ -16,7 +16,7 @@ WIDTH, HEIGHT, PICTURES = 640, 480, 30
 
 
 def team() -> Mission:
-    """Six ground robots and three drones of Table A.2 of the TCF thesis."""
+    """Six ground robots and three drones of Table A.2 of [tcf-thesis]."""
     ground = (
         Robot(id=f"r_{k}", position=(2.0 * k, 0.0, 0.0), kinematics="differential-drive", radius_m=0.3, speed_mps=0.26)
         for k in range(6)
