@@ -196,7 +196,7 @@ def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
 
     rows = [
         (a.name, a.summary, ", ".join(f"{f.name}={_default(f.default)}" for f in fields(a.parameters)) or "-")
-        for a in ALLOCATORS.values()
+        for a in ALLOCATORS.usable().values()
     ]
     print_table(("allocator", "what it is", "parameters and defaults"), rows)
     ctx.exit()

@@ -21,6 +21,6 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
                 "default": allocator.name == DEFAULT_ALLOCATOR,
                 "parameters": {f.name: f.default for f in fields(allocator.parameters)},
             }
-            for allocator in ALLOCATORS.values()
+            for allocator in ALLOCATORS.usable().values()
         ]
     }
