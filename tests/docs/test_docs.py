@@ -13,7 +13,7 @@ from muster.cli.main import VERBS, run
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.value_types import specified
 from muster.mission.yaml_reader import parse_yaml
-from muster.planning.planning import DEFAULT_ALLOCATOR
+from muster.planning.options import DEFAULT_ALLOCATOR
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -8,9 +8,9 @@ from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
 
 from muster.negotiation.negotiator import Negotiator
-from muster_studies.negotiation import replay
-from muster_studies.negotiation.observer import Observer
-from muster_studies.negotiation.scenario import scene
+from muster.running.negotiation_trials import replay
+from muster.running.negotiation_trials.observer import Observer
+from muster.running.negotiation_trials.scenario import scene
 
 RUNS, CHUNK = 1000, 50
 

@@ -181,7 +181,7 @@ def carried_out(
                 seed=wishes.seed,
                 record=file,
                 observers=(*observers, *viewers),
-                on_happening=None if wishes.quiet else tell,
+                on_event=None if wishes.quiet else tell,
                 halt=halt,
             )
             at_end()

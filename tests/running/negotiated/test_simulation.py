@@ -29,7 +29,7 @@ def carried_out(mission, **how):
     told = {}
     negotiation = how.pop("negotiation", Negotiation())
     report = muster.simulate(
-        mission, negotiation, on_happening=lambda h: told.setdefault(h.kind, []).append(h), **{"speed": 10.0} | how
+        mission, negotiation, on_event=lambda h: told.setdefault(h.kind, []).append(h), **{"speed": 10.0} | how
     )
     return report, told
 

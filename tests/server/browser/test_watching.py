@@ -47,6 +47,19 @@ def watched(chromium, guarded):
     watched.page.close()
 
 
+def test_the_login_page_shows_one_field(watched):
+    page = watched.page
+    watched.open("/login?next=/records")
+    page.locator("#token").wait_for()
+    fields = page.locator("input").evaluate_all(
+        "all => all.map(one => [one.name, one.checkVisibility(), one.getBoundingClientRect().height])"
+    )
+    assert {name for name, _, _ in fields} == {"username", "token", "next"}
+    for name, is_visible, height in fields:
+        assert (is_visible, height > 0) == ((True, True) if name == "token" else (False, False)), name
+    watched.shoot("login")
+
+
 def commanding(page):
     """Words on buttons and fields that would command something."""
     shown = page.locator("button:visible").evaluate_all("all => all.map(b => b.ariaLabel || b.innerText)")

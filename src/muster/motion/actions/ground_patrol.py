@@ -1,4 +1,4 @@
-"""Drive a square around the task's position: TCF thesis section 4.2, end."""
+"""Drive a square around the task's position: [tcf-thesis] section 4.2, end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fly over a square in lanes: TCF thesis equations (4.31)-(4.34).
+"""Fly over a square in lanes: [tcf-thesis] equations (4.31)-(4.34).
 
 The lanes run east and west, `spacing_m` apart, from the southern side of the square on. As in (4.32) the last has that
 distance too, so that it lies on the northern side of the square, or less than a spacing beyond.

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from muster.allocation.problem import Problem
-from muster.execution import Executor, Happening, Revision, travel_of, way_of
+from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
 from muster.execution.reallocation import usage_ahead
 from muster.execution.remaining_problem import Rest
@@ -35,7 +35,7 @@ _ITS_OWN = {
     "robot_stuck",
     "task_refused",
 }
-"""Happenings that nobody else knows of."""
+"""Events that nobody else knows of."""
 
 
 class Pilot:
@@ -90,16 +90,16 @@ class Pilot:
         """Of a task that it has done: planned, flown."""
         return self._executor.ledger.usage[task]
 
-    def tick(self, now: float) -> Sequence[Happening]:
+    def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Go on to a time, after what the body said then; returns what the robot did, and what befell its body."""
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
             self._executor.plan_again("agreed", {})
-        happenings = [happening for happening in self._executor.tick(now) if happening.kind in _ITS_OWN]
-        for happening in happenings:
-            if happening.kind == "ends":
-                self._negotiator.finish(happening.data["task"])
-        return happenings
+        events = [event for event in self._executor.tick(now) if event.kind in _ITS_OWN]
+        for event in events:
+            if event.kind == "ends":
+                self._negotiator.finish(event.data["task"])
+        return events
 
     def befalls(self, event: Event) -> str | None:
         """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""

@@ -14,9 +14,9 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
 from muster.negotiation.members import Patience
 from muster.negotiation.memory_network import Weather
-from muster_studies.negotiation.faults import Incident, Links, incidents
-from muster_studies.negotiation.missions import random_mission
-from muster_studies.negotiation.moving_partitions import siege
+from muster.running.negotiation_trials.faults import Incident, Links, incidents
+from muster.running.negotiation_trials.moving_partitions import siege
+from muster.running.negotiation_trials.random_missions import random_mission
 
 SIEGES = 0.3
 """Which share of the scenes are sieges."""

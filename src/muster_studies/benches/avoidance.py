@@ -15,6 +15,7 @@ import numpy.typing as npt
 from muster.mission.errors import MissingExtraError
 from muster.motion.avoidance import Agents, Orca
 from muster.motion.avoidance.orca import Parameters
+from muster_studies.benches.measurement import Measurement
 
 Floats = npt.NDArray[np.float64]
 
@@ -87,7 +88,7 @@ def rvo2(scene: Scene) -> Any:
     try:
         import pyrvo
     except ImportError:
-        raise MissingExtraError("bench", "comparing with RVO2") from None
+        raise MissingExtraError("studies", "comparing with RVO2") from None
     simulator = pyrvo.RVOSimulator(DT_S, DISTANCE_M, NEIGHBOURS, HORIZON_S, HORIZON_S, RADIUS_M, TOP_SPEED_MPS)
     for (x, y), (vx, vy) in zip(scene.positions, scene.preferred, strict=True):
         agent = simulator.add_agent((x, y))
@@ -113,3 +114,21 @@ def compared(count: int, runs: int) -> dict[str, list[float]]:
         for name, program in programs.items():
             times[name].append(program(scene))
     return times
+
+
+def avoidance(runs: int) -> list[Measurement]:
+    """A step of ORCA for many robots, beside RVO2 in the same run."""
+    found = []
+    for count, aim in ((1_000, "< 10"), (10_000, "< 150")):
+        times = compared(count, runs)
+        for program, milliseconds in times.items():
+            name, ours = f"ORCA step, {count:,} robots, {program}", program != "RVO2"
+            note = _beside(milliseconds, times.get("RVO2")) if ours else ""
+            found.append(Measurement.over_runs(name, "CPU ms", milliseconds, aim if ours else "", note))
+    return found
+
+
+def _beside(milliseconds: list[float], rvo2: list[float] | None) -> str:
+    if rvo2 is None:
+        return "beside RVO2 with: pip install 'muster-robotics[studies]'"
+    return f"{statistics.median(milliseconds) / statistics.median(rvo2):.2f} of the time of RVO2"

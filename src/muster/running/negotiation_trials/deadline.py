@@ -15,8 +15,8 @@ from collections.abc import Collection, Sequence
 from muster.negotiation.members import FAR
 from muster.negotiation.memory_network import TICK_S
 from muster.negotiation.negotiator import Negotiator
-from muster_studies.negotiation.faults import Links
-from muster_studies.negotiation.scenario import Scene
+from muster.running.negotiation_trials.faults import Links
+from muster.running.negotiation_trials.scenario import Scene
 
 OTHER_WORDS = 3
 """Declarations, agreement, and what is known for good: as long as a round each."""

@@ -1,4 +1,4 @@
-"""The auction without a centre: part of what `muster bench` measures.
+"""The auction without a centre: part of `muster bench`.
 
 Twenty robots and fifty tasks at random places; each robot is a process of this machine. Measured from when all are
 ready until the last of them is known to agree; and from when three are killed in the middle, until all others are.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from random import Random
 
 from muster.allocation.auction import Parameters
@@ -17,7 +17,7 @@ from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.process_reports import TRANSPORTS, Order
 from muster.negotiation.team import Team, patience_here
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
@@ -86,6 +86,3 @@ def auction(runs: int) -> list[Measurement]:
             )
         )
     return found
-
-
-AUCTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"auction": auction}

@@ -1,4 +1,4 @@
-"""Speed of planning again while a mission is carried out: part of what `muster bench` measures.
+"""Speed of planning again while a mission is carried out: part of `muster bench`.
 
 Twenty robots are under way to a hundred tasks at random places; after a while the one that has most left to do fails.
 The same rest planned by greedy, the work under way kept, is the measure of how good the new plan is.
@@ -7,7 +7,6 @@ The same rest planned by greedy, the work under way kept, is the measure of how 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from random import Random
 
@@ -17,9 +16,10 @@ from muster.execution import Executor, Reallocation, Revision, travel_of
 from muster.execution.remaining_problem import Rest, posed
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
-from muster.planning.planning import solve, verify
+from muster.planning.judging import verify
+from muster.planning.solving import solve
 from muster.simulation import KinematicWorld
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, SIDE_M, FAILS_S = 20, 100, 200.0, 60.0
@@ -86,6 +86,3 @@ def reallocation(runs: int) -> list[Measurement]:
         name = f"planning again after a failure, {ROBOTS} robots, {TASKS} tasks, {what}"
         found.append(Measurement.over_runs(name, "s", [seconds for seconds, *_ in outcomes], "< 0.2", note))
     return found
-
-
-EXECUTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"reallocation": reallocation}

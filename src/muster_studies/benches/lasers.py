@@ -1,15 +1,14 @@
-"""Speed of lasers in both worlds: part of what `muster bench` measures."""
+"""Speed of lasers in both worlds: part of `muster bench`."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 from muster.perception.laser import Scanner
 from muster.planning.loading import load
 from muster.running.simulation import WORLDS, world_named
 from muster.simulation import SimulatedWorld
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 MISSIONS = ("market-rescue-arena", "floor")
 SCANS = 300
@@ -18,7 +17,7 @@ _AIM = ">= 100"
 
 
 def lasers(runs: int) -> list[Measurement]:
-    """Scans a second of the paper's scanner, in each world, on one core.
+    """Scans a second of the scanner of [market-paper], in each world, on one core.
 
     Raises
     ------
@@ -39,6 +38,3 @@ def _scans(mission: str, name: str, runs: int) -> Measurement:
             world.scan(robot, scanner)
         rates.append(SCANS / (time.process_time() - begin))
     return Measurement.over_runs(f"laser, {mission}, {name}", "scans / CPU s", rates, _AIM, f"{beams} beams of 4 m")
-
-
-LASER_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"lasers": lasers}

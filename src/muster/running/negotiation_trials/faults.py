@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from random import Random
 
 from muster.mission.model import Mission, Task
-from muster_studies.negotiation.missions import random_task
+from muster.running.negotiation_trials.random_missions import random_task
 
 Links = frozenset[tuple[str, str]]
 """Who hears whom directly: (speaker, listener)."""

@@ -8,37 +8,27 @@ from typing import Any
 
 import click
 
-from muster.cli import study
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster_studies import study_verb
+from muster_studies.benches import BENCHES, bench_named
 
 
-class _Only(click.Option):
-    """An option whose help names the benches; they are imported when it is asked for."""
-
-    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        from muster_studies.bench import BENCHES
-
-        self.help = f"Some of: {', '.join(BENCHES)}."
-        return super().get_help_record(ctx)
-
-
-@click.group(invoke_without_command=True)
-@click.option("--only", cls=_Only, metavar="NAMES")
+@click.group(invoke_without_command=True, short_help="Measure speed on this machine, or quality against other solvers.")
+@click.option("--only", metavar="NAMES", help=f"Some of: {', '.join(BENCHES)}.")
 @click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
 @format_option
 @quiet_option
 @click.pass_context
 def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: bool, verbose: bool) -> None:
-    """Measure speed on this machine: medians over runs, with the range, beside what is aimed at.
+    """Measure speed on this machine: medians over runs, with the range, beside the aim.
 
-    Without --only a bench that needs what is not installed is skipped, and that is told.
+    Without --only a bench that needs a part that is not installed is skipped, with a line that says so.
     """
     import json
 
     from muster.cli.tables import print_table
-    from muster_studies.bench import BENCHES
 
     if ctx.invoked_subcommand is not None:
         return
@@ -51,7 +41,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
         if not quiet:
             click.echo(f"measuring {name} ...", err=True)
         try:
-            found += BENCHES[name](runs)
+            found += bench_named(name)(runs)
         except MissingExtraError as error:
             if only is not None:
                 raise
@@ -78,9 +68,9 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
 def peers(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with OR-Tools, PyVRP and VROOM.
 
-    All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `bench`.
+    All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `studies`.
     """
-    return int(ctx.invoke(study.command, name="peers", **options))
+    return int(ctx.invoke(study_verb.command, name="peers", **options))
 
 
 def _figure(value: float) -> str:

@@ -1,7 +1,7 @@
-"""Speed of the kinematic world, beside IR-SIM in the same run: part of what `muster bench` measures.
+"""Speed of the kinematic world, beside IR-SIM in the same run: part of `muster bench`.
 
 The scene is a ring swap: robots on a circle go to the opposite side all at once. IR-SIM (package `ir-sim`, which pyrvo
-brings along in the extra `bench`) runs it without a window, with its own reciprocal velocity obstacles.
+brings along in the extra `studies`) runs it without a window, with its own reciprocal velocity obstacles.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from muster.mission.errors import MissingExtraError
 from muster.mission.model import Mission, Robot
 from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 RADIUS_M, SPEED_MPS, DT_S, SPACING_M = 0.3, 1.0, 0.1, 1.9
 """The spacing is that of neighbours on the circle."""
@@ -71,7 +70,7 @@ def ir_sim_rate(count: int) -> float:
         with contextlib.redirect_stdout(sys.stderr):  # it tells about windows that it cannot open
             import irsim
     except ImportError:
-        raise MissingExtraError("bench", "the comparison with IR-SIM") from None
+        raise MissingExtraError("studies", "the comparison with IR-SIM") from None
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "ring.yaml"
         scene.write_text(yaml.safe_dump(_their_scene(count)), encoding="utf-8")
@@ -133,6 +132,3 @@ def _compared(runs: int) -> list[Measurement]:
         Measurement.over_runs(f"{name}, Muster", UNIT, ours, "", f"{ratio:,.0f} times as fast as IR-SIM"),
         Measurement.over_runs(f"{name}, IR-SIM", UNIT, theirs, ""),
     ]
-
-
-SIMULATION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"simulation": simulation}

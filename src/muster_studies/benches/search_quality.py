@@ -11,6 +11,7 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.planning.loading import load
+from muster_studies.benches.measurement import Measurement
 from muster_studies.runs import accepted
 
 _FREE = ("prerequisites", "suitability")
@@ -110,3 +111,15 @@ def _value(problem: Problem, case: Case, seed: int, iterations: int | None) -> f
     verdict = accepted(problem.mission, plan, f"{case.name}, seed {seed}")
     value = verdict.value(case.objective)
     return float("inf") if value is None or verdict.tasks_completed < verdict.tasks_total else value
+
+
+def search_quality(runs: int) -> list[Measurement]:
+    """The search on missions whose best plans are known; a seed a run."""
+    return [_above_best(quality(case, runs)) for case in CASES]
+
+
+def _above_best(found: Quality) -> Measurement:
+    note = (
+        f"median {found.median:.4f}, best known {found.case.best:.4f}, reached by {found.reached} of {len(found.gaps)}"
+    )
+    return Measurement.over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)

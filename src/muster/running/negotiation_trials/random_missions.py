@@ -5,8 +5,8 @@ from __future__ import annotations
 from random import Random
 
 from muster.mission.model import OBJECTIVES, Mission, Robot, Rules, Task
-from muster_studies.uniform import place
 
+SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
 
 
@@ -21,7 +21,7 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
         robots=tuple(
             Robot(
                 id=f"r_{k}",
-                position=place(random),
+                position=random_place(random),
                 work_capacity=random.choice((100.0, 200.0, 300.0)) if limited and random.random() < 0.7 else None,
                 skills=tuple(skill for skill in SKILLS if random.random() < 0.7),
                 speed_mps=random.choice((1.0, 1.0, 2.0)),
@@ -45,9 +45,14 @@ def random_task(random: Random, name: str, *, before: list[str], skilled: bool, 
     """A task in the square."""
     return Task(
         id=name,
-        position=place(random),
+        position=random_place(random),
         prerequisites=tuple(before),
         requires=(random.choice(SKILLS),) if skilled and random.random() < 0.3 else (),
         actuation_cost=random.choice((0.0, 5.0)),
         across_partition="at-most-once" if once else "at-least-once",
     )
+
+
+def random_place(random: Random, side_m: float = SIDE_M) -> tuple[float, float]:
+    """A place in a square of that side, metres."""
+    return random.uniform(0, side_m), random.uniform(0, side_m)

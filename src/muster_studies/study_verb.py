@@ -18,13 +18,13 @@ from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
-    from muster_studies import Cell, Report, Table
+    from muster_studies.tables import Cell, Report, Table
 
 _SHORT_HEADERS = {"iterations": "iter."}  # what is wider than its numbers
 _LEAST_SECONDS = 0.01
 
 
-@click.command()
+@click.command(short_help="Repeat a published experiment beside its published numbers.")
 @click.argument("name", required=False)
 @click.option("--list", "list_studies", is_flag=True, help="List the studies.")
 @click.option("--tables", metavar="N,N", help="Only these tables, such as 3.2,3.5.")
@@ -64,7 +64,8 @@ def command(
 
     All own numbers are the judge's. Without NAME the studies are listed.
     """
-    from muster_studies import Effort, Illustrated, study_named
+    from muster_studies.effort import Effort
+    from muster_studies.registry import Illustrated, study_named
 
     if name is None or list_studies:
         _list(form)
@@ -90,7 +91,7 @@ def command(
 
 def _list(form: str) -> None:
     from muster.cli.tables import print_table
-    from muster_studies import STUDIES
+    from muster_studies.registry import STUDIES
     from muster_studies.tables import span
 
     if form == "json":

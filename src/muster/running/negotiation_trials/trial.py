@@ -15,11 +15,11 @@ from muster.negotiation.messages import Claim
 from muster.negotiation.methods import METHODS
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
-from muster_studies.negotiation.deadline import deadline_s, someone_is_left_out
-from muster_studies.negotiation.faults import Incident
-from muster_studies.negotiation.invariants import Judgement
-from muster_studies.negotiation.observer import Observer
-from muster_studies.negotiation.scenario import Scene, scene
+from muster.running.negotiation_trials.deadline import deadline_s, someone_is_left_out
+from muster.running.negotiation_trials.faults import Incident
+from muster.running.negotiation_trials.invariants import Judgement
+from muster.running.negotiation_trials.observer import Observer
+from muster.running.negotiation_trials.scenario import Scene, scene
 
 LONGEST_S = 120.0
 """So long after the last incident agreement is waited for, seconds of virtual time; for its `deadline` see there."""

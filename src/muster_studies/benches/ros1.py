@@ -1,4 +1,4 @@
-"""The bridge to ROS 1 under load: part of what `muster bench` measures.
+"""The bridge to ROS 1 under load: part of `muster bench`.
 
 Fifty robots, each a process, publish odometry 20 times a second through a real ROS master, and go as they are told by
 `cmd_vel`. The bridge is a process of its own, so that its processor time is its own (`ros1_load`).
@@ -11,13 +11,13 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from muster.bridges.ros1.master import Master, running_master
 from muster.mission.errors import MusterError
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 ROBOTS, RATE_HZ, WINDOW_S = 50, 20.0, 10.0
 
@@ -67,7 +67,7 @@ def under_load(runs: int, robots: int, window_s: float) -> list[Measurement]:
 @contextmanager
 def _process(master: Master, *arguments: object) -> Iterator[subprocess.Popen[str]]:
     process = subprocess.Popen(
-        [sys.executable, "-m", "muster_studies.ros1_load", *map(str, arguments)],
+        [sys.executable, "-m", "muster_studies.benches.ros1_load", *map(str, arguments)],
         env=os.environ | master.environment,
         stdout=subprocess.PIPE,
         text=True,
@@ -77,6 +77,3 @@ def _process(master: Master, *arguments: object) -> Iterator[subprocess.Popen[st
     finally:
         process.terminate()
         process.communicate()
-
-
-ROS1_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"ros1": ros1}

@@ -1,36 +1,22 @@
-"""Speed on this machine: what `muster bench` measures."""
+"""Speed of allocators: part of `muster bench`."""
 
 from __future__ import annotations
 
 import resource
-import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from random import Random
 from typing import Any
 
 from muster.allocation.genetic import Parameters, evolve, first_population
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.model import Mission
+from muster.planning.judging import verify
 from muster.planning.loading import load
-from muster.planning.planning import verify
-from muster_studies.bench_auction import AUCTION_BENCHES
-from muster_studies.bench_avoidance import compared
-from muster_studies.bench_execution import EXECUTION_BENCHES
-from muster_studies.bench_lasers import LASER_BENCHES
-from muster_studies.bench_motion import MOTION_BENCHES
-from muster_studies.bench_perception import PERCEPTION_BENCHES
-from muster_studies.bench_physics import PHYSICS_BENCHES
-from muster_studies.bench_ros1 import ROS1_BENCHES
-from muster_studies.bench_server import SERVER_BENCHES
-from muster_studies.bench_simulation import SIMULATION_BENCHES
-from muster_studies.measurement import Measurement
-from muster_studies.search_quality import CASES, Quality, quality
-from muster_studies.uniform import uniform_mission
+from muster_studies.benches.measurement import Measurement
+from muster_studies.uniform import large_mission
 
 
 def greedy_small(runs: int) -> list[Measurement]:
@@ -92,11 +78,6 @@ def _shares(problem: Problem, params: Parameters) -> str:
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in steps.items())
 
 
-def large_mission(tasks: int, robots: int, seed: int = 0) -> Mission:
-    """Tasks and robots at random places of a square of 1000 m, without prerequisites."""
-    return uniform_mission(Random(seed), robots=robots, tasks=tasks, side_m=1000.0)
-
-
 def greedy_large(runs: int) -> list[Measurement]:
     """Greedy on 10,000 tasks and 200 robots."""
     return _large("greedy", 10_000, 200, min(runs, 3), "< 5", "< 500")
@@ -111,8 +92,8 @@ def auction_large(runs: int) -> list[Measurement]:
 
 
 def _large(allocator: str, tasks: int, robots: int, runs: int, seconds: str, megabytes: str) -> list[Measurement]:
-    """Each run in a process of its own, so that its memory can be told."""
-    code = f"from muster_studies.bench import large_once; print(*large_once({allocator!r}, {tasks}, {robots}))"
+    """Each run in a process of its own, so that its peak memory can be measured."""
+    code = f"from {__name__} import large_once; print(*large_once({allocator!r}, {tasks}, {robots}))"
     found = []
     for _ in range(runs):
         words = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
@@ -134,72 +115,3 @@ def large_once(allocator: str, tasks: int, robots: int) -> tuple[float, float, f
     value = verify(problem.mission, plan).value("total+max")
     assert value is not None
     return seconds, megabytes, value
-
-
-def search_quality(runs: int) -> list[Measurement]:
-    """The search on missions whose best plans are known; a seed a run."""
-    return [_above_best(quality(case, runs)) for case in CASES]
-
-
-def _above_best(found: Quality) -> Measurement:
-    note = (
-        f"median {found.median:.4f}, best known {found.case.best:.4f}, reached by {found.reached} of {len(found.gaps)}"
-    )
-    return Measurement.over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)
-
-
-def avoidance(runs: int) -> list[Measurement]:
-    """A step of ORCA for many robots, beside RVO2 in the same run."""
-    found = []
-    for count, aim in ((1_000, "< 10"), (10_000, "< 150")):
-        times = compared(count, runs)
-        for program, milliseconds in times.items():
-            name, ours = f"ORCA step, {count:,} robots, {program}", program != "RVO2"
-            note = _beside(milliseconds, times.get("RVO2")) if ours else ""
-            found.append(Measurement.over_runs(name, "CPU ms", milliseconds, aim if ours else "", note))
-    return found
-
-
-def _beside(milliseconds: list[float], rvo2: list[float] | None) -> str:
-    if rvo2 is None:
-        return "beside RVO2 with: pip install 'muster-robotics[bench]'"
-    return f"{statistics.median(milliseconds) / statistics.median(rvo2):.2f} of the time of RVO2"
-
-
-def start_up(runs: int) -> list[Measurement]:
-    """Whole processes: `import muster` and `muster --help`, with what Python itself takes."""
-    commands = (
-        ("import muster", [sys.executable, "-c", "import muster"], "< 0.3"),
-        ("muster --help", [sys.executable, "-m", "muster.cli", "--help"], "< 0.4"),
-        ("python alone", [sys.executable, "-c", "pass"], ""),
-    )
-    return [
-        Measurement.over_runs(name, "s", [_seconds(command) for _ in range(runs)], aim)
-        for name, command, aim in commands
-    ]
-
-
-def _seconds(command: list[str]) -> float:
-    begin = time.perf_counter()
-    subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
-    return time.perf_counter() - begin
-
-
-BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
-    "greedy-small": greedy_small,
-    "genetic": genetic_iterations,
-    "greedy-large": greedy_large,
-    "auction-large": auction_large,
-    "search": search_quality,
-    "avoidance": avoidance,
-    "start-up": start_up,
-    **MOTION_BENCHES,
-    **SIMULATION_BENCHES,
-    **PHYSICS_BENCHES,
-    **LASER_BENCHES,
-    **PERCEPTION_BENCHES,
-    **EXECUTION_BENCHES,
-    **AUCTION_BENCHES,
-    **ROS1_BENCHES,
-    **SERVER_BENCHES,
-}

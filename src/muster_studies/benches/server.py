@@ -1,4 +1,4 @@
-"""Mission control under load: part of what `muster bench` measures.
+"""Mission control under load: part of `muster bench`.
 
 A real `muster serve` with a database of its own; those who watch it and ask are other processes (`server_load`), on
 the same machine, so that their work slows it down too.
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +22,7 @@ from typing import Any
 
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.mission.yaml_writer import yaml_text
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, SIDE_M = 50, 500, 400.0
@@ -175,7 +175,7 @@ def queued(runs: int) -> list[Measurement]:
 
 
 def _load(*arguments: object) -> list[dict[str, float]]:
-    words = [sys.executable, "-m", "muster_studies.server_load", *map(str, arguments)]
+    words = [sys.executable, "-m", "muster_studies.benches.server_load", *map(str, arguments)]
     out = subprocess.run(words, capture_output=True, text=True, check=False)
     if out.returncode:
         raise MusterError(f"{arguments[0]}: {out.stderr.strip().splitlines()[-1:]}")
@@ -193,10 +193,3 @@ def _family(process: int) -> list[int]:
 def _pss_mb(process: int) -> float:
     lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("Pss:")) / 1024
-
-
-SERVER_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {
-    "server-start": start,
-    "server-watched": watched,
-    "server-queue": queued,
-}

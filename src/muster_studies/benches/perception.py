@@ -1,4 +1,4 @@
-"""Speed of cameras: part of what `muster bench` measures."""
+"""Speed of cameras: part of `muster bench`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.perception.detection import TagDetector
 from muster.perception.observer import Observer
 from muster.planning.loading import load
 from muster.running.camera_search import intrinsics_of
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 MISSION = "16T-3R-tags"
 OVER_TAGS = (10.2, 3.2, 2.0, 0.0, 0.0, math.radians(35))
@@ -60,6 +60,3 @@ def _rate(look: Callable[[], object]) -> float:
     for _ in range(PICTURES):
         look()
     return PICTURES / (time.process_time() - begin)
-
-
-PERCEPTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"perception": perception}

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from random import Random
 
 from muster.mission.model import Mission
-from muster_studies.negotiation.faults import Incident, Links, orders
-from muster_studies.negotiation.missions import random_task
+from muster.running.negotiation_trials.faults import Incident, Links, orders
+from muster.running.negotiation_trials.random_missions import random_task
 
 _MOVING = ("next majority",) * 3 + ("ambush",)
 _MIXED = ("next majority", "any cut", "deafen", "deafen", "heal", "ambush")

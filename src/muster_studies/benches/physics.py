@@ -1,23 +1,22 @@
-"""Speed of the physics world: part of what `muster bench` measures."""
+"""Speed of the physics world: part of `muster bench`."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
 
 from muster.mission.model import Mission, Robot
 from muster.motion.port import Waypoint
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 SIMULATED_S = 20.0
 WIDTH, HEIGHT, PICTURES = 640, 480, 30
 
 
 def team() -> Mission:
-    """Six ground robots and three drones of Table A.2 of the TCF thesis."""
+    """Six ground robots and three drones of Table A.2 of [tcf-thesis]."""
     ground = (
         Robot(id=f"r_{k}", position=(2.0 * k, 0.0, 0.0), kinematics="differential-drive", radius_m=0.3, speed_mps=0.26)
         for k in range(6)
@@ -68,6 +67,3 @@ def physics(runs: int) -> list[Measurement]:
         Measurement.over_runs("physics, 6 ground robots, 3 drones", "x real time", rates, ">= 15", note),
         Measurement.over_runs(f"picture of {WIDTH} x {HEIGHT}", "1/s", pace, ">= 30", "drawn, nothing detected"),
     ]
-
-
-PHYSICS_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"physics": physics}

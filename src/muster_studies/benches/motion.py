@@ -15,7 +15,7 @@ from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path
 from muster.motion.paths import WayFinder, find
-from muster_studies.measurement import Measurement
+from muster_studies.benches.measurement import Measurement
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -102,6 +102,3 @@ def _rows(name: str, threads: int, times: dict[str, list[float]], aim: str, note
         Measurement(name, unit, statistics.median(t), min(t), max(t), len(t), aim if unit == "CPU s" else "", note)
         for unit, t in times.items()
     ]
-
-
-MOTION_BENCHES: dict[str, Callable[[int], list[Measurement]]] = {"path": across_a_grid, "travel": travel}

@@ -15,9 +15,9 @@ from muster.negotiation.methods import METHODS
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import task_of
 from muster.negotiation.participation import rules_of
+from muster.running.negotiation_trials.observer import Observer
+from muster.running.negotiation_trials.scenario import Scene
 from muster.verification import verify
-from muster_studies.negotiation.observer import Observer
-from muster_studies.negotiation.scenario import Scene
 
 
 class Judgement:
