@@ -1,6 +1,7 @@
 """Turns: nobody's work keeps that of others waiting, whatever comes in whichever order."""
 
 import asyncio
+from collections import Counter
 
 import pytest
 from hypothesis import given
@@ -66,7 +67,7 @@ def test_users_take_turns():
         for piece in ("w0", "w1", "w2", "a0", "a1", "b0"):
             yard.ask({"w": "wall", "a": "anna", "b": "bob"}[piece[0]], piece)
         await settle()
-        for piece in list(yard.ends):
+        for _ in list(yard.ends):
             await yard.end(yard.begun[-1])
         return yard.begun
 
@@ -141,12 +142,10 @@ def test_places_are_never_idle_while_somebody_may_have_one(events, places, most_
             elif open_pieces:
                 yard.tasks[open_pieces[-1]].cancel()
             await settle()
-            held = {
-                user: sum(p[0] == user and p in yard.begun and not t.done() for p, t in yard.tasks.items())
-                for user in "abc"
-            }
-            waiting = {p[0] for p, t in yard.tasks.items() if p not in yard.begun and not t.done()}
-            assert yard.turns.taken == sum(held.values()) <= places
+            left = [piece for piece, task in yard.tasks.items() if not task.done()]
+            held = Counter(piece[0] for piece in left if piece in yard.begun)
+            waiting = {piece[0] for piece in left if piece not in yard.begun}
+            assert yard.turns.taken == held.total() <= places
             assert all(count <= most_of_one for count in held.values())
             assert not any(held[user] < most_of_one for user in waiting) or yard.turns.taken == places
         for task in yard.tasks.values():
