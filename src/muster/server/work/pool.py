@@ -33,7 +33,7 @@ class Pool:
     Parameters
     ----------
     workers
-        how many processes do long work at most; as many more may do short work of one user, and one more that of others.
+        how many processes do long work at most. As many more do short work of one user, and one more that of others.
     memory_mb
         how much memory each may have.
     idle_s

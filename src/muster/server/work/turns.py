@@ -18,8 +18,8 @@ CURRENT_USER: ContextVar[str] = ContextVar("muster_current_user", default="")
 class Turns:
     """A number of places, for which users wait in turn.
 
-    A free place goes to the user who holds the fewest; among those to the one whose last turn is longest ago. The pieces
-    of work of one user are done in the order in which they come.
+    A free place goes to the user who holds the fewest; among those to the one whose last turn is longest ago. The work
+    of one user is done in the order in which it comes.
 
     Parameters
     ----------
