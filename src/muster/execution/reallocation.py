@@ -15,7 +15,7 @@ from muster.allocation.explanations import unassigned
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewired
-from muster.allocation.search import SEARCH, Parameters
+from muster.allocation.search import Parameters, allocate
 from muster.allocation.stop import Stop
 from muster.execution.remaining_problem import Posed, Rest, in_one_line, posed
 from muster.execution.travel import Travel
@@ -126,8 +126,7 @@ class Reallocation:
 
     def _searched(self, problem: Problem, start: Routes) -> Routes:
         stop = Stop(iterations=self.iterations, clock=VirtualClock())
-        outcome = SEARCH.algorithm(problem, stop, self.seed, Parameters(hot=self.hot), start)
-        return outcome.routes
+        return allocate(problem, stop, self.seed, Parameters(hot=self.hot), start).routes
 
 
 def _routes_before(problem: Problem, rest: Rest) -> Routes:
