@@ -6,13 +6,15 @@ import argparse
 import re
 import sys
 import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tools.docs_check import measured, pictures
-from tools.docs_check.commands import ROOT, command_lines
+from tools.docs_check.commands import ROOT, command_lines, without_remark
 from tools.docs_check.outcomes import FAILED, Outcome, summary
 from tools.docs_check.page_run import check_page
 from tools.docs_check.pages import read_page
@@ -34,26 +36,32 @@ def check(chosen: list[Path]) -> int:
 
 
 def make_long(names: list[str]) -> int:
-    """Make what takes more than a minute, or of it what is named, and store it."""
+    """Make what takes more than a minute, or of it what is named, and store it; returns the exit code."""
+    failed = False
+    for name, make in _long_work():
+        if not names or name in names:
+            with TemporaryDirectory() as scratch:
+                try:
+                    print(make(Path(scratch)), flush=True)
+                except RuntimeError as error:
+                    failed = True
+                    print(f"FAILED {name}: {error}", flush=True)
+    return int(failed)
+
+
+def _long_work() -> Iterator[tuple[str, Callable[[Path], str]]]:
+    """The name of each measurement and picture that takes long, and what makes it in a folder."""
     for page in pages():
         for item in read_page(page):
             made = item.marker("made")
-            if item.kind == "picture" and made and item.marker("long") and _wanted(Path(item.text).name, names):
-                with TemporaryDirectory() as scratch:
-                    command = made.rest.removeprefix("by ").strip()
-                    print(pictures.make_stored(page, item.text, command, Path(scratch)), flush=True)
+            if item.kind == "picture" and made and item.marker("long"):
+                command = made.rest.removeprefix("by ").strip()
+                yield Path(item.text).name, partial(pictures.make_stored, page, item.text, command)
             for marker in item.markers if item.kind == "block" else ():
-                if marker.word == "long" and _wanted(marker.rest, names):
+                if marker.word == "long":
                     for command in command_lines(item.text):
                         if marker.pattern is None or re.search(marker.pattern, command):
-                            with TemporaryDirectory() as scratch:
-                                told = re.sub(r"\s+#.*", "", command)
-                                print(measured.measure(marker.rest, told, Path(scratch)), flush=True)
-    return 0
-
-
-def _wanted(name: str, names: list[str]) -> bool:
-    return not names or name in names
+                            yield marker.rest, partial(measured.measure, marker.rest, without_remark(command))
 
 
 def main() -> int:

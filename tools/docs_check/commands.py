@@ -32,10 +32,21 @@ def command_lines(text: str) -> list[str]:
     return [line.strip() for line in joined.splitlines() if line.strip() and not line.lstrip().startswith("#")]
 
 
+def without_remark(command: str) -> str:
+    """A command without the remark behind it."""
+    return re.sub(r"\s+#.*", "", command)
+
+
 def run_command(command: str, folder: Path, limit_s: float = LIMIT_S) -> Ran:
     """Run a command in a folder, with the environment's programs first on the path and without a terminal."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    variables = {**os.environ, "PATH": path, "COLUMNS": "120", "XDG_DATA_HOME": str(folder / ".data")}
+    variables = {
+        **os.environ,
+        "PATH": path,
+        "COLUMNS": "120",
+        "XDG_DATA_HOME": str(folder / ".data"),
+        "ROOT": str(ROOT),
+    }
     variables.pop("FORCE_COLOR", None)
     process = subprocess.Popen(
         ["bash", "-c", command],

@@ -19,7 +19,7 @@ from typing import Any
 import yaml
 
 from tools.docs_check import outcomes as o
-from tools.docs_check.commands import ROOT, command_lines, look_up, run_command
+from tools.docs_check.commands import ROOT, command_lines, look_up, run_command, without_remark
 from tools.docs_check.consoles import compare_console
 from tools.docs_check.measured import load, numbers, unknown_numbers
 from tools.docs_check.outcomes import Outcome
@@ -133,11 +133,11 @@ class _PageRun:
 
     def _stored(self, name: str, command: str, where: str) -> Outcome:
         stored = load(name)
-        without_remark = re.sub(r"\s+#.*", "", command)
+        command = without_remark(command)
         if stored is None:
             return Outcome(o.FAILED, "command", where, f"docs/measured/{name}.json: not there; `make docs-check-long`")
-        if stored["command"] != without_remark:
-            detail = f"docs/measured/{name}.json is of `{stored['command']}`, the page says `{without_remark}`"
+        if stored["command"] != command:
+            detail = f"docs/measured/{name}.json is of `{stored['command']}`, the page says `{command}`"
             return Outcome(o.FAILED, "command", where, detail)
         return Outcome(o.MEASURED, "command", where)
 
