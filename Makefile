@@ -100,12 +100,12 @@ $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
 
 $(VENV)/developed: $(VENV)/installed
 	@echo "Installing the tools for tests ..."
+	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
 	@touch $@
 
 $(VENV)/made: | prerequisites
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'
 	@touch $@
 
 test-packages:
