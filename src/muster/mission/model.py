@@ -34,7 +34,6 @@ from muster.mission.value_types import (
 
 SCHEMA = "muster/1"
 OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
-IGNORABLE = ("prerequisites", "suitability", "skills", "capacity")
 
 Point = tuple[float, ...]
 

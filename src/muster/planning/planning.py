@@ -27,7 +27,7 @@ def solve(
     *,
     iterations: int | None = None,
     objective: str | None = None,
-    ignore: Collection[str] = (),
+    ignore: str | Collection[str] = (),
     start: Plan | None = None,
     fixed: Plan | None = None,
     bound: str | None = None,
@@ -45,7 +45,7 @@ def solve(
     objective
         instead of the mission's own.
     ignore
-        rules that do not hold: prerequisites, suitability, skills, capacity.
+        rules that do not hold: prerequisite, suitability, skill, lock, capacity.
     start
         a plan to go on from.
     fixed
@@ -67,7 +67,6 @@ def solve(
     from muster.allocation.stop import Stop, usual_time_limit
 
     require_mission(mission)
-    ignore = (ignore,) if isinstance(ignore, str) else ignore
     chosen = allocator_named(allocator)
     params = make_parameters(chosen, parameters)
     problem = Problem.compile(mission, objective, ignore)
@@ -80,12 +79,24 @@ def solve(
     return plan if bound is None else prove(problem, plan, bound, stop, time_limit).plan
 
 
-def verify(mission: Mission, plan: Plan) -> Verdict:
-    """Judge a plan from scratch, by code that no allocator uses."""
+def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+    """Judge a plan from scratch, by code that no allocator uses.
+
+    Parameters
+    ----------
+    ignore
+        rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
+    objective
+        the one that the plan was to minimise; the mission's by default.
+
+    Raises
+    ------
+    ParameterError, NotSupportedError
+    """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan)
+    return judge(mission, plan, ignore, objective)
 
 
 def require_mission(mission: object) -> None:
@@ -99,4 +110,4 @@ def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
     """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
     from muster.report import plot_routes
 
-    return plot_routes(mission, plan, verify(mission, plan), ax=ax)
+    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

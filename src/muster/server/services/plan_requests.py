@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
+from muster.mission.model import OBJECTIVES
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
@@ -52,7 +53,7 @@ def _is_time(value: object) -> bool:
 
 
 def _are_rules(value: object) -> bool:
-    return isinstance(value, list | tuple) and all(name in IGNORABLE for name in value)
+    return isinstance(value, list | tuple) and all(ignorable_rule(name) is not None for name in value)
 
 
 def _are_parameters(value: object) -> bool:

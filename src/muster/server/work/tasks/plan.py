@@ -14,7 +14,6 @@ from muster.allocation.proofs import EXACT_TIME_LIMIT_S, Proof, prove, require_p
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Progress, Stop, usual_time_limit
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.planning import DEFAULT_ALLOCATOR
 from muster.server.work.missions import mission_of, plan_of
@@ -54,7 +53,7 @@ def run(arguments: Mapping[str, Any], report: Report, whole: Stop) -> dict[str, 
         proof = Proof(plan, "" if bound is None else "planning was stopped before a bound was proven")
     else:
         proof = prove(problem, plan, bound, stop, time_limit)
-    _require_valid(mission, proof.plan)
+    _require_valid(problem, proof.plan)
     return {"plan": proof.plan.as_dict(), "why": proof.why}
 
 
@@ -67,8 +66,8 @@ def _require_modest(parameters: Mapping[str, Any]) -> None:
         raise ParameterError(f"threads: {threads}; expected at most {most}, the processors of this server")
 
 
-def _require_valid(mission: Mission, plan: Plan) -> None:
-    verdict = verify(mission, plan)
+def _require_valid(problem: Problem, plan: Plan) -> None:
+    verdict = verify(problem.mission, plan, problem.ignored, problem.objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
