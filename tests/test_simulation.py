@@ -90,7 +90,7 @@ def test_what_changes_nothing_is_told_all_the_same(simulation):
     while "x" not in simulation.result().tasks_done:
         simulation.advance(until_s=1000)
     simulation.report(Event(at_s=0, cancel_task="x"))
-    assert [one.kind for one in simulation.happenings][-1] == "without_effect"
+    assert [one.kind for one in simulation.events][-1] == "without_effect"
     assert simulation.result().tasks_done == ("x",)
 
 

@@ -45,7 +45,7 @@ def carried_out(mission, plan, **options):
 
 
 def kinds(executor):
-    return [happening.kind for happening in executor.happenings]
+    return [event.kind for event in executor.events]
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -144,7 +144,7 @@ def test_a_new_task_that_nobody_can_do_is_told_once_with_the_reason():
         Event(at_s=3, delay_task=DelayedTask(task="0", by_s=1)),
     ]
     executor = carried_out(line(9.0, robots=2, events=events), plan_of(r_0=["0"]))
-    told = [entry.data["left_out"] for entry in executor.happenings if entry.kind == "replanned"]
+    told = [entry.data["left_out"] for entry in executor.events if entry.kind == "replanned"]
     assert told == [{}, {"new": "lock: only r_1 may do it, and takes no part any more"}, {}]
 
 
@@ -170,7 +170,7 @@ def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
     events = [Event(at_s=2, robot_silent="r_0"), Event(at_s=20, robot_returns="r_0")]
     mission = line(40.0, 60.0, robots=2, events=events)
     executor = carried_out(mission, plan_of(r_0=["0", "1"]), limits=Limits(silent_after_s=5))
-    noticed = next(h.at_s for h in executor.happenings if h.kind == SILENT)
+    noticed = next(h.time_s for h in executor.events if h.kind == SILENT)
     assert noticed == pytest.approx(7, abs=0.21)
     assert "robot_returns" in kinds(executor)
     assert sorted(executor.ledger.ends_s) == ["0", "1"]
@@ -184,7 +184,7 @@ def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():
     executor = Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=10))
     carry_out(executor, world)
     assert executor.crew["r_0"].out == STUCK
-    assert [h.at_s for h in executor.happenings if h.kind == "robot_sent_again"] == [pytest.approx(10.5, abs=0.6)]
+    assert [h.time_s for h in executor.events if h.kind == "robot_sent_again"] == [pytest.approx(10.5, abs=0.6)]
     assert executor.crew["r_1"].done == ["0"]
 
 
@@ -199,7 +199,7 @@ def test_a_task_to_which_a_robot_says_it_will_not_get_is_done_by_another():
     done = {row.task: row.robot for row in report_of(executor.account, contacts=0, min_distance_m=None).tasks}
     assert done["0"] == "r_1"
     assert set(done) == {"0", "1"}
-    refused = [happening.data for happening in executor.happenings if happening.kind == "task_refused"]
+    refused = [event.data for event in executor.events if event.kind == "task_refused"]
     assert refused == [{"task": "0", "robot": "r_0", "reason": "no way, it says"}]
     assert not executor.crew["r_0"].out
 

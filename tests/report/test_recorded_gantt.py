@@ -9,7 +9,7 @@ from tests.report.voyages import carry_out
 
 from muster import verify
 from muster.report import plot_gantt
-from muster.report.record import Happening, RecordWriter, read_record
+from muster.report.record import ExecutionEvent, RecordWriter, read_record
 from muster.report.recorded_gantt import plot_flown_gantt
 
 pytest.importorskip("matplotlib")
@@ -46,9 +46,9 @@ def test_it_ends_where_the_record_breaks_off(recorded, drawn):
 def test_robots_that_joined_have_rows(recorded, drawn):
     recording = recorded(until=10.0)
     joins = (
-        Happening(2.0, "robot_joins", {"robot": {"id": "eve", "position": [0, 0]}}),
-        Happening(2.0, "sets_out", {"robot": "eve", "task": "e"}),
-        Happening(2.2, "robot_fails", {"robot": "eve"}),
+        ExecutionEvent(2.0, "robot_joins", {"robot": {"id": "eve", "position": [0, 0]}}),
+        ExecutionEvent(2.0, "sets_out", {"robot": "eve", "task": "e"}),
+        ExecutionEvent(2.2, "robot_fails", {"robot": "eve"}),
     )
     ax = plot_flown_gantt(replace(recording, events=(*joins, *recording.events)))
     assert [label.get_text() for label in ax.get_yticklabels()] == ["ada", "bob", "idle", "eve"]

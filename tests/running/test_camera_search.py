@@ -40,7 +40,7 @@ def flown(of, **how):
 
 
 def kinds(simulation, kind):
-    return [happening for happening in simulation.happenings if happening.kind == kind]
+    return [event for event in simulation.events if event.kind == kind]
 
 
 def simulated(of, **how):
@@ -65,9 +65,9 @@ def test_found_becomes_done(world):
 
 def test_what_is_found_happens_when_it_is_found():
     simulation = simulated(mission())
-    found = {event.data["task"]: event.at_s for event in kinds(simulation, "found")}
+    found = {event.data["task"]: event.time_s for event in kinds(simulation, "found")}
     assert found == {find.task: find.found_s for find in simulation.lookout.found}
-    assert found == {event.data["task"]["id"]: event.at_s for event in kinds(simulation, "new_task")}
+    assert found == {event.data["task"]["id"]: event.time_s for event in kinds(simulation, "new_task")}
 
 
 def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_goes_on():
@@ -158,9 +158,9 @@ def test_names_that_are_taken_are_not_given_again():
 
 def test_new_tasks_come_while_the_drone_still_searches():
     simulation = simulated(mission())
-    (ends,) = [h.at_s for h in kinds(simulation, "ends") if h.data["task"] == "search"]
-    assert kinds(simulation, "found")[0].at_s < ends
-    assert kinds(simulation, "new_task")[0].at_s == kinds(simulation, "found")[0].at_s
+    (ends,) = [h.time_s for h in kinds(simulation, "ends") if h.data["task"] == "search"]
+    assert kinds(simulation, "found")[0].time_s < ends
+    assert kinds(simulation, "new_task")[0].time_s == kinds(simulation, "found")[0].time_s
 
 
 def test_a_find_elsewhere_moves_its_task():

@@ -59,7 +59,7 @@ def flown(there, fleet, **how):
 def test_a_fleet_carries_a_plan_out():
     there = mission()
     fleet, heard = WorldAsFleet(there), []
-    report = flown(there, fleet, on_happening=heard.append)
+    report = flown(there, fleet, on_event=heard.append)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2", "t_3"}
     assert heard[-1].kind == "mission_ended"
     assert fleet.stopped == 1
@@ -78,15 +78,15 @@ def test_who_fails_is_planned_for_and_who_is_discovered_helps():
 def test_why_a_robot_fails_is_told():
     there, heard = mission(), []
     fleet = WorldAsFleet(there, [Failure(at_s=2, robot_fails="r_0", reason="low battery")])
-    flown(there, fleet, on_happening=heard.append)
-    (out,) = [happening.data for happening in heard if happening.kind == "robot_fails"]
+    flown(there, fleet, on_event=heard.append)
+    (out,) = [event.data for event in heard if event.kind == "robot_fails"]
     assert out == {"robot": "r_0", "reason": "low battery"}
 
 
 def test_halted_it_stops_the_robots():
     there, halt = mission(), threading.Event()
     fleet = WorldAsFleet(there)
-    report = flown(there, fleet, halt=halt, on_happening=lambda happening: halt.set())
+    report = flown(there, fleet, halt=halt, on_event=lambda event: halt.set())
     assert fleet.stopped == 1
     assert len(report.tasks_done) < 4
     left = [f"t_{k}" for k in range(4) if f"t_{k}" not in report.tasks_done]
@@ -97,11 +97,11 @@ def test_an_error_stops_the_robots():
     there = mission()
     fleet = WorldAsFleet(there)
 
-    def broken(happening):
+    def broken(event):
         raise RuntimeError("broken")
 
     with pytest.raises(RuntimeError):
-        flown(there, fleet, on_happening=broken)
+        flown(there, fleet, on_event=broken)
     assert fleet.stopped == 1
 
 
@@ -143,7 +143,7 @@ def test_no_robot_stops_for_a_full_disk():
     there = mission()
     full, whole = Full(room=5), []
     fleet = WorldAsFleet(there)
-    report = flown(there, fleet, observers=[full], on_happening=whole.append)
+    report = flown(there, fleet, observers=[full], on_event=whole.append)
     assert len(report.tasks_done) == 4
     assert full.room == -1
     assert report.remarks == ("no more is kept: [Errno 28] No space left on device: 'record.mcap'",)
@@ -182,10 +182,10 @@ def test_the_clock_of_a_mission_begins_with_it(tmp_path):
     there = mission()
     fleet, heard = WorldAsFleet(there, [Event(at_s=8, robot_fails="r_0")]), []
     fleet.world.advance(5.0)  # robots were waited for
-    report = flown(there, fleet, on_happening=heard.append, record=tmp_path / "record.mcap")
-    (failed,) = [happening.at_s for happening in heard if happening.kind == "robot_fails"]
+    report = flown(there, fleet, on_event=heard.append, record=tmp_path / "record.mcap")
+    (failed,) = [event.time_s for event in heard if event.kind == "robot_fails"]
     assert failed == pytest.approx(3.0, abs=0.2)
-    assert heard[-1].at_s == pytest.approx(report.mission_time_s)
+    assert heard[-1].time_s == pytest.approx(report.mission_time_s)
     recording = read_record(tmp_path / "record.mcap")
     assert recording.tracks.times_s[0] == pytest.approx(0.0, abs=0.2)
     assert recording.duration_s == pytest.approx(report.mission_time_s)

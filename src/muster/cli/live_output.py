@@ -13,7 +13,7 @@ from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 
 if TYPE_CHECKING:
-    from muster.execution import Happening
+    from muster.execution import ExecutionEvent
 
 foxglove_option = click.option(
     "--foxglove",
@@ -55,8 +55,8 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
         yield (server,)
 
 
-def tell(happening: Happening) -> None:
+def tell(event: ExecutionEvent) -> None:
     """Say what happens, as it happens."""
     from muster.mission.event_descriptions import event_line
 
-    click.echo(f"{happening.at_s:9.1f} s  {event_line(happening.kind, happening.data)}", err=True)
+    click.echo(f"{event.time_s:9.1f} s  {event_line(event.kind, event.data)}", err=True)

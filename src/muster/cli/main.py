@@ -10,34 +10,42 @@ import errno
 import importlib
 import os
 import sys
+from collections.abc import Mapping
 from io import TextIOWrapper
-from typing import Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
 from muster.mission.errors import MusterError
+from muster.mission.value_types import shown
 
-VERBS = (
-    "missions",
-    "init",
-    "check",
-    "solve",
-    "auction",
-    "verify",
-    "explain",
-    "path",
-    "simulate",
-    "ros",
-    "ros2",
-    "fly",
-    "serve",
-    "db",
-    "replay",
-    "export",
-    "study",
-    "bench",
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+VERB_GROUP = "muster.verbs"
+VERBS: Mapping[str, str] = MappingProxyType(
+    {
+        "missions": "List the missions that come with Muster.",
+        "init": "Write a mission file to start from.",
+        "check": "Find what is wrong with a mission, and the tasks that can never be done.",
+        "solve": "Plan a mission.",
+        "auction": "Let robots agree among themselves who does what, a process a robot.",
+        "verify": "Judge a plan from scratch.",
+        "explain": "Say why a task is done by this robot, not by that one, or left out.",
+        "path": "Find a way over the map of a mission, from one point to another.",
+        "simulate": "Carry a plan out with moving robots, and say what it took.",
+        "ros": "Carry a plan out with real robots on ROS 1.",
+        "ros2": "Carry a plan out with real robots on ROS 2.",
+        "fly": "Carry a plan out with drones, over MAVLink.",
+        "serve": "Open mission control: plan, watch and steer in the browser.",
+        "db": "Look after the database of mission control: copies, and what is thrown away.",
+        "replay": "Show a record of a mission that was carried out.",
+        "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
+    }
 )
+"""The verbs of this package, each in the module of its name, with their summaries in the order of `--help`."""
 
 
 class _OutputClosedError(Exception):
@@ -45,20 +53,22 @@ class _OutputClosedError(Exception):
 
 
 class _Verbs(click.Group):
-    """The verbs, each in a file of its own that is imported only when it is asked for."""
+    """The verbs, each in a module of its own that is imported when the verb is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(VERBS)
+        return [*VERBS, *sorted(other_verbs())]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in VERBS:
-            return None
-        command: click.Command = importlib.import_module(f"muster.cli.{cmd_name}").command
-        return command
+        if cmd_name in VERBS:
+            command: click.Command = importlib.import_module(f"muster.cli.{cmd_name}").command
+            return command
+        found = other_verbs().get(cmd_name)
+        return None if found is None else _loaded(found)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        others = [(name, _summary(found)) for name, found in sorted(other_verbs().items())]
         with formatter.section("Verbs"):
-            formatter.write_dl([(verb, _SUMMARIES[verb]) for verb in VERBS])
+            formatter.write_dl([*VERBS.items(), *others])
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -72,30 +82,45 @@ class _Verbs(click.Group):
         from muster.mission.near_matches import did_you_mean
 
         if args and args[0] not in VERBS and not args[0].startswith("-"):
-            raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], VERBS)}", ctx)
+            verbs = self.list_commands(ctx)
+            if args[0] not in verbs:
+                raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], verbs)}", ctx)
         return super().resolve_command(ctx, args)
 
 
-_SUMMARIES = {
-    "missions": "List the missions that come with Muster.",
-    "init": "Write a mission file to start from.",
-    "check": "Find what is wrong with a mission, and the tasks that can never be done.",
-    "solve": "Plan a mission.",
-    "auction": "Let robots agree among themselves who does what, a process a robot.",
-    "verify": "Judge a plan from scratch.",
-    "explain": "Say why a task is done by this robot, not by that one, or left out.",
-    "path": "Find a way over the map of a mission, from one point to another.",
-    "simulate": "Carry a plan out with moving robots, and say what it took.",
-    "ros": "Carry a plan out with real robots on ROS 1.",
-    "ros2": "Carry a plan out with real robots on ROS 2.",
-    "fly": "Carry a plan out with drones, over MAVLink.",
-    "serve": "Open mission control: plan, watch and steer in the browser.",
-    "db": "Look after the database of mission control: copies, and what is thrown away.",
-    "replay": "Show a record of a mission that was carried out.",
-    "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
-    "study": "Repeat a published experiment beside its published numbers.",
-    "bench": "Measure speed on this machine, or quality against other solvers.",
-}
+def other_verbs() -> Mapping[str, EntryPoint]:
+    """Verbs that other packages register in the entry point group `muster.verbs`; none replaces a verb of this one."""
+    from importlib.metadata import entry_points
+
+    return {found.name: found for found in entry_points(group=VERB_GROUP) if found.name not in VERBS}
+
+
+def _loaded(found: EntryPoint) -> click.Command:
+    """The click command that an entry point names.
+
+    Raises
+    ------
+    MusterError
+        if it cannot be imported, or is no click command.
+    """
+    place = f"verb {found.name}: {found.value}"
+    try:
+        command = found.load()
+    except MusterError:
+        raise
+    except Exception as error:  # the code of another package may raise anything
+        raise MusterError(f"{place}: {type(error).__name__}: {error}; expected a click command") from error
+    if not isinstance(command, click.Command):
+        raise MusterError(f"{place}: {shown(command)}; expected a click command")
+    return command
+
+
+def _summary(found: EntryPoint) -> str:
+    """The first sentence of a verb's help; why it is missing, where the verb cannot be loaded."""
+    try:
+        return _loaded(found).get_short_help_str(limit=200)
+    except MusterError as error:
+        return f"cannot be loaded: {error}"
 
 
 def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:

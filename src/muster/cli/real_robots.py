@@ -185,7 +185,7 @@ def carried_out(
                 ignore=wishes.ignore,
                 record=file,
                 observers=(*observers, *viewers),
-                on_happening=None if wishes.quiet else tell,
+                on_event=None if wishes.quiet else tell,
                 halt=halt,
             )
             at_end()

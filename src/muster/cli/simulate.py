@@ -156,7 +156,7 @@ def command(
             "on_look": looks,
         }
         footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
-        how["on_happening"] = tell if speed is not None and not quiet else None
+        how["on_event"] = tell if speed is not None and not quiet else None
         with shown_live(loaded, foxglove, quiet=quiet) as observers, ctrl_c_halts() as halt:
             report = simulate(loaded, planned, record=file, observers=observers, halt=halt, **how)
     if found is not None and looks is not None:

@@ -2,18 +2,18 @@
 
 from muster.allocation.rewiring import rewire
 from muster.execution.completed_work import Deed, Past
-from muster.execution.executor import Executor, Happening
+from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision
-from muster.execution.record import Observer, Recorder
+from muster.execution.record import ExecutionEvent, Observer, Recorder
 from muster.execution.report import Report, broken_off, report_of
 from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of
 
 __all__ = [
     "Deed",
+    "ExecutionEvent",
     "Executor",
-    "Happening",
     "Limits",
     "Observer",
     "Past",

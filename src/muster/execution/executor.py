@@ -1,15 +1,14 @@
 """The executor: carries a plan out through robot ports. Sans-I/O and in virtual time: `tick(now)` does all.
 
-Each robot takes the next task of its route when it is available (TCF thesis, 5.3.1: `a_i`), goes there, waits until all
-prerequisites have ended, does the work, and at last goes where its route ends. The monitor and events change what is
-to be done, and the rest is planned again (`reallocation`).
+Each robot takes the next task of its route when it is available ([tcf-thesis], 5.3.1: `a_i`), goes there, waits until
+all prerequisites have ended, does the work, and at last goes where its route ends. The monitor and events change what
+is to be done, and the rest is planned again (`reallocation`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_hand
@@ -17,7 +16,7 @@ from muster.execution.completed_work import Past
 from muster.execution.dispatch import Dispatch
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
-from muster.execution.record import NoObserver, Observer
+from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import Rest
 from muster.execution.report import Account
 from muster.execution.robot_state import Activity, Hand
@@ -32,15 +31,6 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
-
-
-@dataclass(frozen=True)
-class Happening:
-    """Something that happened: when (seconds), what, and plain data."""
-
-    at_s: float
-    kind: str
-    data: Mapping[str, Any]
 
 
 class Peers(Protocol):
@@ -107,7 +97,7 @@ class Executor:
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
         self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in own}
         self.ended_s: float | None = None
-        self.happenings: list[Happening] = []
+        self.events: list[ExecutionEvent] = []
         self.revisions: list[Revision] = []
         self.planned = plan
         self._travel = travel_of(mission) if travel is None else travel
@@ -208,12 +198,12 @@ class Executor:
         if not at_work and task not in self.ledger.ends_s:
             self.ledger.end(task, robot, self.now_s)
 
-    def tick(self, now: float) -> Sequence[Happening]:
+    def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Go on to a time, not before the last, in seconds; returns what happened.
 
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
-        first = len(self.happenings)
+        first = len(self.events)
         self.come_to(now)
         self._hear()
         for hand in self._present:
@@ -223,7 +213,7 @@ class Executor:
         self._go_on()
         self._notice_standstill()
         self._end_if_over()
-        return self.happenings[first:]
+        return self.events[first:]
 
     def come_to(self, now: float) -> None:
         """Let the clock go on without a look at anybody: what is reported or told next happens then."""
@@ -310,7 +300,7 @@ class Executor:
 
     def _end_if_over(self) -> None:
         if self._alone and not self.done and self.idle and not self._may_bring_work:
-            last = max((happening.at_s for happening in self.happenings), default=self.begun_s)
+            last = max((event.time_s for event in self.events), default=self.begun_s)
             self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
             for task, reason in self.lost().items():
                 self.tell("lost", {"task": task, "reason": reason})
@@ -344,5 +334,5 @@ class Executor:
 
     def tell(self, kind: str, data: Mapping[str, Any]) -> None:
         """Keep, and tell the observer, that something happened now."""
-        self.happenings.append(Happening(self.now_s, kind, data))
+        self.events.append(ExecutionEvent(self.now_s, kind, data))
         self._observer.on_event(self.now_s, kind, data)

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
+
+
+@dataclass(frozen=True)
+class ExecutionEvent:
+    """An event of a mission that is being carried out: when (seconds of the mission's clock), what, and plain data."""
+
+    time_s: float
+    kind: str
+    data: Mapping[str, Any]
 
 
 class Observer(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.report.record import Happening
+from muster.report.record import ExecutionEvent
 from muster.report.record.mission_state import OUT
 
 TRAVEL, WAITING, WORK = "travel", "waiting", "work"
@@ -25,7 +25,7 @@ class Span:
     until_s: float
 
 
-def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
+def spans(events: Sequence[ExecutionEvent], duration_s: float) -> list[Span]:
     """The spans in a record's events, in the order of their ends; of those of no length only work is told.
 
     A span ends when the robot begins something else, ends the task or fails, when the task is cancelled, lost, or given
@@ -54,7 +54,7 @@ def spans(events: Sequence[Happening], duration_s: float) -> list[Span]:
     return found
 
 
-def _breaks_off(event: Happening, robot: str, task: str, kind: str) -> bool:
+def _breaks_off(event: ExecutionEvent, robot: str, task: str, kind: str) -> bool:
     """Whether a robot leaves what it does for a task because of this."""
     if event.kind in _BREAKS_OFF:
         who = event.data.get("robot")

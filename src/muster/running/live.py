@@ -32,7 +32,7 @@ from muster.motion.robot_paths import Roads
 from muster.running.fleet_clock import FromZero
 
 if TYPE_CHECKING:
-    from muster.execution import Happening, Report
+    from muster.execution import ExecutionEvent, Report
 
 LOOK_S = 0.2
 """Seconds between two looks at the robots, where nothing is heard before."""
@@ -48,7 +48,7 @@ def carry_out_live(
     seed: int = 0,
     ignore: str | Collection[str] = (),
     recorder: Recorder | None = None,
-    on_happening: Callable[[Happening], None] | None = None,
+    on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
@@ -65,7 +65,7 @@ def carry_out_live(
         rules that do not hold, whatever the plan says of itself.
     recorder
         is told all that happens, and where robots say that they are.
-    on_happening
+    on_event
         is told what happens, as it happens.
 
     Raises
@@ -78,10 +78,10 @@ def carry_out_live(
     try:
         while not halt.is_set():
             live.look()
-            if on_happening is not None:
-                for happening in live.happenings[told:]:
-                    on_happening(happening)
-                told = len(live.happenings)
+            if on_event is not None:
+                for event in live.events[told:]:
+                    on_event(event)
+                told = len(live.events)
             if live.done:
                 break
             live.hear(live.time_s + LOOK_S)
@@ -153,9 +153,9 @@ class Live:
         return self.executor.done
 
     @property
-    def happenings(self) -> Sequence[Happening]:
+    def events(self) -> Sequence[ExecutionEvent]:
         """All that has happened so far."""
-        return self.executor.happenings
+        return self.executor.events
 
     @property
     def status(self) -> Status:

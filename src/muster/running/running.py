@@ -13,13 +13,13 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
-from muster.planning.planning import require_mission
+from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
     import threading
 
     from muster.bridges.fleet import Fleet
-    from muster.execution import Happening, Recorder, Report
+    from muster.execution import ExecutionEvent, Recorder, Report
     from muster.report.film import Footage
     from muster.running.negotiated.simulation import Negotiation
 
@@ -87,7 +87,7 @@ def carry_out(
     ignore: str | Collection[str] = (),
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
-    on_happening: Callable[[Happening], None] | None = None,
+    on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
 ) -> Report:
     """Carry a plan out with real robots, in real time, to its end; what is left is planned again when robots fail.
@@ -104,10 +104,10 @@ def carry_out(
         a file (.mcap) that is to hold what happened; needs the extra `record`.
     observers
         who else is told, such as `muster.report.live.FoxgloveServer`.
-    on_happening
+    on_event
         is told what happens, as it happens.
     halt
-        where it is set, by another thread or by `on_happening`, robots stop where they are, and it ends.
+        where it is set, by another thread or by `on_event`, robots stop where they are, and it ends.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def carry_out(
     remarks: list[str] = []
     with _recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
         report = carry_out_live(
-            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_happening=on_happening, halt=halt
+            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_event=on_event, halt=halt
         )
     return replace(report, remarks=(*report.remarks, *remarks))
 

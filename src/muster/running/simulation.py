@@ -33,7 +33,7 @@ from muster.simulation import NO_NOISE, KinematicWorld, Noise, SimulatedWorld
 from muster.verification import verify
 
 if TYPE_CHECKING:
-    from muster.execution.executor import Happening
+    from muster.execution.record import ExecutionEvent
     from muster.execution.report import Report
 
 OnWorld = Callable[[SimulatedWorld], None]
@@ -131,9 +131,9 @@ class Simulation:
         return self._executor.plan
 
     @property
-    def happenings(self) -> Sequence[Happening]:
+    def events(self) -> Sequence[ExecutionEvent]:
         """All that has happened so far."""
-        return self._executor.happenings
+        return self._executor.events
 
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
@@ -141,20 +141,20 @@ class Simulation:
         told = {name: port.telemetry() for name, port in self._hearing.ports.items()}
         return {name: said.position for name, said in told.items() if said is not None}
 
-    def advance(self, until_s: float) -> Sequence[Happening]:
+    def advance(self, until_s: float) -> Sequence[ExecutionEvent]:
         """Go on until something happens, until the mission is over, or up to a time; returns what happened.
 
         It goes on by whole steps: what falls into a step, an event or `until_s`, comes at its end.
         """
-        first = len(self._executor.happenings)
-        while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.happenings) == first:
+        first = len(self._executor.events)
+        while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.events) == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._befalls(self._ahead.pop(0))
             self._look()
             self._tick()
-        return self._executor.happenings[first:]
+        return self._executor.events[first:]
 
     def report(self, event: Event) -> None:
         """Let something happen now that the mission file did not foresee; its `at_s` does not count.
@@ -280,7 +280,7 @@ def carry_out(
     plan: Plan,
     *,
     speed: float | None = None,
-    on_happening: Callable[[Happening], None] | None = None,
+    on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
     **how: Any,
 ) -> Report:
@@ -290,7 +290,7 @@ def carry_out(
     ----------
     speed
         how many times as fast as the wall clock; None: as fast as it goes.
-    on_happening
+    on_event
         is told what happens, as it happens.
     halt
         when it is set, carrying out stops, and the report is of what was done until then.
@@ -302,8 +302,8 @@ def carry_out(
             simulation.advance(simulation.time_s + LOOK_S)
             if speed is not None:
                 halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
-            if on_happening is not None:
-                for happening in simulation.happenings[told:]:
-                    on_happening(happening)
-                told = len(simulation.happenings)
+            if on_event is not None:
+                for event in simulation.events[told:]:
+                    on_event(event)
+                told = len(simulation.events)
         return simulation.result()

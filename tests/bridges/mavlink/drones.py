@@ -89,7 +89,7 @@ def flown(there, kind=PX4, faults=None, height_m=None, **settings):
     sky, heard = Sky(there, kind, faults), []
     fleet = sky.fleet(there, height_m, **settings)
     try:
-        report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_happening=heard.append)
+        report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_event=heard.append)
         fleet.advance(fleet.time_s + 3.0)
     finally:
         fleet.close()

@@ -107,7 +107,7 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
         fleet.sessions["r_0"].fence = lambda here, waypoints: "way to (1, 2); expected none"
     if case.confusing:
         confuse(fleet.sessions["r_0"].craft.seen)
-    report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_happening=heard.append)
+    report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_event=heard.append)
     fleet.advance(fleet.time_s + 5.0)
     fleet.close()
     sky.close()
@@ -116,13 +116,13 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     assert [(found.robot, found.kind) for found in fleet.faults] == [("r_0", fault)]
     allowed = re.split(r"[,;] or ", row["the drone"])
     assert state(drone, kind) in allowed, (state(drone, kind), hex(drone.mode), drone.flight)
-    out = [happening for happening in heard if happening.kind == "robot_fails"]
-    assert [happening.data["robot"] for happening in out] == ["r_0"]
+    out = [event for event in heard if event.kind == "robot_fails"]
+    assert [event.data["robot"] for event in out] == ["r_0"]
     assert out[0].data["reason"].startswith(f"{fault.words}: ")
     assert set(report.tasks_done) == {"t_0", "t_1"}
     assert {task.robot for task in report.tasks} == {"r_1"}
     assert sky.drones["r_1"].armed
-    causes = [cause for happening in heard if happening.kind == "replanned" for cause in happening.data["causes"]]
+    causes = [cause for event in heard if event.kind == "replanned" for cause in event.data["causes"]]
     assert "robot_fails" in [cause["kind"] for cause in causes]
 
 

@@ -154,11 +154,11 @@ def test_a_drone_with_too_little_in_its_battery_for_its_way_is_planned_for_again
     sky, heard = Sky(there), []
     sky.drones["r_1"].battery = 0.3  # of 400 m: 120 m
     fleet = sky.fleet(there)
-    report = carry_out_live(there, plan, fleet, on_happening=heard.append)
+    report = carry_out_live(there, plan, fleet, on_event=heard.append)
     fleet.close()
     sky.close()
     assert {task.task: task.robot for task in report.tasks} == {"near": "r_1", "far": "r_0"}
-    (refused,) = [happening.data for happening in heard if happening.kind == "task_refused"]
+    (refused,) = [event.data for event in heard if event.kind == "task_refused"]
     assert (refused["task"], refused["robot"]) == ("far", "r_1")
     assert refused["reason"].startswith("capacity: ")
     assert fleet.faults == []

@@ -46,7 +46,7 @@ def test_three_drones_one_of_which_runs_low(kind, offboard):
         assert not drone.armed
     before = {robot: len(drone.heard) for robot, drone in sky.drones.items()}
 
-    report = carry_out_live(there, plan, fleet, on_happening=heard.append)
+    report = carry_out_live(there, plan, fleet, on_event=heard.append)
     ended = {robot: len(drone.heard) for robot, drone in sky.drones.items()}
     fleet.advance(fleet.time_s + 30)
     fleet.close()
@@ -61,10 +61,10 @@ def test_three_drones_one_of_which_runs_low(kind, offboard):
     left = planned["r_1"][len(first_done) :]
     assert left
     assert {by[name] for name in left} <= {"r_0", "r_2"}
-    (low,) = [happening for happening in heard if happening.kind == "robot_fails"]
+    (low,) = [event for event in heard if event.kind == "robot_fails"]
     assert low.data == {"robot": "r_1", "reason": "low battery: 10% left; expected 25%"}
-    (again,) = [happening for happening in heard if happening.kind == "replanned"]
-    assert again.at_s >= low.at_s
+    (again,) = [event for event in heard if event.kind == "replanned"]
+    assert again.time_s >= low.time_s
     assert set(again.data["moved"]) >= set(left)
     assert report.reallocations == 1
     assert [fault.kind for fault in fleet.faults] == [Kind.LOW_BATTERY]

@@ -207,7 +207,7 @@ def test_a_task_that_a_robot_does_not_get_to_is_done_by_another(graph):
     there = mission("r_0", "r_1", tasks=((2.0, 0.0), (2.0, 3.0)))
     fleet = navigated(there)
     happened = []
-    report = carry_out_live(there, plan(r_0=("t_0",), r_1=("t_1",)), fleet, on_happening=happened.append)
+    report = carry_out_live(there, plan(r_0=("t_0",), r_1=("t_1",)), fleet, on_event=happened.append)
     assert set(report.tasks_done) == {"t_0", "t_1"}
     refused = [dict(one.data) for one in happened if one.kind == "task_refused"]
     assert refused == [{"task": "t_0", "robot": "r_0", "reason": "navigate_to_pose: aborted (no way)"}]

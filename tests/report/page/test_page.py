@@ -18,7 +18,7 @@ from muster.report.page import data as data_of_page
 from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
-from muster.report.record import Happening, Recording, Tracks
+from muster.report.record import ExecutionEvent, Recording, Tracks
 
 pytest.importorskip("mcap")
 
@@ -87,12 +87,12 @@ def test_ten_minutes_of_six_robots_are_less_than_two_megabytes():
         robots=[Robot(id=f"r_{k}", position=(0, 0)) for k in range(6)], tasks=[Task(id="t", position=(0, 0))]
     )
     steps = np.random.default_rng(1).normal(0, 0.1, (6001, 6, 3))
-    events = tuple(Happening(k * 0.5, "starts", {"robot": "r_0", "task": "t"}) for k in range(1200))
+    events = tuple(ExecutionEvent(k * 0.5, "starts", {"robot": "r_0", "task": "t"}) for k in range(1200))
     assert len(page_text(recording(mission, steps.cumsum(axis=0), events=events)).encode()) < 2e6
 
 
 def test_no_id_ends_the_data(pair):
-    events = (Happening(0.0, "lost", {"task": "</script><script>alert(1)//", "reason": "@@STYLE@@"}),)
+    events = (ExecutionEvent(0.0, "lost", {"task": "</script><script>alert(1)//", "reason": "@@STYLE@@"}),)
     text = page_text(recording(pair, np.zeros((1, 2, 3)), events=events))
     assert text.count("</script>") == 2
     (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text, flags=re.DOTALL)
@@ -141,7 +141,7 @@ def test_the_runs_of_an_image_are_its_cells(cells, columns):
 
 def test_spans():
     def event(time, kind, **data):
-        return Happening(time, kind, data)
+        return ExecutionEvent(time, kind, data)
 
     a, b = {"robot": "a", "task": "t"}, {"robot": "b", "task": "u"}
     events = [
@@ -169,11 +169,11 @@ def test_spans():
 
 def test_a_way_to_a_task_that_another_has_now_ends_there_but_work_goes_on():
     events = [
-        Happening(0, "sets_out", {"robot": "a", "task": "t"}),
-        Happening(0, "sets_out", {"robot": "b", "task": "u"}),
-        Happening(0, "starts", {"robot": "c", "task": "v"}),
-        Happening(1, "sets_out", {"robot": "d", "task": "x"}),
-        Happening(3, "replanned", {"moved": {"t": ["a", "b"], "v": ["c", "b"]}, "dropped": {"x": "no robot"}}),
+        ExecutionEvent(0, "sets_out", {"robot": "a", "task": "t"}),
+        ExecutionEvent(0, "sets_out", {"robot": "b", "task": "u"}),
+        ExecutionEvent(0, "starts", {"robot": "c", "task": "v"}),
+        ExecutionEvent(1, "sets_out", {"robot": "d", "task": "x"}),
+        ExecutionEvent(3, "replanned", {"moved": {"t": ["a", "b"], "v": ["c", "b"]}, "dropped": {"x": "no robot"}}),
     ]
     assert spans(events, 10) == [
         Span("a", "t", "travel", 0, 3),

@@ -75,7 +75,7 @@ class Company:
                 pass
             self.net.run(now)
             for robot, pilot in self.pilots.items():
-                self.told += [(h.at_s, robot, h.kind, h.data) for h in pilot.tick(now)]
+                self.told += [(h.time_s, robot, h.kind, h.data) for h in pilot.tick(now)]
         return until()
 
     @property

@@ -15,7 +15,7 @@ MISSION = Mission(
 
 @pytest.fixture
 def log():
-    return Log(Problem.compile(MISSION), NoObserver(), lambda happening: None)
+    return Log(Problem.compile(MISSION), NoObserver(), lambda event: None)
 
 
 def take(log, robot, came=None, began=None, ended=None):
@@ -37,7 +37,7 @@ def test_a_task_counts_for_the_robot_that_has_ended_it_first(log):
     take(log, "b", ended=9.0)
     (task,) = report(log).tasks
     assert (task.robot, task.waiting_s) == ("a", 1.0)
-    assert [h.data["robots"] for h in log.happenings if h.kind == "twice"] == [["a", "b"]]
+    assert [h.data["robots"] for h in log.events if h.kind == "twice"] == [["a", "b"]]
 
 
 def test_work_of_two_ends_though_the_one_that_began_first_has_failed(log):

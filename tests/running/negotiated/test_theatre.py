@@ -61,14 +61,14 @@ class Processes:
         return {"a": SimpleNamespace(stage=Stage(3, b"base"))}
 
 
-def did(*happenings, usages=()):
-    return Did(happenings=happenings, used=1.0, usages=dict(usages), idle=True, settled=True, heard=0)
+def did(*events, usages=()):
+    return Did(events=events, used=1.0, usages=dict(usages), idle=True, settled=True, heard=0)
 
 
 def theatre_of(events, tmp_path, last_words=(), noise=NO_NOISE):
     mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
     order = order_of(Problem.compile(mission), Negotiation(), tmp_path)
-    log = Log(order.problem, NoObserver(), lambda happening: None, order.late)
+    log = Log(order.problem, NoObserver(), lambda event: None, order.late)
     theatre = Theatre(mission, KinematicWorld(mission, noise=noise), order, log)
     theatre.team = Processes(theatre.hear, last_words)
     return theatre, log
@@ -79,7 +79,7 @@ def test_what_a_robot_began_just_before_it_failed_another_does_not_begin_twice(t
     theatre, log = theatre_of([Event(at_s=0, robot_fails="a")], tmp_path, [words])
     theatre.go_on(1.0)
     theatre.hear("b", did((1.0, "arrives", {"task": "t"}), (1.0, "starts", {"task": "t"})))
-    assert "twice" not in {happening.kind for happening in log.happenings}
+    assert "twice" not in {event.kind for event in log.events}
     assert log.ledger.starts_s == {"t": 1.0}
 
 
@@ -125,7 +125,7 @@ def test_a_robot_that_has_no_process_left_does_not_return(tmp_path):
     theatre.team.lives = False
     while theatre.time_s < 0.3:
         theatre.go_on(1.0)
-    assert [happening.kind for happening in log.happenings] == ["without_effect"]
+    assert [event.kind for event in log.events] == ["without_effect"]
 
 
 def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):
@@ -155,7 +155,7 @@ def test_of_what_cameras_find_one_robot_is_told(tmp_path):
     while theatre.time_s < 0.3:
         theatre.go_on(1.0)
     assert [(robot, word.event) for robot, word in theatre.team.told if isinstance(word, Befalls)] == [("a", new)]
-    assert [(h.kind, h.data) for h in log.happenings if h.kind == "found"] == [("found", {"tag": 4})]
+    assert [(h.kind, h.data) for h in log.events if h.kind == "found"] == [("found", {"tag": 4})]
 
 
 def test_what_a_robot_sees_that_is_cut_off_or_gone_nobody_hears(tmp_path):

@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from muster.execution.record import ExecutionEvent
 from muster.mission.event_descriptions import event_line
 from muster.motion.grid import Floats
-from muster.report.record.recording import Happening
 
 Picture = npt.NDArray[np.uint8]
 Rgb = tuple[int, int, int]
@@ -23,7 +23,7 @@ _NOT_TOLD = ("sets_out", "arrives", "starts", "robot_at_end", "mission_ended")
 _LONGEST = 64
 
 
-def caption(told: Happening) -> str | None:
+def caption(told: ExecutionEvent) -> str | None:
     """An event in a few words, such as `r_0 has done task 7`; None of what one sees."""
     if told.kind in _NOT_TOLD:
         return None

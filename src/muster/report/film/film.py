@@ -7,6 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from muster.execution.record import ExecutionEvent
 from muster.mission.errors import ParameterError
 from muster.report.film.captions import (
     QUIET_INK,
@@ -23,7 +24,6 @@ from muster.report.film.files import film_file
 from muster.report.film.footage import Footage
 from muster.report.film.scenery import FilmSet
 from muster.report.record.mission_state import ALARMING, DONE
-from muster.report.record.recording import Happening
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
 
 LONGEST_S = 24.0
@@ -113,7 +113,7 @@ def _plain(age_s: float) -> float:
     return min(1.0, max(0.0, (_SHOWN_S - age_s) / _FADES_S))
 
 
-def _color(told: Happening, scene: FilmSet) -> Rgb:
+def _color(told: ExecutionEvent, scene: FilmSet) -> Rgb:
     robots = list(scene.moments.situation.robots)
     if told.kind in ALARMING:
         return rgb(ALARM)

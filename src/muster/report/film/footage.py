@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from muster.execution.record import ExecutionEvent
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
-from muster.report.record.recording import Happening
 
 
 class Footage:
@@ -29,7 +29,7 @@ class Footage:
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
-        self.events: list[Happening] = []
+        self.events: list[ExecutionEvent] = []
         self.report: Mapping[str, Any] | None = None
         self._world: Any = None
         self._times: list[float] = []
@@ -61,7 +61,7 @@ class Footage:
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """Keep what has happened."""
-        self.events.append(Happening(now, kind, data))
+        self.events.append(ExecutionEvent(now, kind, data))
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
         """What robots say of themselves is not to be seen."""

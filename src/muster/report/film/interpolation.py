@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from muster.execution.record import ExecutionEvent
 from muster.motion.grid import Floats
 from muster.report.film.footage import Footage
 from muster.report.record.mission_state import OUT, Situation
-from muster.report.record.recording import Happening
 
 
 class Moments:
@@ -26,7 +26,7 @@ class Moments:
         """Tasks that are under way or done, and who does or did them."""
         self.out: set[str] = set()
         """Robots that take no part."""
-        self.told: list[Happening] = []
+        self.told: list[ExecutionEvent] = []
         self._ahead = list(footage.events)
 
     @property
@@ -55,7 +55,7 @@ class Moments:
         poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
         return poses
 
-    def _take(self, told: Happening) -> None:
+    def _take(self, told: ExecutionEvent) -> None:
         task, robot = told.data.get("task"), told.data.get("robot")
         self.situation.take(told.kind, told.data)
         if told.kind in ("starts", "ends"):

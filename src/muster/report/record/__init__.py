@@ -1,7 +1,8 @@
 """Records: one MCAP file of a mission that is carried out, and the same read back."""
 
+from muster.execution.record import ExecutionEvent
 from muster.report.record.reader import read_record
-from muster.report.record.recording import Happening, PlanVersion, Recording, Tracks
+from muster.report.record.recording import PlanVersion, Recording, Tracks
 from muster.report.record.writer import RecordWriter
 
-__all__ = ["Happening", "PlanVersion", "RecordWriter", "Recording", "Tracks", "read_record"]
+__all__ = ["ExecutionEvent", "PlanVersion", "RecordWriter", "Recording", "Tracks", "read_record"]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from muster.execution.record import ExecutionEvent
 from muster.mission.errors import Finding, InputError
 from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
@@ -17,7 +18,7 @@ from muster.mission.plan import plan_from
 from muster.mission.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
 from muster.report.record.mission_state import Situation
-from muster.report.record.recording import Happening, PlanVersion, Recording, Tracks
+from muster.report.record.recording import PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
 from muster.report.record.writer import require_mcap
 
@@ -97,7 +98,7 @@ def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 
 def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Recording:
     mission = _mission(file, text)
-    events = tuple(Happening(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
+    events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
     situation = Situation.after(mission, ((event.kind, event.data) for event in events))
     plans = messages.get("/muster/plan", [])
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])

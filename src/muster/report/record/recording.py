@@ -10,21 +10,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from muster.execution.record import ExecutionEvent
 from muster.mission.model import Mission, Point, Robot
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.report.record.mission_state import Situation
 
 Floats = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Happening:
-    """An event: when, seconds of the mission's clock; of which kind; and what is said of it."""
-
-    time_s: float
-    kind: str
-    data: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -88,7 +80,7 @@ class Recording:
     mission_text: str
     image: Grid | None
     plans: tuple[PlanVersion, ...]
-    events: tuple[Happening, ...]
+    events: tuple[ExecutionEvent, ...]
     bids: tuple[Mapping[str, Any], ...]
     tracks: Tracks
     report: Mapping[str, Any] | None

@@ -62,7 +62,7 @@ class Did:
 
     Parameters
     ----------
-    happenings
+    events
         (seconds, kind, data) of each, as an executor tells them.
     used
         so far, in the mission's unit.
@@ -76,7 +76,7 @@ class Did:
         how many times it was told something that befalls.
     """
 
-    happenings: Sequence[tuple[float, str, Mapping[str, Any]]]
+    events: Sequence[tuple[float, str, Mapping[str, Any]]]
     used: float
     usages: Mapping[str, tuple[float, float]]
     idle: bool

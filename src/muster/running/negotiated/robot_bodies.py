@@ -58,7 +58,7 @@ class Theatre:
             self._orders[robot] = self._world.ports[robot].send(word.waypoints)
         elif isinstance(word, Did):
             self._did[robot], self._log.used[robot] = word, word.used
-            for at_s, kind, data in word.happenings:
+            for at_s, kind, data in word.events:
                 self._log.take(robot, at_s, kind, data, word.used)
             for task, usage in word.usages.items():
                 self._log.note_usage(task, usage)

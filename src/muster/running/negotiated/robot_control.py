@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from muster.allocation.problem import Problem
-from muster.execution import Executor, Happening, Revision, travel_of, way_of
+from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
 from muster.execution.reallocation import usage_ahead
 from muster.execution.remaining_problem import Rest
@@ -16,6 +16,7 @@ from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.motion.port import RobotPort
+from muster.negotiation.epoch_base import tasks_added
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
@@ -34,7 +35,7 @@ _ITS_OWN = {
     "robot_stuck",
     "task_refused",
 }
-"""Happenings that nobody else knows of."""
+"""Events that nobody else knows of."""
 
 
 class Pilot:
@@ -89,16 +90,16 @@ class Pilot:
         """Of a task that it has done: planned, flown."""
         return self._executor.ledger.usage[task]
 
-    def tick(self, now: float) -> Sequence[Happening]:
+    def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Go on to a time, after what the body said then; returns what the robot did, and what befell its body."""
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
             self._executor.plan_again("agreed", {})
-        happenings = [happening for happening in self._executor.tick(now) if happening.kind in _ITS_OWN]
-        for happening in happenings:
-            if happening.kind == "ends":
-                self._negotiator.finish(happening.data["task"])
-        return happenings
+        events = [event for event in self._executor.tick(now) if event.kind in _ITS_OWN]
+        for event in events:
+            if event.kind == "ends":
+                self._negotiator.finish(event.data["task"])
+        return events
 
     def befalls(self, event: Event) -> str | None:
         """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""
@@ -131,15 +132,16 @@ class Pilot:
     def _learn(self) -> None:
         """Take in what others did, and what is new, as it is known among the robots.
 
-        What is heard of a task before it is heard that there is one waits for that.
+        A fact of a task that is not known yet waits until it is, and so does a new task for those that it waits for.
         """
         if self._known == self._negotiator.known:
             return
         facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
-        places = {fact.task: fact for fact in facts if fact.kind == "moved"}  # the last of each
+        added = frozenset(tasks_added(facts, self._negotiator.rules))
         tasks = self._executor.ledger.tasks
         for fact in facts:
-            if fact in self._learned or (fact.kind != "added" and fact.task not in tasks):
+            holds = fact in added if fact.kind in ("added", "moved") else fact.task in tasks
+            if fact in self._learned or not holds:
                 continue
             self._learned.add(fact)
             if fact.kind == "done":
@@ -147,7 +149,7 @@ class Pilot:
             elif fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
                 self._negotiator.abandon(fact.task)
-            elif fact.kind == "moved" and fact is places[fact.task]:
+            elif fact.kind == "moved":
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
                 self._executor.report(Event(at_s=0.0, move_task=move))
             elif fact.kind == "added" and fact.task not in tasks:

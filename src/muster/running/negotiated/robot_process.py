@@ -89,19 +89,19 @@ class Being:
             why_not = pilot.befalls(event)
             self._refused += [] if why_not is None else [why_not]
         self._befallen.clear()
-        happenings = [(h.at_s, h.kind, h.data) for h in pilot.tick(self._now_s)]
-        happenings += [(self._now_s, "event_refused", {"reason": reason}) for reason in self._refused]
+        events = [(event.time_s, event.kind, event.data) for event in pilot.tick(self._now_s)]
+        events += [(self._now_s, "event_refused", {"reason": reason}) for reason in self._refused]
         self._refused.clear()
         did = Did(
-            happenings=happenings,
+            events=events,
             used=pilot.used,
-            usages={str(data["task"]): pilot.usage(data["task"]) for _, kind, data in happenings if kind == "ends"},
+            usages={str(data["task"]): pilot.usage(data["task"]) for _, kind, data in events if kind == "ends"},
             idle=pilot.idle,
             settled=self._node.negotiator.settled,
             heard=self._heard,
         )
         if did != self._told:
-            self._told = replace(did, happenings=[], usages={})
+            self._told = replace(did, events=[], usages={})
             self._seat.pipe.send(did)
 
     def _steer(self, steer: Steer) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.allocation.problem import Problem
-from muster.execution import Happening, Recorder, Report, report_of
+from muster.execution import ExecutionEvent, Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
@@ -59,7 +59,7 @@ def negotiate_and_carry_out(
     speed: float | None = None,
     recorder: Recorder | None = None,
     on_world: OnWorld | None = None,
-    on_happening: Callable[[Happening], None] | None = None,
+    on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
     on_look: OnLook | None = None,
 ) -> Report:
@@ -94,7 +94,7 @@ def negotiate_and_carry_out(
         if on_world is not None:
             on_world(bodies)
         order = order_of(problem, negotiation, memory)
-        log = Log(order.problem, recorder or NoObserver(), on_happening or (lambda happening: None), order.late)
+        log = Log(order.problem, recorder or NoObserver(), on_event or (lambda event: None), order.late)
         theatre = Theatre(problem.mission, bodies, order, log)
         lookout = lookout_for(problem.mission, bodies, theatre.ports, noise=noise, seed=seed, on_look=on_look)
         if lookout is not None:

@@ -1,4 +1,4 @@
-"""What a team did, put together from what its robots tell: happenings, states of tasks, the plan, the figures."""
+"""What a team did, put together from what its robots tell: events, states of tasks, the plan, the figures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from muster.allocation.problem import Problem
-from muster.execution import Happening, Observer
+from muster.execution import ExecutionEvent, Observer
 from muster.execution.reallocation import told
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
@@ -28,7 +28,7 @@ class Log:
         what the team negotiates about.
     observer
         is told all.
-    on_happening
+    on_event
         is told what happens.
     late
         robots that are not there before they join.
@@ -38,17 +38,18 @@ class Log:
         self,
         problem: Problem,
         observer: Observer,
-        on_happening: Callable[[Happening], None],
+        on_event: Callable[[ExecutionEvent], None],
         late: Collection[str] = (),
     ) -> None:
         self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisite"))
-        self.happenings: list[Happening] = []
+        self.events: list[ExecutionEvent] = []
         self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
-        self._observer, self._on_happening = observer, on_happening
+        self._observer, self._on_event = observer, on_event
         self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
         self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
         self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
+        self._done_twice: dict[str, tuple[str, ...]] = {}
         self._out: dict[str, str] = {}  # robot: why
         self._plans: list[Plan] = []
         self._causes: list[dict[str, Any]] = []
@@ -122,14 +123,14 @@ class Log:
     def tell(self, at_s: float, kind: str, data: Mapping[str, Any]) -> None:
         """Something has happened; what is heard late of it is kept as it is heard, so that times do not go back."""
         self._now_s = max(self._now_s, at_s)
-        happening = Happening(self._now_s, kind, data)
-        self.happenings.append(happening)
+        event = ExecutionEvent(self._now_s, kind, data)
+        self.events.append(event)
         self._observer.on_event(self._now_s, kind, data)
-        self._on_happening(happening)
+        self._on_event(event)
 
     def end(self) -> None:
         """The mission is over, since the last robot was done."""
-        self._now_s = self.happenings[-1].at_s if self.happenings else 0.0
+        self._now_s = self.events[-1].time_s if self.events else 0.0
         for task, reason in self.lost().items():
             self.tell(self._now_s, "lost", {"task": task, "reason": reason})
         self.tell(self._now_s, "mission_ended", {})
@@ -158,12 +159,15 @@ class Log:
             usage_planned=usages,
             mission_time_s=self._now_s,
             reallocations=len(self._plans) - 1,
+            done_twice=self._done_twice,
         )
 
     def _start(self, robot: str, task: str, at_s: float) -> None:
         self._began_s[robot, task] = at_s
         other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
         if other != robot:
+            robots = self._done_twice.setdefault(task, (other,))
+            self._done_twice[task] = (*robots, robot) if robot not in robots else robots
             self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
         elif task not in self.ledger.ends_s and task not in self._at_work:
             self._at_work[task] = robot

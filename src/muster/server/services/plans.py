@@ -60,7 +60,7 @@ class Plans:
         async with self._actions.of(who, "plan.upload", {"mission": mission}):
             version = await self._missions.stored(mission)
             given = for_work(version.text, version.files, mission)
-            adopted = (await self._pool.run("adopt", {"mission": given, "plan": plan}))["plan"]
+            adopted = (await self._pool.run("upload_plan", {"mission": given, "plan": plan}))["plan"]
             return await asyncio.to_thread(
                 self._store.plans.add, mission, version.version, "uploaded", who.name, adopted
             )
@@ -68,7 +68,7 @@ class Plans:
     async def verdict(
         self, plan: int, ignore: Sequence[str] | None = None, objective: str | None = None
     ) -> dict[str, Any]:
-        """What the judge says: as the task `verdict` gives it.
+        """What the judge says: as the task `judge` gives it.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Plans:
         """
         key = (plan, None if ignore is None else tuple(sorted(ignore)), objective)
         if key not in self._verdicts:
-            self._verdicts[key] = await self._asked("verdict", plan, ignore=ignore, objective=objective)
+            self._verdicts[key] = await self._asked("judge", plan, ignore=ignore, objective=objective)
             while len(self._verdicts) > _MOST_VERDICTS:
                 self._verdicts.popitem(last=False)
         self._verdicts.move_to_end(key)
