@@ -145,15 +145,22 @@ def test_what_is_wrong_with_a_plan_says_where(http, yard):
     assert [finding["field"] for finding in found["findings"]] == ["routes"]
 
 
-def test_a_job_that_cannot_be_done_says_why(http, yard):
-    asked = http.post(f"/missions/{yard}/plans", json={"allocator": "serach"})
-    if asked.status_code == 202:
-        while (seen := http.get(f"/jobs/{asked.json()['id']}").json())["state"] in ("queued", "running"):
-            pass
-        assert seen["state"] == "failed"
-        assert "serach" in seen["error"]
-    else:
-        assert "serach" in require_problem(asked, 400)["error"]
+@pytest.mark.parametrize(
+    ("asked", "status", "said"),
+    [
+        ({"allocator": "serach"}, 400, "did you mean 'search'?"),
+        ({"parameters": {"treads": 2}}, 400, "did you mean 'threads'?"),
+        ({"objective": "totl"}, 400, "did you mean 'total'?"),
+        ({"bound": "exat"}, 400, "did you mean 'exact'?"),
+        ({"ignore": ["capacty"]}, 400, "did you mean 'capacity'?"),
+        ({"allocater": "search"}, 422, "allocater"),
+    ],
+)
+def test_a_request_that_nothing_can_meet_is_refused_at_once(http, yard, asked, status, said):
+    before = len(http.get("/jobs").json())
+    found = require_problem(http.post(f"/missions/{yard}/plans", json=asked), status)
+    assert said in found["error"]
+    assert len(http.get("/jobs").json()) == before
 
 
 def test_watchers_change_nothing(guarded, http):
