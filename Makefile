@@ -89,7 +89,7 @@ $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
 
 $(VENV)/developed: $(VENV)/installed
 	@echo "Installing the tools for tests ..."
-	$(BIN)/pip install --quiet --group dev --editable '.[all,bench]' -C cmake.define.MUSTER_WERROR=ON
+	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
 	@touch $@
 
 $(VENV)/made: | prerequisites

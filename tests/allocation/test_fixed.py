@@ -19,7 +19,7 @@ from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
 from muster.mission.plan import Plan, Route
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 
 def plan_of(mission, routes):

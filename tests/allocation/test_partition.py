@@ -12,7 +12,7 @@ from muster.allocation.partition import divide, number_of_parts
 from muster.allocation.problem import Problem
 from muster.allocation.search import SEARCH
 from muster.allocation.stop import Stop
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 
 @given(seed=st.integers(0, 10**6), parts=st.integers(2, 5))

@@ -13,7 +13,7 @@ from muster import core
 from muster.allocation.problem import Problem
 from muster.library import mission_names, mission_path
 from muster.mission.model import Mission, Robot, Rules, Task, TravelTable
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 
 def sent(problem):

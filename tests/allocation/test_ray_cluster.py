@@ -24,7 +24,7 @@ from muster.cli.main import run
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.plan import read_plan
 from muster.mission.yaml_writer import yaml_text
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 ray = pytest.importorskip("ray", reason="needs the extra ray")
 from ray.cluster_utils import Cluster  # noqa: E402

@@ -13,7 +13,7 @@ import muster
 from muster import core
 from muster.allocation.problem import Problem
 from muster.allocation.search import Parameters
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 
 @settings(max_examples=400)

@@ -16,7 +16,7 @@ from muster.execution.remaining_problem import posed
 from muster.execution.travel import travel_of, way_of
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
-from muster_studies.bench import large_mission
+from muster_studies.uniform import large_mission
 
 
 class Kept(Reallocation):

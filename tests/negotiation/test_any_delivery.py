@@ -10,7 +10,7 @@ from muster.allocation.problem import Problem
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import AuctionValuer
-from muster_studies.negotiation.observer import Observer
+from muster.running.negotiation_trials.observer import Observer
 
 ROBOTS = ("r_0", "r_1", "r_2")
 PROBLEM = Problem.compile(line_mission(robots=3, tasks=4, once=("0",))).ready()

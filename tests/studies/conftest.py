@@ -2,7 +2,8 @@
 
 import pytest
 
-from muster_studies import Effort, study_named
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,9 @@ import pytest
 
 from muster.allocation.bids import BID_RULES
 from muster.library import as_corrected, published
-from muster_studies import Effort, study_named
 from muster_studies.auction_5.auctions import BIDS
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 
 ROWS = {
     "5.2": 2,

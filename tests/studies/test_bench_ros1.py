@@ -4,8 +4,8 @@ import pytest
 
 from muster.bridges.ros1 import extra
 from muster.mission.errors import MissingExtraError
-from muster_studies.bench_ros1 import under_load
-from muster_studies.ros1_load import Heard
+from muster_studies.benches.ros1 import under_load
+from muster_studies.benches.ros1_load import Heard
 
 
 class Pose:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from muster.mission.errors import ParameterError
-from muster_studies import Effort, study_named
 from muster_studies.comparison_marks import differences, reached
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 from muster_studies.runs import Case, Outcome, Sample, perform
 from muster_studies.tables import Notes, Table, span
 from muster_studies.thesis_3_3.budgets import budgets

@@ -10,11 +10,12 @@ import pytest
 from muster.cli.main import run as muster
 from muster.motion.map_world import World
 from muster.motion.metrics import risk_factor, trajectory_error
-from muster_studies import Effort, study_named
+from muster_studies.effort import Effort
 from muster_studies.market_5.arena import BEACONS, CYLINDER_RADIUS_M, CYLINDERS, SURVIVORS
 from muster_studies.market_5.localisation import raw_estimates
 from muster_studies.market_5.searches import FARTHEST_M, LASER, ODOMETRY, PLACES, TRUE, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured
+from muster_studies.registry import study_named
 from muster_studies.rescue.metrics import printed_goal_error_m
 from muster_studies.rescue.teams import ARENA, BODY_RADIUS_M, mission_of
 from muster_studies.rescue.tracking import at_same_shares, legs, tracks

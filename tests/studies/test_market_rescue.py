@@ -2,9 +2,10 @@
 
 import pytest
 
-from muster_studies import Effort, study_named
+from muster_studies.effort import Effort
 from muster_studies.market_rescue.comparison import BEST_KNOWN, Comparison, best_known_s
 from muster_studies.market_rescue.scenario import chart
+from muster_studies.registry import study_named
 
 BEST_KNOWN_S = 242.955
 

@@ -13,7 +13,6 @@ from muster import Mission, Robot, Rules, Task
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.mission.model import OBJECTIVES
-from muster_studies.bench import large_mission
 from muster_studies.effort import Effort
 from muster_studies.peers import Peers
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, perform_all, runs_of
@@ -21,6 +20,7 @@ from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer
 from muster_studies.peers.sweep import RUNS, Routed, swept
 from muster_studies.tables import Report, Table
+from muster_studies.uniform import large_mission
 
 SECONDS = 0.15
 EXACT = "CP-SAT"

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import pytest
 
 from muster.mission.errors import ParameterError
-from muster_studies import Effort, Illustrated, Table
+from muster_studies.effort import Effort
+from muster_studies.registry import Illustrated
 from muster_studies.repetition import IllustratedRepetition, Repetition, one_by_one
+from muster_studies.tables import Table
 
 
 @dataclass(frozen=True)

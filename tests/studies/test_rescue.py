@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from muster.cli.main import run as muster
-from muster_studies import Effort, study_named
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 from muster_studies.rescue.failures import TEAMS, failing
 from muster_studies.rescue.flights import Flight, repetitions
 from muster_studies.rescue.metrics import METRICS, Metric, noisy

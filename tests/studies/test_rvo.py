@@ -5,8 +5,9 @@ import pytest
 
 from muster.cli.main import run as muster
 from muster.motion.avoidance import Trajectories
-from muster_studies import Effort, study_named
-from muster_studies.bench_avoidance import Scene
+from muster_studies.benches.avoidance import Scene
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 from muster_studies.rvo.results import Found, verdict
 from muster_studies.rvo.runs import METHODS, Job
 from muster_studies.rvo.scenarios import circle, misprints, scenarios

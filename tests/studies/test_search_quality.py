@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster_studies.search_quality import CASES, Case, Quality, quality
+from muster_studies.benches.search_quality import CASES, Case, Quality, quality
 
 
 @pytest.mark.parametrize("case", [c for c in CASES if c.mission == "16T-3R"], ids=lambda case: case.name)

@@ -10,12 +10,12 @@ import time
 import pytest
 
 from muster.cli.main import run
-from muster_studies import STUDIES
+from muster_studies.registry import STUDIES
 
 WAITING = """
 import sys
 from muster.cli.main import run
-import muster.cli.study, muster_studies
+import muster_studies.study_verb, muster_studies.registry
 print("ready", flush=True)
 sys.exit(run(["study", "thesis-3.3", "--tables", "3.2", "--iterations", "1000000000", "--workers", "2"]))
 """

@@ -3,8 +3,9 @@
 import pytest
 
 from muster.library import as_corrected, published
-from muster_studies import Effort, study_named
 from muster_studies.comparison_marks import TOLERANCE
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 
 ROUTES = {
     "3.5": "tcf-unconstrained",

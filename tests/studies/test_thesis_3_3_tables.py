@@ -3,9 +3,10 @@
 import pytest
 
 from muster.library import published, published_names
-from muster_studies import Effort, study_named
 from muster_studies.comparison_marks import TOLERANCE
+from muster_studies.effort import Effort
 from muster_studies.misprints import corrected
+from muster_studies.registry import study_named
 from muster_studies.thesis_3_3.plans import published_plans
 
 ROWS = {

@@ -10,8 +10,9 @@ import muster as package
 from muster.cli.main import run as muster
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.simulation import Noise
-from muster_studies import Effort, study_named
 from muster_studies.comparison_marks import EQUAL
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 from muster_studies.thesis_6 import physics
 from muster_studies.thesis_6.flights import Flight, fly, mission_with
 from muster_studies.thesis_6.published import excess, plans

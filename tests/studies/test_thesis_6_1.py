@@ -14,7 +14,8 @@ import muster as package
 from muster.cli.main import run as muster
 from muster.perception.clusters import by_means, inertia
 from muster.perception.estimates import RawEstimates
-from muster_studies import Effort, study_named
+from muster_studies.effort import Effort
+from muster_studies.registry import study_named
 from muster_studies.thesis_6_1 import clusters
 from muster_studies.thesis_6_1.clusters import CALM, METHODS, NOISY, SCATTERED, Clusterings, near, seen_rarely
 from muster_studies.thesis_6_1.errors import TagErrors

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 from muster import core
 from muster.allocation.explanations import unassigned
 from muster.allocation.problem import Problem
+from muster.allocation.returned_routes import checked_routes
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
 from muster.mission.errors import ParameterError
@@ -31,7 +32,9 @@ class Outcome:
 class Algorithm(Protocol):
     """The part of an allocator that differs: routes for a problem, from the routes of a start plan if there is one."""
 
-    def __call__(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Outcome: ...
+    def __call__(
+        self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None
+    ) -> Outcome | Sequence[Sequence[int]]: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +70,12 @@ class Allocator:
         if problem.fixed and not self.keeps_fixed:
             raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search or greedy")
         routes = _first_routes(problem, start)
-        outcome = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
+        returned = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
+        if isinstance(returned, Outcome):
+            outcome = returned
+        else:
+            outcome = Outcome(checked_routes(problem, returned, self.name))
+            stop.improved(*problem.value(outcome.routes))
         return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
 
 

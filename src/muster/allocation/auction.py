@@ -1,6 +1,6 @@
 """Sequential single-item auction: in each round every robot bids, and one task is sold.
 
-Auction thesis, chapter 4; Lagoudakis et al., Auction-Based Multi-Robot Routing (2005). Deterministic. A robot that can
+[auction-thesis], chapter 4; [lagoudakis2005]. Deterministic. A robot that can
 do none of the tasks left makes no bid; a task is offered once its prerequisites are sold.
 """
 

@@ -20,7 +20,7 @@ class Terms:
 
     `bid` None is the rule named as the objective. The weights make bids worse by a factor: 1, plus battery_weight times
     the share of its capacity that a robot has used up, plus suitability_weight times what its suitability for the task
-    lacks to 1. The auction thesis leaves both to future work.
+    lacks to 1. [auction-thesis] leaves both to future work.
 
     Raises
     ------

@@ -4,7 +4,7 @@ A rule takes one figure of each task (see FIGURES) and how the robot stands befo
 that go together. For one robot at one time each rule is increasing in its figure, so that the task with the lowest
 figure has the lowest bid.
 
-Sources: auction thesis, chapter 4; Lagoudakis et al., Auction-Based Multi-Robot Routing (2005); `total+max` and
+Sources: [auction-thesis], chapter 4; [lagoudakis2005]; `total+max` and
 `makespan` are our own, for the objectives of these names.
 """
 
@@ -51,7 +51,7 @@ def average(arrivals: Floats, robot: Standing) -> Floats:
 def average_as_printed(growth: Floats, robot: Standing) -> Floats:
     """Number of tasks in the route with the task, times its length.
 
-    Fitted: the auction thesis describes another rule, but its Table 5.20 comes out with this one alone.
+    Fitted: [auction-thesis] describes another rule, but its Table 5.20 comes out with this one alone.
     """
     return (robot.tasks + 1) * (robot.usage + growth)
 

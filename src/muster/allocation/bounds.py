@@ -159,7 +159,7 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     j, and the work of the task before. The sum of arrivals is at least that of e_j times the number of tasks from j to
     the end of its route; no more than m tasks have the same number. So it is at least the sum of the e in descending
     order times 1 (m of them), 2 (m of them), and so on, by the rearrangement inequality: the rule of the shortest
-    processing time first on parallel machines (Conway, Maxwell and Miller, Theory of Scheduling, 1967).
+    processing time first on parallel machines [conway1967].
     """
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
     opened = _open(problem)

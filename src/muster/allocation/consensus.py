@@ -1,7 +1,6 @@
 """Agreement of robots on who wins which task, by messages between neighbours: phase 2 of CBBA.
 
-Choi, Brunet and How, "Consensus-Based Decentralized Auctions for Robust Task Allocation", IEEE Transactions on Robotics
-25(4), 2009. Variables carry the paper's names: i receives from k; z: winning agents, y: winning bids, s:
+[choi2009]. Variables carry the paper's names: i receives from k; z: winning agents, y: winning bids, s:
 time stamps. All rounds are synchronous.
 """
 

@@ -1,7 +1,6 @@
 """CBBA: the consensus-based bundle algorithm, in one process, its rounds and messages counted.
 
-Choi, Brunet and How, "Consensus-Based Decentralized Auctions for Robust Task Allocation", IEEE Transactions on Robotics
-25(4), 2009. Every robot fills its bundle with the tasks that add most to the score of its path (phase 1, Algorithm 3);
+[choi2009]. Every robot fills its bundle with the tasks that add most to the score of its path (phase 1, Algorithm 3);
 then the robots exchange winners, bids and time stamps with their neighbours (phase 2, Table I), and each releases what
 it took after a task that it lost; until all agree. Scores are the paper's time-discounted rewards, the sum of
 discount ** arrival * priority over the path; the mission's objective has no part in them.
@@ -13,9 +12,8 @@ Where the paper leaves room, or a mission holds more than the paper's:
 - Bids are held as logarithms: a late task is worth little, never nothing. A task for which there is only room where it
   costs later ones more than it brings is bid for with next to nothing, where the paper would leave it out.
 - Agreement is proven for scores that add the less, the larger the bundle. Priorities, work that takes time, capacities
-  and travel tables may break that; so no bid is above the one before it in the bundle (Johnson, Choi, Ponda and How,
-  "Allowing Non-Submodular Score Functions in Distributed Task Allocation", CDC 2012). Where the paper's condition
-  holds, that changes nothing.
+  and travel tables may break that; so no bid is above the one before it in the bundle ([johnson2012]). Where the
+  paper's condition holds, that changes nothing.
 - Of equal bids that of the robot first in tie order wins, so a robot also bids where it would win by that alone.
 - A release resets only tasks that the robot still believes to be its own.
 - Prerequisites: a task comes one layer after the last of its prerequisites; robots agree on a layer, then on the next,

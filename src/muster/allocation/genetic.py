@@ -1,6 +1,6 @@
 """GenTA: genetic task allocation.
 
-TCF thesis, section 3.2.2, Algorithm 3, with Algorithms 4 (mutation) and 5 (crossover); defaults of its Table A.1.
+[tcf-thesis], section 3.2.2, Algorithm 3, with Algorithms 4 (mutation) and 5 (crossover); defaults of its Table A.1.
 
 Where the text leaves room: the worst share is found by rank, as no tournament's size is given; the loop repeats steps 3
 to 6, as step 2 would discard the population; tasks left out count as one more sequence that mutation may take from;

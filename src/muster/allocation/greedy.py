@@ -1,6 +1,6 @@
 """GrdTA: greedy task allocation.
 
-TCF thesis, section 3.2.1, Algorithm 1. Deterministic; one pass.
+[tcf-thesis], section 3.2.1, Algorithm 1. Deterministic; one pass.
 """
 
 from __future__ import annotations

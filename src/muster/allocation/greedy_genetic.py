@@ -1,6 +1,6 @@
 """GrdGenTA: greedy, then genetic task allocation.
 
-TCF thesis, section 3.2.2, Algorithm 7: the greedy plan and mutants of it are members of the first population.
+[tcf-thesis], section 3.2.2, Algorithm 7: the greedy plan and mutants of it are members of the first population.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """GrdHCTA: greedy, then hill-climbing task allocation.
 
-TCF thesis, section 3.2.2, Algorithm 6: hill climbing from the greedy plan.
+[tcf-thesis], section 3.2.2, Algorithm 6: hill climbing from the greedy plan.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """HCTA: hill-climbing task allocation.
 
-TCF thesis, section 3.2.2, Algorithm 2, with the mutation of Algorithm 4.
+[tcf-thesis], section 3.2.2, Algorithm 2, with the mutation of Algorithm 4.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Market with relinquishing and annealing.
 
-Market paper (Hussein, Adel, Bakr, Shehata and Khamis 2014), Algorithm 1. With `usage: time` the cost of a route is the
+[market-paper], Algorithm 1. With `usage: time` the cost of a route is the
 paper's A + B, travel by speed and work by efficiency, bounded by the battery as work capacity; its objective is `max`.
 
 Where the text leaves room: the first auction stands before the loop, so that a plan is there whatever the number of

@@ -1,36 +1,37 @@
-"""The allocators by name."""
+"""The allocators by name, those of installed packages included; and any function as an allocator."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-
 from muster.allocation.allocator import Allocator
-from muster.allocation.auction import AUCTION
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
-from muster.allocation.genetic import GENETIC
-from muster.allocation.greedy import GREEDY
-from muster.allocation.greedy_genetic import GREEDY_GENETIC
-from muster.allocation.greedy_hill_climbing import GREEDY_HILL_CLIMBING
-from muster.allocation.hill_climbing import HILL_CLIMBING
-from muster.allocation.market import MARKET
-from muster.allocation.search import SEARCH
+from muster.allocation.function_allocator import AllocatingFunction, allocator_from
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.plugins import Registry
+from muster.mission.value_types import shown
 
-_IMPLEMENTATIONS = (
-    GREEDY,
-    HILL_CLIMBING,
-    GENETIC,
-    GREEDY_HILL_CLIMBING,
-    GREEDY_GENETIC,
-    AUCTION,
-    MARKET,
-    CONSENSUS_BUNDLE,
-    SEARCH,
+
+def _checked(name: str, found: object) -> Allocator:
+    allocator = found if isinstance(found, Allocator) else allocator_from(found, name)
+    if allocator.name != name:
+        raise ParameterError(f"it is called {allocator.name}; expected the name of its entry point")
+    return allocator
+
+
+ALLOCATORS: Registry[Allocator] = Registry(
+    "allocator",
+    "muster.allocators",
+    {
+        "greedy": "muster.allocation.greedy:GREEDY",
+        "hill-climbing": "muster.allocation.hill_climbing:HILL_CLIMBING",
+        "genetic": "muster.allocation.genetic:GENETIC",
+        "greedy+hill-climbing": "muster.allocation.greedy_hill_climbing:GREEDY_HILL_CLIMBING",
+        "greedy+genetic": "muster.allocation.greedy_genetic:GREEDY_GENETIC",
+        "auction": "muster.allocation.auction:AUCTION",
+        "market": "muster.allocation.market:MARKET",
+        "consensus-bundle": "muster.allocation.consensus_bundle:CONSENSUS_BUNDLE",
+        "search": "muster.allocation.search:SEARCH",
+    },
+    _checked,
 )
-
-ALLOCATORS: Mapping[str, Allocator] = MappingProxyType({a.name: a for a in _IMPLEMENTATIONS})
 
 
 def allocator_named(name: str) -> Allocator:
@@ -40,8 +41,26 @@ def allocator_named(name: str) -> Allocator:
     ------
     ParameterError
         if there is none.
+    PluginError
+        if its package cannot be loaded.
     """
-    if name not in ALLOCATORS:
-        hint = did_you_mean(str(name), ALLOCATORS)
-        raise ParameterError(f"allocator: {name}; expected {', '.join(ALLOCATORS)}{hint}")
-    return ALLOCATORS[name]
+    return ALLOCATORS.named(name)
+
+
+def allocator_of(given: str | Allocator | AllocatingFunction) -> Allocator:
+    """The allocator that is meant: by its name, itself, or a function that makes routes (`allocator_from`).
+
+    Raises
+    ------
+    ParameterError
+        if there is none of that name, or the function cannot be called as an allocator.
+    PluginError
+        if its package cannot be loaded.
+    """
+    if isinstance(given, str):
+        return allocator_named(given)
+    if isinstance(given, Allocator):
+        return given
+    if not callable(given):
+        raise ParameterError(f"allocator: {shown(given)}; expected a name, an Allocator or a function")
+    return allocator_from(given)

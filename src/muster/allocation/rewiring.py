@@ -1,6 +1,6 @@
 """Re-wiring: an improvement pass that fills waiting time with the robot's own later tasks.
 
-TCF thesis, 6.3.1, (6.1) to (6.3): robot f waits `du = u_n(q) - u_f(p - 1)` for its p-th task, whose prerequisite
+[tcf-thesis], 6.3.1, (6.1) to (6.3): robot f waits `du = u_n(q) - u_f(p - 1)` for its p-th task, whose prerequisite
 robot n does as its q-th. A task that f would do later is put before it, if that makes f's route longer by less than
 `du`. The thesis takes usage for time; here all is time. A change is made only if robots wait less in all or the mission
 ends earlier, and neither is more. It may cost usage: that is what it pays with.

@@ -1,10 +1,9 @@
 """Search: ruin and recreate under simulated annealing, from the greedy plan.
 
-Slack induction by string removals (SISR): Christiaens and Vanden Berghe, Slack Induction by String Removals for Vehicle
-Routing Problems, Transportation Science 54(2), 2020. Beyond it: a task is put back where the team's objective grows
-least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its end
-waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in every
-step.
+Slack induction by string removals (SISR): [christiaens2020]. Beyond it: a task is put back where the team's objective
+grows least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its
+end waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in
+every step.
 """
 
 from __future__ import annotations

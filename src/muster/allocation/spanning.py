@@ -159,11 +159,10 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats]) -> Floats:
         + least spanning tree of legs c(i, j) + p_i + p_j and first legs min_d (c(d, j) + a_d - b_d) + p_j
         + sum of the k least min_d (c(j, d) + b_d) + p_j,
 
-    where w_j is the least work, and c(d, j) holds what the robot's work on j is above it. This is the bound of Held and
-    Karp (The Traveling-Salesman Problem and Minimum Spanning Trees, Operations Research 18, 1970), for several paths
-    from several depots. No triangle inequality is used. The multipliers ascend by the subgradients of the k that is
-    worth least, with the memory of Volgenant and Jonker (EJOR 9, 1982); for every k the best bound is kept. Where
-    travel is asymmetric the sums of the least legs into tasks, and out of them, can be better.
+    where w_j is the least work, and c(d, j) holds what the robot's work on j is above it. This is the bound of
+    [held-karp1970], for several paths from several depots. No triangle inequality is used. The multipliers ascend by
+    the subgradients of the k that is worth least, with the memory of [volgenant1982]; for every k the best bound is
+    kept. Where travel is asymmetric the sums of the least legs into tasks, and out of them, can be better.
     """
     n, count = len(ways.work), min(len(ways.work), int(ways.robots.sum()))
     best = _by_degrees(ways, count)
@@ -210,7 +209,7 @@ def _least_rows(costs: Floats) -> tuple[Floats, Indices]:
 
 
 def spanning_tree(row: Callable[[int], Floats], root: Floats, p: Floats | None = None) -> tuple[float, Indices]:
-    """The least spanning tree of a root and all tasks (Prim): its cost, and each task's parent, -1 for the root.
+    """The least spanning tree of a root and all tasks [prim1957]: its cost, and each task's parent, -1 for the root.
 
     Parameters
     ----------

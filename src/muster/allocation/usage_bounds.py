@@ -1,9 +1,8 @@
 """Lower bounds on the usage of robots that do certain tasks, whatever else they do: what proves that they cannot.
 
-For few tasks they are each robot's least usage for every subset (Held and Karp, A Dynamic Programming Approach to
-Sequencing Problems, J. SIAM 10(1), 1962) and all ways to share the tasks out; for many a spanning forest from the
-starts of the robots that can do them. Neither sees that robots may wait for each other in a circle: where that alone
-forbids a plan, nothing is proven.
+For few tasks they are each robot's least usage for every subset ([held-karp1962]) and all ways to share the tasks out;
+for many a spanning forest from the starts of the robots that can do them. Neither sees that robots may wait for each
+other in a circle: where that alone forbids a plan, nothing is proven.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Winner rules: which of the bids of a round wins (auction thesis, sections 4.3 and 4.4).
+"""Winner rules: which of the bids of a round wins ([auction-thesis], sections 4.3 and 4.4).
 
 An exact tie goes to the first robot, then to the first task, in the order of their ids.
 """

@@ -1,4 +1,4 @@
-"""Robots by their namespaces and topics: steps 2 to 4 of the thesis' dynamic instantiation (TCF, Figure 5.7)."""
+"""Robots by their namespaces and topics: steps 2 to 4 of the dynamic instantiation of [tcf-thesis], Figure 5.7."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Steers robots to their way points by velocities, around each other: the thesis' RVO_planner and velocity_publisher.
 
-TCF thesis, Table 5.2. Here ORCA chooses the velocity (`motion/avoidance/orca.py`), and the robot's kinematics turn it
+[tcf-thesis], Table 5.2. Here ORCA chooses the velocity (`motion/avoidance/orca.py`), and the robot's kinematics turn it
 into what it can do within its limits. Robots on the ground give way to each other in the plane; those in the air too,
 in space where the mission is in space; nobody to those of the other kind.
 """
@@ -100,7 +100,7 @@ class Steering:
     def _chosen(self, crowd: Sequence[Driven], size: int) -> Floats:
         """Velocities (n, 3) on which nobody meets anybody.
 
-        ORCA starts from what robots would do, not from what they do (van den Berg et al. 2011, section 5.2): the latter
+        ORCA starts from what robots would do, not from what they do ([berg2011], section 5.2): the latter
         lags behind, and where a robot alone must give way it would forbid it to brake beside one that is far away.
         """
         preferred = np.array([self._preferred(driven, size) for driven in crowd])

@@ -129,7 +129,7 @@ def _replayed(others: Mapping[str, Any]) -> int:
             raise ParameterError(
                 f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
             )
-    from muster_studies.negotiation.trial import replay
+    from muster.running.negotiation_trials.trial import replay
 
     report = replay(seed)
     for line in report.lines():

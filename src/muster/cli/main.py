@@ -43,8 +43,6 @@ VERBS: Mapping[str, str] = MappingProxyType(
         "db": "Look after the database of mission control: copies, and what is thrown away.",
         "replay": "Show a record of a mission that was carried out.",
         "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
-        "study": "Repeat a published experiment beside its published numbers.",
-        "bench": "Measure speed on this machine, or quality against other solvers.",
     }
 )
 """The verbs of this package, each in the module of its name, with their summaries in the order of `--help`."""

@@ -1,4 +1,4 @@
-"""`muster ros`: the high-level controller of robots on ROS 1 (TCF thesis, section 5.2)."""
+"""`muster ros`: the high-level controller of robots on ROS 1 ([tcf-thesis], section 5.2)."""
 
 from __future__ import annotations
 

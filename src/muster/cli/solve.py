@@ -29,7 +29,7 @@ from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.plan import Plan, read_plan
-from muster.planning.planning import DEFAULT_ALLOCATOR
+from muster.planning.options import DEFAULT_ALLOCATOR
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
@@ -196,7 +196,7 @@ def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
 
     rows = [
         (a.name, a.summary, ", ".join(f"{f.name}={_default(f.default)}" for f in fields(a.parameters)) or "-")
-        for a in ALLOCATORS.values()
+        for a in ALLOCATORS.usable().values()
     ]
     print_table(("allocator", "what it is", "parameters and defaults"), rows)
     ctx.exit()

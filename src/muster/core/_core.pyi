@@ -80,7 +80,7 @@ class Matching:
 
 class Greedy:
     """
-    State and steps of greedy task allocation (TCF thesis, Algorithm 1). One thread at a time may use one.
+    State and steps of greedy task allocation ([tcf-thesis], Algorithm 1). One thread at a time may use one.
     """
 
     def __init__(self, problem: Problem, balanced: bool) -> None:
@@ -97,7 +97,7 @@ class Greedy:
 
 class Population:
     """
-    Task allocations that evolve (TCF thesis, Algorithm 3). One thread at a time may use one.
+    Task allocations that evolve ([tcf-thesis], Algorithm 3). One thread at a time may use one.
     """
 
     def __init__(self, problem: Problem, size: int, seed: int) -> None:
@@ -196,7 +196,7 @@ class Bidders:
 
 class Annealing:
     """
-    Simulated annealing of the order of tasks in single routes (market paper, section 3.1). One thread at a time may use one.
+    Simulated annealing of the order of tasks in single routes ([market-paper], section 3.1). One thread at a time may use one.
     """
 
     def __init__(self, problem: Problem, routes: Sequence[Sequence[int]], seed: int) -> None:
@@ -442,16 +442,16 @@ class SpaceAgents:
 
 def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, v_min: float, magnitudes: int, n: float, w: float, ideal: bool, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
     """
-    New velocities by reciprocal velocity obstacles (TCF thesis, appendix A3.2).
+    New velocities by reciprocal velocity obstacles ([tcf-thesis], appendix A3.2).
     """
 
 def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
     """
-    New velocities by hybrid reciprocal velocity obstacles (Snape et al. 2011).
+    New velocities by hybrid reciprocal velocity obstacles ([snape2011]).
     """
 
 class VelocityObstacle:
-    """VO_{i,k} of the TCF thesis (A.5)."""
+    """VO_{i,k} of [tcf-thesis] (A.5)."""
 
     def __init__(self, x_i: Sequence[float], x_k: Sequence[float], v_i: Sequence[float], v_k: Sequence[float], radius: float, yields: float = 0.5) -> None:
         """`radius` is R_i + R_k, which is 2 R_i."""

@@ -1,4 +1,4 @@
-// The agents near a place: a k-d tree (Bentley 1975), so that a search costs the logarithm of the team's size.
+// The agents near a place: a k-d tree [bentley1975], so that a search costs the logarithm of the team's size.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Samples on edges: Papadimitriou 1985, "An algorithm for shortest-path motion in three dimensions".
+// Samples on edges: [papadimitriou1985].
 #include "air_ways.hpp"
 
 #include <algorithm>

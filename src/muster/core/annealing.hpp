@@ -1,4 +1,4 @@
-// Simulated annealing of the order of tasks in single routes (market paper, section 3.1: "optimize").
+// Simulated annealing of the order of tasks in single routes ([market-paper], section 3.1: "optimize").
 #pragma once
 
 #include <utility>

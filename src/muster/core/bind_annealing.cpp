@@ -32,7 +32,7 @@ class Annealer : public Annealing {
 
 void bind_annealing(nb::module_& m) {
   nb::class_<Annealer>(m, "Annealing",
-                       "Simulated annealing of the order of tasks in single routes (market paper, section 3.1). One "
+                       "Simulated annealing of the order of tasks in single routes ([market-paper], section 3.1). One "
                        "thread at a time may use one.")
       .def(nb::init<const Problem&, const Routes&, std::uint64_t>(), "problem"_a, "routes"_a, "seed"_a,
            nb::keep_alive<1, 2>(), "Raises ValueError if the routes are not admissible.")

@@ -127,7 +127,7 @@ void bind_plane_methods(nb::module_& m) {
       },
       "agents"_a, "walls"_a, "dt"_a, nb::kw_only(), "v_min"_a, "magnitudes"_a, "n"_a, "w"_a, "ideal"_a,
       "wall_horizon"_a, "most"_a, "distance"_a, "threads"_a,
-      "New velocities by reciprocal velocity obstacles (TCF thesis, appendix A3.2).");
+      "New velocities by reciprocal velocity obstacles ([tcf-thesis], appendix A3.2).");
   m.def(
       "hrvo",
       [](const Agents<2>& agents, const Pairs<2>& walls, double dt, double wall_horizon, int most, double distance,
@@ -137,11 +137,11 @@ void bind_plane_methods(nb::module_& m) {
         return unlocked<2>([&] { return hrvo_velocities(agents, still, settings, dt, threads); });
       },
       "agents"_a, "walls"_a, "dt"_a, nb::kw_only(), "wall_horizon"_a, "most"_a, "distance"_a, "threads"_a,
-      "New velocities by hybrid reciprocal velocity obstacles (Snape et al. 2011).");
+      "New velocities by hybrid reciprocal velocity obstacles ([snape2011]).");
 }
 
 void bind_obstacles(nb::module_& m) {
-  nb::class_<VelocityObstacle>(m, "VelocityObstacle", "VO_{i,k} of the TCF thesis (A.5).")
+  nb::class_<VelocityObstacle>(m, "VelocityObstacle", "VO_{i,k} of [tcf-thesis] (A.5).")
       .def(
           "__init__",
           [](VelocityObstacle* self, Plane x_i, Plane x_k, Plane v_i, Plane v_k, double radius, double yields) {

@@ -17,7 +17,7 @@ void bind_greedy(nb::module_& m) {
       .def_ro("cost", &Matching::cost);
   nb::class_<Greedy>(
       m, "Greedy",
-      "State and steps of greedy task allocation (TCF thesis, Algorithm 1). One thread at a time may use one.")
+      "State and steps of greedy task allocation ([tcf-thesis], Algorithm 1). One thread at a time may use one.")
       .def(nb::init<const Problem&, bool>(), "problem"_a, "balanced"_a, nb::keep_alive<1, 2>(),
            "`balanced`: choose by c_ij + u_i (3.17), else by c_ij alone (3.27).")
       .def("select", &Greedy::select, nb::call_guard<nb::gil_scoped_release>(),

@@ -51,7 +51,7 @@ class Evolving : public Population {
 
 void bind_population(nb::module_& m) {
   nb::class_<Evolving>(m, "Population",
-                       "Task allocations that evolve (TCF thesis, Algorithm 3). One thread at a time may use one.")
+                       "Task allocations that evolve ([tcf-thesis], Algorithm 3). One thread at a time may use one.")
       .def(nb::init<const Problem&, int, std::uint64_t>(), "problem"_a, "size"_a, "seed"_a, nb::keep_alive<1, 2>(),
            "`size` empty allocations.")
       .def("__len__", &Evolving::size)

@@ -1,4 +1,4 @@
-// A queue in buckets: Dial 1969, "Algorithm 360: Shortest-path forest with topological ordering".
+// A queue in buckets: [dial1969].
 #pragma once
 
 #include <algorithm>

@@ -29,8 +29,7 @@ void along_columns(const bool* blocked, std::size_t rows, std::size_t columns, d
   }
 }
 
-// The lower envelope of the parabolas (x - c)^2 + gaps[c] (Felzenszwalb and Huttenlocher, Distance Transforms of
-// Sampled Functions, 2012, Algorithm 1).
+// The lower envelope of the parabolas (x - c)^2 + gaps[c] ([felzenszwalb2012], Algorithm 1).
 class Envelope {
  public:
   explicit Envelope(std::size_t columns) : roots_(columns), from_(columns) {}

@@ -1,4 +1,4 @@
-// The state and steps of greedy task allocation (TCF thesis, Algorithm 1).
+// The state and steps of greedy task allocation ([tcf-thesis], Algorithm 1).
 #pragma once
 
 #include <optional>

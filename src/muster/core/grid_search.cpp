@@ -1,4 +1,4 @@
-// Hart, Nilsson, Raphael 1968 (A*); Dijkstra 1959; Nash, Daniel, Koenig, Felner 2007 (Theta*), algorithm of the same
+// [hart1968] (A*); [dijkstra1959]; [nash2007] (Theta*), algorithm of the same
 // names.
 #include "grid_search.hpp"
 

@@ -1,4 +1,4 @@
-// The corners of a grid's obstacles and what sees them: Oh and Leong 2017, "Edge N-level sparse visibility graphs".
+// The corners of a grid's obstacles and what sees them: [oh2017].
 #pragma once
 
 #include <array>

@@ -1,5 +1,4 @@
-// Hybrid reciprocal velocity obstacles: Snape, van den Berg, Guy and Manocha, "The hybrid reciprocal velocity
-// obstacle", IEEE Transactions on Robotics 27(4), 2011; velocities are chosen as by ClearPath (Guy et al. 2009), as
+// Hybrid reciprocal velocity obstacles: [snape2011]; velocities are chosen as by ClearPath [guy2009], as
 // there.
 #pragma once
 

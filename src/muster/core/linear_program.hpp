@@ -1,7 +1,7 @@
-// The velocity nearest to a wanted one within a ball and within half-spaces: the low-dimensional linear program of van
-// den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), section 5, in two and three
-// dimensions. Half-spaces are added one by one (Seidel; de Berg et al., "Computational Geometry", chapter 4): where a
-// new one is violated, the optimum lies on its boundary, which is the same program with one dimension less.
+// The velocity nearest to a wanted one within a ball and within half-spaces: the low-dimensional linear program of
+// [berg2011], section 5, in two and three dimensions. Half-spaces are added one by one ([seidel1991]; [deberg2008],
+// chapter 4): where a new one is violated, the optimum lies on its boundary, which is the same program with one
+// dimension less.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Steps of the thesis' metaheuristics on single drafts (TCF thesis, section 3.2.2).
+// Steps of the metaheuristics of [tcf-thesis], section 3.2.2, on single drafts.
 #pragma once
 
 #include <vector>

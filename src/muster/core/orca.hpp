@@ -1,5 +1,4 @@
-// Optimal reciprocal collision avoidance: van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance"
-// (2011), in the plane, and in space by the same formulas.
+// Optimal reciprocal collision avoidance: [berg2011], in the plane, and in space by the same formulas.
 #pragma once
 
 #include <vector>

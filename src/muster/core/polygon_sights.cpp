@@ -1,4 +1,4 @@
-// The visibility graph of Lozano-Perez and Wesley 1979, of which only taut pieces are kept.
+// The visibility graph of [lozano1979], of which only taut pieces are kept.
 #include "polygon_sights.hpp"
 
 #include <algorithm>

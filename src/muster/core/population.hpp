@@ -1,4 +1,4 @@
-// The population of the genetic algorithm and its steps (TCF thesis, Algorithm 3); of size 1 it is a hill climber.
+// The population of the genetic algorithm and its steps ([tcf-thesis], Algorithm 3); of size 1 it is a hill climber.
 #pragma once
 
 #include <utility>

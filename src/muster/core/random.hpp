@@ -5,7 +5,7 @@
 
 namespace muster {
 
-// xoshiro256++ 1.0 (Blackman and Vigna 2021), seeded by SplitMix64.
+// xoshiro256++ 1.0 [blackman2021], seeded by SplitMix64.
 class Random {
  public:
   explicit Random(std::uint64_t seed) {

@@ -1,4 +1,4 @@
-// Reciprocal velocity obstacles as in the TCF thesis, appendix A3.2, with its symbols; i is the robot that chooses, k
+// Reciprocal velocity obstacles as in [tcf-thesis], appendix A3.2, with its symbols; i is the robot that chooses, k
 // another.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Ruin and recreate under simulated annealing: slack induction by string removals (SISR; Christiaens and Vanden Berghe,
-// Transportation Science 54(2), 2020), for teams whose objective may look at the robot that does most.
+// Ruin and recreate under simulated annealing: slack induction by string removals (SISR, [christiaens2020]), for teams
+// whose objective may look at the robot that does most.
 #pragma once
 
 #include <vector>

@@ -24,7 +24,7 @@ struct TreeSettings {
   double reach;       // times the least radius of rewiring that converges
 };
 
-// Karaman and Frazzoli 2011, "Sampling-based algorithms for optimal motion planning", algorithm 6.
+// [karaman2011], algorithm 6.
 class Tree {
  public:
   Tree(Room room, Spot start, Spot goal, std::uint64_t seed, TreeSettings settings);

@@ -44,7 +44,7 @@ inline Vec<3> closest(const Box& wall, Vec<3> p) {
 }
 
 // The velocities that keep clear of a convex wall for `horizon`, as far as they lie on the near side of the plane
-// between: van den Berg et al. 2011 on static obstacles, with the optimisation velocity 0, which is always among them.
+// between: [berg2011] on static obstacles, with the optimisation velocity 0, which is always among them.
 // An agent that overlaps the wall is to be out of it after a step of dt.
 template <int D>
 HalfSpace<D> still_space(const Wall<D>& wall, const Vec<D>& p, double radius, double horizon, double dt) {

@@ -9,8 +9,8 @@
 
 namespace muster {
 
-// The shortest way turns at corners of obstacles only, each time around the obstacle (Lozano-Perez and Wesley 1979;
-// taut: Oh and Leong 2017). Places are points in the unit of the sights.
+// The shortest way turns at corners of obstacles only, each time around the obstacle ([lozano1979];
+// taut: [oh2017]). Places are points in the unit of the sights.
 class Ways {
  public:
   explicit Ways(std::shared_ptr<const Sights> sights);

@@ -1,8 +1,8 @@
 """The executor: carries a plan out through robot ports. Sans-I/O and in virtual time: `tick(now)` does all.
 
-Each robot takes the next task of its route when it is available (TCF thesis, 5.3.1: `a_i`), goes there, waits until all
-prerequisites have ended, does the work, and at last goes where its route ends. The monitor and events change what is
-to be done, and the rest is planned again (`reallocation`).
+Each robot takes the next task of its route when it is available ([tcf-thesis], 5.3.1: `a_i`), goes there, waits until
+all prerequisites have ended, does the work, and at last goes where its route ends. The monitor and events change what
+is to be done, and the rest is planned again (`reallocation`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Re-allocation: the rest of a mission planned again when something has changed (TCF thesis, 7.3; market paper, 6).
+"""Re-allocation: the rest of a mission planned again when something has changed ([tcf-thesis], 7.3; [market-paper], 6).
 
 The plan so far, as far as it still can be, is where the search begins. `rules.stability` bounds how many tasks go from
 one robot that could do them to another.
@@ -15,7 +15,7 @@ from muster.allocation.explanations import unassigned
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewired
-from muster.allocation.search import SEARCH, Parameters
+from muster.allocation.search import Parameters, allocate
 from muster.allocation.stop import Stop
 from muster.execution.remaining_problem import Posed, Rest, in_one_line, posed
 from muster.execution.travel import Travel
@@ -126,8 +126,7 @@ class Reallocation:
 
     def _searched(self, problem: Problem, start: Routes) -> Routes:
         stop = Stop(iterations=self.iterations, clock=VirtualClock())
-        outcome = SEARCH.algorithm(problem, stop, self.seed, Parameters(hot=self.hot), start)
-        return outcome.routes
+        return allocate(problem, stop, self.seed, Parameters(hot=self.hot), start).routes
 
 
 def _routes_before(problem: Problem, rest: Rest) -> Routes:

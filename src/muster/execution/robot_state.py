@@ -1,6 +1,6 @@
 """One robot of the crew: what it is doing, what it was told, what it said, and what it has used.
 
-The thesis' availability `a_i` (TCF thesis, 5.3.1): a robot is busy while it moves to a task or does it.
+The availability `a_i` of [tcf-thesis], 5.3.1: a robot is busy while it moves to a task or does it.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class RobotStatus:
     charge
         what its battery says, 0 to 1; None where it says nothing.
     available
-        the thesis' `a_i` (TCF thesis, 5.3.1).
+        the availability `a_i` of [tcf-thesis], 5.3.1.
     """
 
     activity: str

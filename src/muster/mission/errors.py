@@ -6,6 +6,7 @@
     │   └── PlanError         a plan file
     ├── NotSupportedError     the mission is right, but asks for what this version cannot do
     ├── ParameterError        a parameter of an algorithm or function is out of its range
+    ├── PluginError           a package that extends Muster cannot be used
     ├── TransformError        the tree of frames cannot say where a frame is
     │   ├── UnknownFrameError, DisconnectedFramesError
     │   ├── ExtrapolationError   not at that time
@@ -75,6 +76,10 @@ class NotSupportedError(InputError):
 
 class ParameterError(MusterError, ValueError):
     """A parameter of an algorithm or function is out of its range."""
+
+
+class PluginError(MusterError):
+    """A package that extends Muster cannot be used; the message names the package and what is wrong with it."""
 
 
 class TransformError(MusterError):

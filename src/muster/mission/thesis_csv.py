@@ -1,4 +1,4 @@
-"""Task-list CSV beside robots CSV, as the TCF thesis keeps them (its section 5.2 and Appendix A1).
+"""Task-list CSV beside robots CSV, as in [tcf-thesis], section 5.2 and Appendix A1.
 
 Tasks: `index,x,y,type,actuation_cost,prerequisites`, the last as `"[1,18]"` or `1 18`; robots:
 `id,type,x,y,work_capacity`, empty or `inf` where unlimited; suitability: a table with robot types in its first column

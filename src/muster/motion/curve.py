@@ -1,4 +1,4 @@
-"""A curve of cubic Bezier segments, by arc length (market paper, section 3.2.3, equation (4))."""
+"""A curve of cubic Bezier segments, by arc length ([market-paper], section 3.2.3, equation (4))."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Frames: where a thing is, seen from another (TCF thesis (4.1)-(4.4) and (5.1)-(5.6); axes by REP-103).
+"""Frames: where a thing is, seen from another ([tcf-thesis] (4.1)-(4.4) and (5.1)-(5.6); axes by REP-103).
 
 A transform is a (4, 4) matrix, or a stack (..., 4, 4); the transform *from a to b* is b's pose in a, and takes points
 of b to points of a. In the plane it is (3, 3). Transforms follow on each other by `@`. A quaternion is (x, y, z, w) of

@@ -1,4 +1,4 @@
-"""How good a motion was: length, error, risk, distance between robots, smoothness, time (market paper, section 4.2)."""
+"""How good a motion was: length, error, risk, distance of robots, smoothness, time ([market-paper], section 4.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Smoothing: cubic Bezier splines through the points of a path (market paper, section 3.2.3, equation (4)).
+"""Smoothing: cubic Bezier splines through the points of a path ([market-paper], section 3.2.3, equation (4)).
 
 Between two points of the path lies one segment. At a point both its segments have the direction that halves the turn,
 so that the curve swings out of a corner and not into what the path goes around. Where a segment would leave the free

@@ -1,4 +1,4 @@
-"""Velocity generation: a curve becomes a trajectory that keeps a robot's limits (market paper, section 3.2.3).
+"""Velocity generation: a curve becomes a trajectory that keeps a robot's limits ([market-paper], section 3.2.3).
 
 On each smooth leg of the curve the speed is bounded at every place by what it turns there, then a pass forward bounds
 what can be reached by accelerating and a pass backward what can still be braked. Between places the acceleration is

@@ -1,4 +1,4 @@
-"""Wheels of a differential drive (market paper, section 3.2.3, equations (5) and (6)).
+"""Wheels of a differential drive ([market-paper], section 3.2.3, equations (5) and (6)).
 
 With the rims' speeds left and right and the distance between the wheels (`track_m`) the robot goes at
 V_transl = (right + left) / 2 and turns at (right - left) / track, which a rim feels as V_rot = |yaw rate| track / 2.

@@ -1,6 +1,6 @@
 """CBBA on the rounds of an epoch: the consensus-based bundle algorithm, held by one of its robots.
 
-Choi, Brunet and How, 2009; see `allocation.consensus_bundle`, which holds it in one process. A round is one of the
+[choi2009]; see `allocation.consensus_bundle`, which holds it in one process. A round is one of the
 paper's: each robot adds to its bundle and publishes what it added, then all read each other. What comes of reading
 follows from what was published, so every robot keeps the beliefs of all, and nothing else is sent. Where nobody adds
 any more and all agree, one round asks who could take one more than bundles may hold, and one tells in which order

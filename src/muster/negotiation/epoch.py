@@ -1,6 +1,6 @@
 """One epoch: all members declare what they own, then sell what nobody owns, round by round.
 
-Auction thesis, section 4.2.3 and Algorithm 1: each robot publishes one bid a round under its own name, listens to the
+[auction-thesis], section 4.2.3 and Algorithm 1: each robot publishes one bid a round under its own name, listens to the
 others, finds the winner itself, and takes the task out of its list. All that members do in an epoch follows from their
 declarations and from bids that follow from these, so what one has resolved is what another would, and can be told.
 """

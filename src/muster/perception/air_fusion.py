@@ -1,6 +1,6 @@
 """Where a drone is, from odometry, inertial data and position fixes: an extended Kalman filter.
 
-TCF thesis, section 2.1.1: odometry and inertial unit give a continuous estimate, fixes from outside one that does not
+[tcf-thesis], section 2.1.1: odometry and inertial unit give a continuous estimate, fixes from outside one that does not
 drift. The attitude is the autopilot's: what is measured comes here in axes of the map.
 
 The state is (7,): position in metres and velocity in m/s, both in the map frame; slip, the share of what odometry

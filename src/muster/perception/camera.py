@@ -1,4 +1,4 @@
-"""The pinhole camera: TCF thesis (4.36)-(4.40), and the camera of its drone (A.24)-(A.26).
+"""The pinhole camera: [tcf-thesis] (4.36)-(4.40), and the camera of its drone (A.24)-(A.26).
 
 Frames, each as its pose in the one before (a transform (4, 4), see `muster.motion.frames`):
 

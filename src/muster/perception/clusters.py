@@ -2,10 +2,10 @@
 
 Each gives labels (n,): the number of each estimate's cluster, from 0, or `LONE`.
 
-- `by_means`: k-means, TCF thesis (4.46); the number of clusters must be known. What it makes least is the sum of
+- `by_means`: k-means, [tcf-thesis] (4.46); the number of clusters must be known. What it makes least is the sum of
   squares over all estimates. So where one thing is seen a thousand times and another five times, it costs less to cut
   the thousand in two and to leave the five to a neighbour. The thesis lost its tag 1 so, by 1.142 m (Table 6.4).
-- `by_density`: DBSCAN (Ester, Kriegel, Sander and Xu, KDD 1996). The number follows, and how often a thing was seen
+- `by_density`: DBSCAN [ester1996]. The number follows, and how often a thing was seen
   does not matter. Things nearer to each other than their estimates scatter become one.
 - `by_tag`: those of one id are one thing, unless they lie apart: then the id is there more than once.
 - `linked` is how it tells what lies apart; it takes new places in without a look at how the others belong together.
@@ -134,7 +134,7 @@ def linked(places: Floats, apart_m: float, before: Labels | None = None) -> Labe
 
 
 def _spread(positions: Floats, count: int, random: np.random.Generator) -> Floats:
-    """First centres (count, d): each an estimate drawn by its squared distance from those before (k-means++)."""
+    """First centres (count, d) of k-means++ [arthur2007]: each drawn by its squared distance from those before."""
     centres = [positions[random.integers(len(positions))]]
     nearest = np.full(len(positions), np.inf)
     while len(centres) < count:

@@ -1,4 +1,4 @@
-"""The drift study: how far an estimate is from the truth by time, with and without fixes (TCF thesis, Appendix A6.1).
+"""The drift study: how far an estimate is from the truth by time, with and without fixes ([tcf-thesis], Appendix A6.1).
 
 The thesis flew a drone five times around the setpoints of Table A.21, by visual inertial odometry, and measured with
 motion capture (Figure A.14). Here a robot goes any way that is given, its sensors are simulated, and the same readings

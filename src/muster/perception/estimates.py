@@ -1,4 +1,4 @@
-"""Raw estimates of places of interest: one for each sighting, from all robots (TCF thesis 4.3.3, the list P)."""
+"""Raw estimates of places of interest: one for each sighting, from all robots ([tcf-thesis] 4.3.3, the list P)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Where a robot in the plane is, from odometry, inertial data and fixes: an extended Kalman filter.
 
-TCF thesis, section 2.1.1: a filter that fuses odometry and inertial unit, and what both give with fixes from outside:
+[tcf-thesis], section 2.1.1: a filter that fuses odometry and inertial unit, and what both give with fixes from outside:
 positions, as of GPS or motion capture, and artificial landmarks (tags, cylinders) at known places.
 
 The state is (7,): x, y in metres and heading in radians of the map frame; speed ahead in m/s, as

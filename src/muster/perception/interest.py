@@ -1,4 +1,4 @@
-"""Points of interest: what the estimates of a cluster say together, with how sure that is (TCF thesis 4.3.3).
+"""Points of interest: what the estimates of a cluster say together, with how sure that is ([tcf-thesis] 4.3.3).
 
 The thesis takes the mean of a cluster. Where every estimate has its covariance, they are weighed by it, as a Kalman
 filter would that sees a thing at rest again and again: views from afar and aslant, which are stretched along the view,

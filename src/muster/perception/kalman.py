@@ -1,4 +1,4 @@
-"""The Kalman filter and the extended one (TCF thesis, section 2.1, (2.1)-(2.5)).
+"""The Kalman filter and the extended one ([tcf-thesis], section 2.1, (2.1)-(2.5)).
 
 The thesis calls the process covariance V, the gain R and the residual v, and names neither the covariance of what is
 measured (W here) nor the gain's formula, R = P H^T S^-1 with S = H P H^T + W. Its (2.4) holds for this gain alone and

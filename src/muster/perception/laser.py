@@ -1,4 +1,4 @@
-"""A laser scanner in the plane: ranges from a pose to walls and round things (market paper, section 4.3).
+"""A laser scanner in the plane: ranges from a pose to walls and round things ([market-paper], section 4.3).
 
 Bearings are from straight ahead, anticlockwise; beams go from right to left. Where a beam meets nothing within reach
 its range is infinite, as in ROS (REP-117).
@@ -105,7 +105,7 @@ def require_scan(ranges: Floats, bearings: Floats) -> None:
 
 
 def points_of(ranges: Floats, bearings: Floats) -> Floats:
-    """(2.8) of the TCF thesis: the points that were hit, (m, 2) in the scanner's frame; infinite ranges hit nothing."""
+    """[tcf-thesis] (2.8): the points that were hit, (m, 2) in the scanner's frame; infinite ranges hit nothing."""
     hit = np.isfinite(ranges)
     return np.column_stack([ranges[hit] * np.cos(bearings[hit]), ranges[hit] * np.sin(bearings[hit])])
 

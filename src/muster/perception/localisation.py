@@ -1,4 +1,4 @@
-"""Where on the map is what a camera sees: TCF thesis (4.41)-(4.45).
+"""Where on the map is what a camera sees: [tcf-thesis] (4.41)-(4.45).
 
 `on_ground` takes the ground as flat, (4.41)-(4.43). `by_size` knows how large a tag is, and needs no ground: it finds
 the pose from which the four corners are where they are seen (perspective-n-point). OpenCV's own method for squares,

@@ -1,4 +1,4 @@
-"""What was found beside what is there: the tables 6.4 and 6.5 of the TCF thesis, as data.
+"""What was found beside what is there: the tables 6.4 and 6.5 of [tcf-thesis], as data.
 
 Matched by linear sum assignment: one to one, so that the sum of all distances is least.
 """

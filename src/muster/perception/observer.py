@@ -1,4 +1,4 @@
-"""A robot that looks: from an image and the robot's pose to raw estimates (TCF thesis, Figure 4.8); sans I/O.
+"""A robot that looks: from an image and the robot's pose to raw estimates ([tcf-thesis], Figure 4.8); sans I/O.
 
 What goes wrong with one image (its size, a tag twice, a pose that is none) is told, and the mission goes on.
 """

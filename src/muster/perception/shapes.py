@@ -1,6 +1,6 @@
 """Which shape points from one side of an obstacle show: a line, a circle, a rectangle's corner, or none of them.
 
-Rules for what the TCF thesis, section 2.1.2, calls shape association. A circle bulges towards the scanner, which is at
+Rules for what [tcf-thesis], section 2.1.2, calls shape association. A circle bulges towards the scanner, which is at
 the origin.
 """
 

@@ -1,4 +1,4 @@
-"""SPIKE landmarks: spikes in a range profile, taken for cylinders (market paper, sections 4.2, 4.3 and 5).
+"""SPIKE landmarks: spikes in a range profile, taken for cylinders ([market-paper], sections 4.2, 4.3 and 5).
 
 The paper names the algorithm and prints nothing of it. Known elsewhere is its core: of three values A, B, C beside each
 other B is a spike where (A - B) + (C - B) is large. Here both differences must be, and B is a run of beams: the range

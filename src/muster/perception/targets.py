@@ -1,6 +1,6 @@
 """Where a target is that several robots see: their sightings in the map, weighed by what each of them can know.
 
-The market paper (sections 4.2 and 5) measures how far its rangeBot's targets are from the truth and prints no rule by
+[market-paper] (sections 4.2 and 5) measures how far its rangeBot's targets are from the truth and prints no rule by
 which sightings are joined. Here sightings with range and bearing are averaged by their information, the best that can
 be done with independent errors; bearings alone are crossed.
 """

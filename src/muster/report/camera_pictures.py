@@ -52,7 +52,7 @@ class Looks:
             self._keep(look, self._folder)
 
     def plot(self, mission: Mission, file: Path) -> None:
-        """Draw a map of all estimates, of what was found and of what is there (TCF thesis, Figure 6.4).
+        """Draw a map of all estimates, of what was found and of what is there ([tcf-thesis], Figure 6.4).
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Points of interest: what was seen, what was found, what is there (TCF thesis, Figures 6.4 and 6.5)."""
+"""Points of interest: what was seen, what was found, what is there ([tcf-thesis], Figures 6.4 and 6.5)."""
 
 from __future__ import annotations
 

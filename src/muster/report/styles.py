@@ -1,6 +1,6 @@
 """How a robot looks in every picture: fixed by its place in the mission, whatever the plan.
 
-Colours are those of Okabe and Ito, "Color Universal Design" (2008), which readers of all kinds of colour vision tell
+Colours are those of [okabe2008], which readers of all kinds of colour vision tell
 apart; their yellow, too faint on white, is replaced by a wine red, and their black by a dark grey. After eight robots
 the colours come again with another marker and another stroke.
 """

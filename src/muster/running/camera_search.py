@@ -1,4 +1,4 @@
-"""Robots that look while a plan is carried out: what their cameras find becomes tasks (TCF thesis 4.3, 7.3).
+"""Robots that look while a plan is carried out: what their cameras find becomes tasks ([tcf-thesis] 4.3, 7.3).
 
 Each camera looks at its own rate from where it truly is. Its robot takes itself to be where its telemetry says, and
 tilted as its inertial unit says, both with the world's noise. Of a robot that is silent nobody hears what it sees.
@@ -15,7 +15,7 @@ import numpy as np
 
 from muster.execution.report import FoundReport, Report
 from muster.mission.model import Camera, Event, Found, Mission, MovedTask, Robot, Task, Work
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 from muster.motion.frames import angles
 from muster.motion.port import RobotPort
 from muster.perception.camera import Intrinsics, View, mount_of_mission

@@ -34,7 +34,7 @@ class Laser:
     world, robot
         the robot may not be in the world yet.
     scanner
-        by default the market paper's, without error.
+        by default [market-paper]'s, without error.
     seed
         of its errors.
     height_m

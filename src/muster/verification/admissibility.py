@@ -1,4 +1,4 @@
-"""Which rules a plan breaks: DESIGN section 4, thesis equations (3.14)-(3.16)."""
+"""Which rules a plan breaks: DESIGN section 4, [tcf-thesis] (3.14)-(3.16)."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def broken_rules(
 
 
 def _pair(mission: Mission, plan: Plan, robot: Robot, task: Task) -> Iterator[Violation]:
-    """Check the rules on who may do what; suitability is thesis equation (3.15)."""
+    """Check the rules on who may do what; suitability is [tcf-thesis] (3.15)."""
     if "skills" not in plan.ignored:
         lacking = [skill for skill in task.requires if skill not in robot.skills]
         if lacking:
@@ -82,7 +82,7 @@ def _pair(mission: Mission, plan: Plan, robot: Robot, task: Task) -> Iterator[Vi
 
 
 def _missing_prerequisites(robot: Robot, task: Task, done: set[str]) -> Iterator[Violation]:
-    """Check thesis equation (3.16)."""
+    """Check [tcf-thesis] (3.16)."""
     for name in task.prerequisites:
         if name not in done:
             yield Violation("prerequisite", robot.id, task.id, f"its prerequisite {name} is not in the plan")
@@ -112,7 +112,7 @@ def capacity_of(mission: Mission, plan: Plan, robot: Robot) -> float | None:
 def _above_capacity(
     mission: Mission, plan: Plan, route: MeasuredRoute, unit: str, tolerance: float
 ) -> Iterator[Violation]:
-    """Check thesis equation (3.14)."""
+    """Check [tcf-thesis] (3.14)."""
     capacity = capacity_of(mission, plan, route.robot)
     if capacity is not None and route.usage > capacity * (1 + tolerance):
         detail = f"usage {route.usage:.10g} {unit}, at most {capacity:.10g} {unit}"

@@ -1,9 +1,9 @@
 """The judge's own shortest ways of a drone over, below and around prisms: from above, and within about 0.5 %.
 
 A shortest way in the air turns on upright edges and on rims of prisms. Points are taken on those edges, first few and
-on coarse outlines, then ever closer to the best way found so far, on the true ones (Papadimitriou 1985, An algorithm
-for shortest-path motion in three dimensions, takes points on edges; here only near the way). Only prisms that some way
-has run into count: what is shortest without the others, and meets none of them, is shortest among all.
+on coarse outlines, then ever closer to the best way found so far, on the true ones ([papadimitriou1985] takes points on
+edges; here only near the way). Only prisms that some way has run into count: what is shortest without the others, and
+meets none of them, is shortest among all.
 """
 
 from __future__ import annotations

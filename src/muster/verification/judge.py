@@ -56,7 +56,7 @@ def _verdict(
         violations=(),
         objective_name=plan.objective or mission.rules.objective,
         usage_unit=unit,
-        total_cost=sum(usages),  # thesis equation (3.11)
+        total_cost=sum(usages),  # [tcf-thesis] (3.11)
         max_usage=max(usages),
         average=sum(step.arrival_usage for step in steps) / len(steps) if steps else 0.0,
         makespan_s=None if times is None else max((time.ends for time in times.values()), default=0.0),

@@ -1,4 +1,4 @@
-"""What each route costs: DESIGN section 4, thesis equations (3.8)-(3.10) and (3.28)-(3.29)."""
+"""What each route costs: DESIGN section 4, [tcf-thesis] (3.8)-(3.10) and (3.28)-(3.29)."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class MeasuredRoute:
 
     @property
     def usage(self) -> float:
-        """Travel plus work: u_i of thesis equation (3.10)."""
+        """Travel plus work: u_i of [tcf-thesis] (3.10)."""
         return self.travel + self.work
 
 
@@ -85,7 +85,7 @@ def work_seconds(robot: Robot, task: Task, metres: float) -> float:
 
 
 def equality_index(usages: Sequence[float]) -> float:
-    """Return 1 - Gini over the usages of all robots, thesis equations (3.28) and (3.29); 1 if all are 0.
+    """Return 1 - Gini over the usages of all robots, [tcf-thesis] (3.28) and (3.29); 1 if all are 0.
 
     From 1/M, where one of M robots has all the usage, to 1, where all have the same.
     """

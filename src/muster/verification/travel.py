@@ -1,4 +1,4 @@
-"""How far it is from place to place: DESIGN section 4, thesis equation (3.9)."""
+"""How far it is from place to place: DESIGN section 4, [tcf-thesis] (3.9)."""
 
 from __future__ import annotations
 

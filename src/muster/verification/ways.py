@@ -1,7 +1,7 @@
 """The judge's own shortest ways on a map: DESIGN section 4, travel `map`.
 
 In the plane they are exact: a shortest way turns only at corners of what is blocked, so it is a shortest path in the
-graph of corners that see each other (Lozano-Perez and Wesley 1979, An algorithm for planning collision-free paths).
+graph of corners that see each other [lozano1979].
 In the air they are approximations, see `air`.
 """
 

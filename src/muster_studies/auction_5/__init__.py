@@ -1,4 +1,4 @@
-"""Auction thesis, chapter 5: its three scenarios, Tables 5.2 to 5.23."""
+"""[auction-thesis], chapter 5: its three scenarios, Tables 5.2 to 5.23."""
 
 from muster_studies.auction_5.study import AUCTION_5
 

@@ -1,4 +1,4 @@
-"""Market paper, sections 4 and 5: its search and rescue scenario, and a richer one."""
+"""[market-paper], sections 4 and 5: its search and rescue scenario, and a richer one."""
 
 from muster_studies.market_rescue.study import MARKET_RESCUE
 

@@ -1,5 +1,1 @@
-"""Auctions without a centre in a simulated network: random teams, weather and faults, by a seed, and what must hold."""
-
-from muster_studies.negotiation.trial import Report, replay
-
-__all__ = ["Report", "replay"]
+"""What agreeing without a centre costs, how good its plans are, and how long it takes after faults."""

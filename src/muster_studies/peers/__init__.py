@@ -1,4 +1,4 @@
-"""`search` against solvers from elsewhere: OR-Tools, PyVRP, VROOM. Needs the extra `bench`."""
+"""`search` against solvers from elsewhere: OR-Tools, PyVRP, VROOM. Needs the extra `studies`."""
 
 from muster_studies.peers.study import Peers
 

@@ -14,7 +14,6 @@ from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification import verify
-from muster_studies.bench import large_mission
 from muster_studies.peers.cp_sat import CpSat
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, Peer
@@ -22,6 +21,7 @@ from muster_studies.peers.pyvrp_peer import PyVRP
 from muster_studies.peers.routing import Routing
 from muster_studies.peers.vroom_peer import Vroom
 from muster_studies.runs import mission_named
+from muster_studies.uniform import large_mission
 
 OWN = "search"
 """The allocator that is compared."""

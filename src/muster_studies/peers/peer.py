@@ -8,7 +8,7 @@ from typing import Protocol
 from muster.mission.errors import MissingExtraError
 from muster_studies.peers.instance import Instance, Routes
 
-EXTRA = "bench"
+EXTRA = "studies"
 
 
 @dataclass(frozen=True)

@@ -49,10 +49,10 @@ _USUAL, _SHORT = Limits(2.0, 1.0, 60.0), Limits(0.3, 0.1, 0.5)
 
 
 class Peers:
-    """`search` against OR-Tools, PyVRP and VROOM at equal time; needs the extra `bench`."""
+    """`search` against OR-Tools, PyVRP and VROOM at equal time; needs the extra `studies`."""
 
     name = "peers"
-    summary = "search against OR-Tools, PyVRP and VROOM at equal time (needs the extra bench)"
+    summary = "search against OR-Tools, PyVRP and VROOM at equal time (needs the extra studies)"
     tables: tuple[str, ...] = (*OBJECTIVES, LARGE)
 
     def __init__(self, seconds: float | None = None, large_seconds: float | None = None) -> None:

@@ -28,4 +28,4 @@ RESCUE = IllustratedRepetition(
     seeds=repetitions,
     pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
 )
-"""The market paper's scenario, carried out without noise, with noise, and with robots that fail; Figures 7 and 8."""
+"""[market-paper]'s scenario, carried out without noise, with noise, and with robots that fail; Figures 7 and 8."""

@@ -1,4 +1,4 @@
-"""How well a robot kept to its reference: market paper, section 4.2, (7) and (8), and section 5.
+"""How well a robot kept to its reference: [market-paper], section 4.2, (7) and (8), and section 5.
 
 The reference is the way of the path finder, its corners rounded by cubic Bezier splines (section 3.2), from the robot's
 start to its tasks in order. Robots are sent the way points of the path finder: they round corners as they can.

@@ -1,4 +1,4 @@
-"""Table A6.1: how far a drone's estimate drifts from where it is, with and without fixes (TCF thesis, Appendix A6)."""
+"""Table A6.1: how far a drone's estimate drifts from the truth, with and without fixes ([tcf-thesis], Appendix A6)."""
 
 from __future__ import annotations
 

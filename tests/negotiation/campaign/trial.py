@@ -2,8 +2,8 @@
 
 from tests.trials import Report
 
-from muster_studies.negotiation import replay
-from muster_studies.negotiation.observer import PROMISED_NEVER
+from muster.running.negotiation_trials import replay
+from muster.running.negotiation_trials.observer import PROMISED_NEVER
 
 
 def trial(seed):

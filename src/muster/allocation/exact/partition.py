@@ -1,6 +1,6 @@
 """The best average over all ways to part the tasks among the robots, by dynamic programming over sets of tasks.
 
-Routes are by Held and Karp (A Dynamic Programming Approach to Sequencing Problems, Journal of the SIAM 10(1), 1962). A
+Routes are by [held-karp1962]. A
 set of tasks is a number, with one bit for each task.
 """
 

@@ -1,4 +1,4 @@
-"""Robots that are discovered while a mission goes on: steps 2 to 4 of the thesis' Figure 5.7 (TCF), on ROS 1."""
+"""Robots that are discovered while a mission goes on: steps 2 to 4 of [tcf-thesis], Figure 5.7, on ROS 1."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The node `/mission_planner`: allocates tasks, and publishes each robot's task sequence (TCF thesis, Table 5.1, 3).
+"""The node `/mission_planner`: allocates tasks, and publishes each robot's task sequence ([tcf-thesis], Table 5.1, 3).
 
 It plans for the controller, and for whoever calls the service `mission_planner/plan` (std_srvs/Trigger). Latched topics
 `mission_planner/plan` and `<robot>/task_sequence` (std_msgs/String with JSON) hold the plan that was made last, those

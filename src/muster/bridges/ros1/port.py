@@ -1,4 +1,4 @@
-"""The port of a robot on ROS 1: it hears poses, and gives goals or velocities (TCF thesis, section 5.2, Figure 5.6).
+"""The port of a robot on ROS 1: it hears poses, and gives goals or velocities ([tcf-thesis], section 5.2, Figure 5.6).
 
 A robot only says where it is: whether it has passed a way point the port itself finds out (`follower`).
 """

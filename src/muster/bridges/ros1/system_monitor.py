@@ -1,4 +1,4 @@
-"""The node `/system_monitor`: pose, usage and availability of each robot (TCF thesis, Table 5.1, 2).
+"""The node `/system_monitor`: pose, usage and availability of each robot ([tcf-thesis], Table 5.1, 2).
 
 It discovers robots itself (Figure 5.7) and hears them whether a mission is carried out or not; what they do it hears
 from the controller. Latched topics, twice a second: `system_monitor/robots` (a list), and of each `<robot>/status`

@@ -1,6 +1,6 @@
 """Robots that the mission does not name: found by their topics, they join once they have said where they are.
 
-Steps 2 to 4 of the thesis' dynamic instantiation (TCF, Figure 5.7). What such a robot can do it says on
+Steps 2 to 4 of the dynamic instantiation of [tcf-thesis], Figure 5.7. What such a robot can do it says on
 `<robot>/muster`, a String in JSON with a robot's keys of a mission file; one that does not has their defaults.
 """
 

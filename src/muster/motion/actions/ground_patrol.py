@@ -1,10 +1,10 @@
-"""Drive a square around the task's position: TCF thesis section 4.2, end."""
+"""Drive a square around the task's position: [tcf-thesis] section 4.2, end."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import GROUND_PATROL, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, along, given
 
@@ -14,7 +14,7 @@ class GroundPatrol:
     """From the south-west corner north, east, south and back: 4 L."""
 
     name: str = "ground-patrol"
-    keys: ActionKeys = ACTION_KEYS["ground-patrol"]
+    keys: ActionKeys = GROUND_PATROL
 
     def plan(self, task: Task, robot: Robot) -> Doing:
         (side,), (x, y, *z) = given(task, "side_m"), task.position

@@ -1,6 +1,6 @@
 """Many robots at once on their ways to goals.
 
-Holonomic bodies that keep a chosen velocity for a step: TCF thesis (A.21), (A.22).
+Holonomic bodies that keep a chosen velocity for a step: [tcf-thesis] (A.21), (A.22).
 """
 
 from __future__ import annotations

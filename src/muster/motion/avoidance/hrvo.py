@@ -1,11 +1,11 @@
-"""HRVO: Snape, van den Berg, Guy and Manocha, "The hybrid reciprocal velocity obstacle" (2011); in the plane.
+"""HRVO: [snape2011]; in the plane.
 
 Two robots that pass each other should choose the same side. If a robot's velocity is to the right of the centre line of
 the reciprocal velocity obstacle, the left side of it is replaced by that of the velocity obstacle: passing on the wrong
 side costs more. The apex is where the two sides cross.
 
-A robot takes the velocity nearest to the preferred one outside all obstacles. Candidates are those of ClearPath (Guy et
-al. 2009): the preferred velocity, 0, the nearest point of each side, where sides cross each other and the disc of
+A robot takes the velocity nearest to the preferred one outside all obstacles. Candidates are those of ClearPath
+[guy2009]: the preferred velocity, 0, the nearest point of each side, where sides cross each other and the disc of
 possible speeds. Where none is outside all, it is the one whose first violated obstacle belongs to the farthest robot.
 
 Walls enter as half-planes that keep off them for the horizon (as ORCA's of velocity 0). Of two robots the

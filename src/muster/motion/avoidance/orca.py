@@ -1,4 +1,4 @@
-"""ORCA: van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (2011), in the plane and in space.
+"""ORCA: [berg2011], in the plane and in space.
 
 Each pair of robots leaves each other a half of the velocities (section 4); a robot takes the velocity nearest to the
 preferred one that all others and all walls leave it, by a linear program (section 5), and where they leave none, the

@@ -1,4 +1,4 @@
-"""RVO: reciprocal velocity obstacles as in the TCF thesis, appendix A3.2, with its symbols; in the plane.
+"""RVO: reciprocal velocity obstacles as in [tcf-thesis], appendix A3.2, with its symbols; in the plane.
 
 A robot tries velocities of several magnitudes M and directions phi_new = 0, n, 2n ... 2 pi (A.9). One is suitable if it
 lies in the velocity obstacle (A.5) of no other robot; the suitable one nearest to the ideal velocity v_id is taken
@@ -89,7 +89,7 @@ class Parameters:
 
 @dataclass(frozen=True)
 class Rvo:
-    """Reciprocal velocity obstacles of the TCF thesis, 2-D."""
+    """Reciprocal velocity obstacles of [tcf-thesis], 2-D."""
 
     params: Parameters = field(default_factory=Parameters)
     name: ClassVar[str] = "RVO"

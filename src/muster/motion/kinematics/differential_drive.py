@@ -1,4 +1,4 @@
-"""The differential drive of the TCF thesis, section 4.1.2: forward, backward, and turning."""
+"""The differential drive of [tcf-thesis], section 4.1.2: forward, backward, and turning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The quadcopter of the TCF thesis, section 4.1.1: it hovers, climbs, turns, and glides in any direction meanwhile.
+"""The quadcopter of [tcf-thesis], section 4.1.1: it hovers, climbs, turns, and glides in any direction meanwhile.
 
 (4.8) prints x' = v_x cos + v_y sin; right is x' = v_x cos - v_y sin, y' = v_x sin + v_y cos, with which (4.15) and
 (4.16) give the direction of travel that (4.11) asks for. (4.9) prints z_d - z_d for z_d - z_c.

@@ -1,6 +1,6 @@
 """The field of distances: for every cell of a grid how far the nearest obstacle is.
 
-A distance transform (Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012), to whole squares.
+A distance transform [felzenszwalb2012], to whole squares.
 """
 
 from __future__ import annotations

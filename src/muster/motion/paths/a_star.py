@@ -1,4 +1,4 @@
-"""A* between the centres of cells (Hart, Nilsson, Raphael 1968; market paper, section 3.2.2, (3))."""
+"""A* between the centres of cells ([hart1968]; [market-paper], section 3.2.2, (3))."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Dijkstra's algorithm between the centres of cells (Dijkstra 1959; market paper, section 3.2.1)."""
+"""Dijkstra's algorithm between the centres of cells ([dijkstra1959]; [market-paper], section 3.2.1)."""
 
 from __future__ import annotations
 

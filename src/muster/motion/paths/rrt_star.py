@@ -1,4 +1,4 @@
-"""RRT* (Karaman and Frazzoli 2011, "Sampling-based algorithms for optimal motion planning", algorithm 6)."""
+"""RRT* ([karaman2011], algorithm 6)."""
 
 from __future__ import annotations
 

@@ -1,12 +1,11 @@
 """The shortest path at any angle: taut pieces between corners of obstacles.
 
-In the plane it is the true shortest path. That turns at convex corners of obstacles only (Lozano-Perez, Wesley 1979),
-each time around the obstacle, so only pieces that are taut at both ends count (Oh and Leong 2017, "Edge N-level sparse
-visibility graphs"). Whether points see each other is decided in whole numbers: on a grid to 2^-16 of a cell, in a
-region to 2^-29 of its size.
+In the plane it is the true shortest path. That turns at convex corners of obstacles only [lozano1979],
+each time around the obstacle, so only pieces that are taut at both ends count [oh2017]. Whether points see each other
+is decided in whole numbers: on a grid to 2^-16 of a cell, in a region to 2^-29 of its size.
 
-In the air among upright prisms the problem is NP-hard (Canny and Reif 1987). There turning points are sampled on the
-obstacles' edges (Papadimitriou 1985), and the shortest way between samples is pulled straight: its turning points slide
+In the air among upright prisms the problem is NP-hard [canny1987]. There turning points are sampled on the
+obstacles' edges [papadimitriou1985], and the shortest way between samples is pulled straight: its turning points slide
 along their edges to the minimum, which is the only one for that sequence of edges, for the length is convex.
 """
 

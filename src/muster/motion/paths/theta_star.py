@@ -1,4 +1,4 @@
-"""Basic Theta* (Nash, Daniel, Koenig, Felner 2007): paths at any angle between the centres of cells."""
+"""Basic Theta* [nash2007]: paths at any angle between the centres of cells."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far robots were from a reference trajectory that somebody recorded: (7) and (8) of the market paper."""
+"""How far robots were from a reference trajectory that somebody recorded: (7) and (8) of [market-paper]."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ class Missions:
         WorkError
             if it cannot be read.
         """
-        return await self._pool.run("ground", {"mission": for_work(mission.text, mission.files, "mission")})
+        return await self._pool.run("floor_plan", {"mission": for_work(mission.text, mission.files, "mission")})
 
     async def edit(self, text: str, change: str, *arguments: object) -> str:
         """A text with one of `work.editing.changes.CHANGES`; nothing is kept.
@@ -122,7 +122,7 @@ class Missions:
         ParameterError
         """
         check_sizes(text, {})
-        return dict((await self._pool.run("look", {"text": text, "keys": keys}))["data"])
+        return dict((await self._pool.run("read_mission", {"text": text, "keys": keys}))["data"])
 
     async def create(
         self, who: Who, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None

@@ -1,6 +1,6 @@
 """The bodies that robots have in the physics world: sizes, masses, and what their motors can do.
 
-A ground robot that faces its way is the Wafflebot of the TCF thesis (Table A.20: 281 x 306 x 141 mm, 1.8 kg); wheels
+A ground robot that faces its way is the Wafflebot of [tcf-thesis] (Table A.20: 281 x 306 x 141 mm, 1.8 kg); wheels
 and track are those of the TurtleBot3 Waffle, which it is. A drone's mass and span are ours: the thesis gives none.
 Each has its size at the inflated radius of Table A.2, 0.3 m and 0.7 m, and another in proportion to a mission's
 `radius_m`, so that it fits into the disc or ball that others keep away from. Its density stays.

@@ -2,7 +2,7 @@
 
 Motors answer late. A body that lags goes on for a while after it is told to stand; where it would then stand is its
 position and its lag together, and that place moves at just the velocity that is asked for. So the crowd decides by that
-place as if robots answered at once, and nobody overshoots (a predictor as in Smith 1957). Each law knows its own lag.
+place as if robots answered at once, and nobody overshoots (a predictor as in [smith1957]). Each law knows its own lag.
 
 Within a step of the world a reference goes on at the velocity that the crowd chose, and the loops follow it. Whoever is
 to stand keeps the place where it was to come to a stand.

@@ -1,0 +1,99 @@
+"""What must hold of robots that agree: one owner a task, none that could be owned and is not, one view, a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+
+from muster.allocation.problem import Problem
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, Route
+from muster.negotiation.epoch import opening_of
+from muster.negotiation.knowledge import in_order
+from muster.negotiation.messages import Bid, Fact
+from muster.negotiation.methods import METHODS
+from muster.negotiation.negotiator import Negotiator
+from muster.negotiation.new_tasks import task_of
+from muster.negotiation.participation import rules_of
+from muster.running.negotiation_trials.observer import Observer
+from muster.running.negotiation_trials.scenario import Scene
+from muster.verification import verify
+
+
+class Judgement:
+    """Of the robots of one scene, in which the observer has seen who has begun what."""
+
+    def __init__(self, scene: Scene, problem: Problem, observer: Observer) -> None:
+        self._scene, self._problem, self._observer = scene, problem, observer
+        self._rules = rules_of(problem)
+
+    def wrong(self, nodes: Sequence[Negotiator]) -> Iterator[str]:
+        """What is wrong with robots that agree."""
+        owners: dict[str, list[str]] = {}
+        for node in nodes:
+            for claim in node.route:
+                owners.setdefault(claim.task, []).append(node.robot)
+        for task, robots in owners.items():
+            if len(robots) > 1 and not all(robot in self._observer.begun.get(task, ()) for robot in robots):
+                yield f"{task} is owned by {robots}"
+        for node in nodes:
+            if bids := self._could_add(node, nodes):
+                yield f"{node.robot} could add {bids}"
+            for task in sorted(_reserved(node) - {claim.task for claim in node.route}):
+                yield f"{node.robot} keeps {task} from others, and does not own it"
+        routes = [{robot: node.valuer.route(robot) for robot in self._rules.robots} for node in nodes]
+        if any(other != routes[0] for other in routes):
+            yield f"views differ: {routes}"
+        yield from self._judged(nodes[0], routes[0])
+
+    def _could_add(self, node: Negotiator, nodes: Sequence[Negotiator]) -> tuple[Bid, ...]:
+        """What a robot would bid if the auction began again, with all for sale that has to be."""
+        base = node.epoch.base
+        assert base is not None
+        begun = opening_of(base)
+        past = {task for tasks in begun.past.values() for task in tasks}
+        ahead = {robot: [t for t in node.valuer.route(robot) if t not in past] for robot in self._rules.robots}
+        asked = (
+            METHODS[self._scene.method].negotiator(self._problem, self._scene.terms, node.robot, incarnation=1).valuer
+        )
+        closed = self._closed(node, nodes).intersection(self._rules.with_added(base.added).tasks)
+        asked.begin(replace(begun, ahead=ahead, closed=closed))
+        return asked.bids(node.epoch.refused)
+
+    def _closed(self, node: Negotiator, nodes: Sequence[Negotiator]) -> set[str]:
+        """Tasks that nobody need own: done, cancelled, perhaps begun for good, or once and too few here that know."""
+        facts = node.facts
+        over = {fact.task for fact in facts if fact.kind in ("done", "cancelled")}
+        begun = {fact.task for fact in _begun_for_good(facts)}
+        few = sum(node.knows for node in nodes) <= len(self._rules.robots) // 2
+        return over | begun | (self._observer.once if few else set())
+
+    def _judged(self, node: Negotiator, routes: dict[str, list[str]]) -> Iterator[str]:
+        """What the judge says of the plan; what has happened may be: robots that forgot, or were alone, did it."""
+        past = {fact.task for fact in node.facts if fact.done} | set(self._observer.begun)
+        mission = _as_it_is(self._scene.mission, node, past)
+        before = Plan(routes=tuple(Route(r, tuple(t for t in tasks if t in past)) for r, tasks in routes.items()))
+        spent = {v.robot for v in verify(mission, before).violations if v.kind == "capacity"}
+        plan = Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes.items()))
+        for violation in verify(mission, plan).violations:
+            if not (violation.kind == "capacity" and violation.robot in spent):
+                yield f"judge: {violation}"
+
+
+def _as_it_is(mission: Mission, node: Negotiator, past: Collection[str]) -> Mission:
+    """The mission with the tasks that were added, in which what was begun waits for nothing."""
+    added = [task_of(fact.content) for fact in in_order(node.facts) if fact.kind == "added"]
+    tasks = (*mission.tasks, *added)
+    return replace(mission, tasks=tuple(replace(t, prerequisites=()) if t.id in past else t for t in tasks))
+
+
+def _begun_for_good(facts: Collection[Fact]) -> Iterator[Fact]:
+    """What tells that tasks may have been begun, unless that was waived."""
+    waived = {(fact.task, fact.robot, fact.content) for fact in facts if fact.kind == "waived"}
+    return (f for f in facts if f.kind == "begun" and (f.task, f.robot, f.content) not in waived)
+
+
+def _reserved(node: Negotiator) -> set[str]:
+    """Tasks not done that a robot has said, since it started, that it is going to begin for good."""
+    done, said = {fact.task for fact in node.facts if fact.done}, (node.robot, str(node.incarnation).encode())
+    return {fact.task for fact in _begun_for_good(node.facts) if (fact.robot, fact.content) == said} - done

@@ -1,0 +1,159 @@
+"""Everything that happens in one run, by a seed: mission, terms, weather, links, and faults with their times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from itertools import permutations
+from random import Random
+from typing import Any
+
+from muster.allocation import consensus_bundle
+from muster.allocation.auction import Parameters
+from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.mission.model import Mission
+from muster.negotiation.members import Patience
+from muster.negotiation.memory_network import Weather
+from muster.running.negotiation_trials.faults import Incident, Links, incidents
+from muster.running.negotiation_trials.moving_partitions import siege
+from muster.running.negotiation_trials.random_missions import random_mission
+
+SIEGES = 0.3
+"""Which share of the scenes are sieges."""
+
+BUNDLES = 0.25
+"""In which share robots agree by consensus-bundle."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One run.
+
+    Parameters
+    ----------
+    method, terms
+        a name of METHODS, and its parameters.
+    links
+        None: everybody hears everybody.
+    work_s
+        how long robots take for a task; None: they only agree.
+    zeal
+        the chance that who has nothing to do tries one of its tasks in the next tenth of a second.
+    patience
+        of the robots.
+    incidents
+        in no order.
+    quiet_s
+        from when on nothing happens any more but what the weather does.
+    """
+
+    seed: int
+    mission: Mission
+    method: str
+    terms: Any
+    weather: Weather
+    links: Links | None
+    work_s: float | None
+    incidents: tuple[Incident, ...]
+    quiet_s: float
+    zeal: float = 1.0
+    patience: Patience = field(default_factory=Patience)
+
+    def described(self) -> Iterator[str]:
+        """Lines for people."""
+        weather = self.weather
+        terms = ", ".join(f"{name} {value}" for name, value in asdict(self.terms).items())
+        mission = self.mission
+        yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; {self.method}, {terms}"
+        yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s"
+        yield f"taken for lost after {self.patience.suspect_s:g} s; zeal {self.zeal:g}"
+        yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
+        if self.links is not None:
+            yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
+        for what in sorted(self.incidents, key=lambda incident: incident.at_s):
+            groups = " | ".join(" ".join(group) for group in what.groups)
+            links = ", ".join(f"{a} > {b}" for a, b in sorted(what.links))
+            task = "" if what.task is None else what.task.id
+            yield f"{what.at_s:8.3f} s {what.kind} {what.robot}{groups}{links} {task}".rstrip()
+
+
+def scene(seed: int) -> Scene:
+    """The scene of a seed."""
+    random = Random(f"negotiation {seed}")
+    return _besieged(seed, random) if random.random() < SIEGES else _troubled(seed, random)
+
+
+def _troubled(seed: int, random: Random) -> Scene:
+    """A team that has all kinds of bad luck while it agrees."""
+    robots = random.choice((2, 3, 4, 5, 6, 7, random.randint(8, 12)))
+    once = random.choice((0.0, 0.0, 0.2, 0.5))
+    mission = random_mission(random, robots=robots, tasks=random.randint(1, 14), once=once)
+    names = [robot.id for robot in mission.robots]
+    quiet_s = random.uniform(5, 30) if random.random() < 0.2 else random.uniform(1, 8)
+    return Scene(
+        seed,
+        mission,
+        *_terms(random),
+        weather=_weather(random),
+        links=_links(names, random) if random.random() < 0.25 else None,
+        work_s=random.choice((None, random.uniform(0.3, 3.0))),
+        incidents=tuple(incidents(mission, names, quiet_s, random)),
+        quiet_s=quiet_s,
+    )
+
+
+def _besieged(seed: int, random: Random) -> Scene:
+    """A small team that carries out tasks, most of which nobody may begin twice, while cuts move."""
+    robots, tasks = random.choice((2, 3, 3, 3, 4, 5)), random.randint(1, 9)
+    once, free = random.choice((0.6, 1.0, 1.0)), random.random() < 0.8
+    mission = random_mission(random, robots=robots, tasks=tasks, once=once, free=free)
+    names, weather, patience = [robot.id for robot in mission.robots], _weather(random), Patience()
+    if random.random() < 0.7:  # who soon loses patience can be lost more often, but must hear most beats
+        patience = Patience(suspect_s=1.2, bid_s=1.8, mute_s=1.5)
+        weather = Weather(loss=0.3 * weather.loss, delay_s=0.3 * weather.delay_s, jitter_s=0.1 * weather.jitter_s)
+    quiet_s = patience.suspect_s * random.uniform(5, 20)
+    return Scene(
+        seed,
+        mission,
+        *_terms(random),
+        weather=weather,
+        links=None,
+        work_s=patience.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
+        incidents=tuple(siege(mission, names, quiet_s, patience.suspect_s, random)),
+        quiet_s=quiet_s,
+        zeal=random.choice((0.1, 0.3, 0.6)),
+        patience=patience,
+    )
+
+
+def _terms(random: Random) -> tuple[str, Any]:
+    """How robots agree, by name, and on which terms."""
+    if random.random() < BUNDLES:
+        return "consensus-bundle", consensus_bundle.Parameters()
+    terms = Parameters(bid=random.choice(BIDS), placement=random.choice(PLACEMENTS), winner=random.choice(WINNERS))
+    return "auction", terms
+
+
+def _weather(random: Random) -> Weather:
+    return Weather(
+        loss=random.choice((0.0, random.uniform(0, 0.5))),
+        delay_s=random.uniform(0.001, 0.1),
+        jitter_s=random.choice((0.0, 0.05, 0.3)),
+        duplication=random.choice((0.0, 0.2)),
+    )
+
+
+def _links(names: Sequence[str], random: Random) -> Links:
+    """A random tree with some more links; sometimes these go one way, and sometimes some of the tree do, too."""
+    links, one_way, broken = set[tuple[str, str]](), random.random() < 0.3, random.choice((0.0, 0.2))
+    for k in range(1, len(names)):
+        a, b = names[k], names[random.randrange(k)]
+        links |= _link(a, b) if not one_way or random.random() >= broken else {random.choice(((a, b), (b, a)))}
+    for a, b in permutations(names, 2):
+        if random.random() < 0.1:
+            links |= {(a, b)} if one_way else _link(a, b)
+    return frozenset(links)
+
+
+def _link(a: str, b: str) -> set[tuple[str, str]]:
+    return {(a, b), (b, a)}

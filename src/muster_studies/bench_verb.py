@@ -1,0 +1,77 @@
+"""`muster bench`: speed on this machine; `muster bench peers`: quality against other solvers at equal time."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+
+from muster.cli.options import format_option, quiet_option
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster_studies import study_verb
+from muster_studies.benches import BENCHES, bench_named
+
+
+@click.group(invoke_without_command=True, short_help="Measure speed on this machine, or quality against other solvers.")
+@click.option("--only", metavar="NAMES", help=f"Some of: {', '.join(BENCHES)}.")
+@click.option("--runs", type=click.IntRange(min=1), default=5, show_default=True, help="Runs of each; medians count.")
+@format_option
+@quiet_option
+@click.pass_context
+def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: bool, verbose: bool) -> None:
+    """Measure speed on this machine: medians over runs, with the range, beside the aim.
+
+    Without --only a bench that needs a part that is not installed is skipped, with a line that says so.
+    """
+    import json
+
+    from muster.cli.tables import print_table
+
+    if ctx.invoked_subcommand is not None:
+        return
+    names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
+    for name in names:
+        if name not in BENCHES:
+            raise ParameterError(f"--only: {name}; expected {', '.join(BENCHES)}{did_you_mean(name, BENCHES)}")
+    found = []
+    for name in names:
+        if not quiet:
+            click.echo(f"measuring {name} ...", err=True)
+        try:
+            found += bench_named(name)(runs)
+        except MissingExtraError as error:
+            if only is not None:
+                raise
+            click.echo(f"skipped {name}: {error}", err=True)
+    if form == "json":
+        click.echo(json.dumps([asdict(m) for m in found], indent=1))
+        return
+    rows = [
+        (m.name, _figure(m.median), f"{_figure(m.lowest)} - {_figure(m.highest)}", m.unit, m.aim, m.note) for m in found
+    ]
+    print_table(("what", "median", "range", "unit", "aim", "note"), rows, right=("median", "range"))
+
+
+@command.command("peers")
+@click.option("--tables", metavar="N,N", help="Only these tables: total+max, total, max, average, makespan, large.")
+@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]")
+@click.option("--quick", is_flag=True, help="Small missions and short time limits, to see that everything works.")
+@format_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
+)
+@quiet_option
+@click.pass_context
+def peers(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with OR-Tools, PyVRP and VROOM.
+
+    All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `studies`.
+    """
+    return int(ctx.invoke(study_verb.command, name="peers", **options))
+
+
+def _figure(value: float) -> str:
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}" if abs(value) >= 1e-3 else "0"

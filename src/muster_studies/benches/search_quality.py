@@ -1,0 +1,125 @@
+"""How near the search comes to the best plans known, in a second or so: medians over seeds, values from the judge."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from muster.allocation.problem import Problem
+from muster.allocation.registry import ALLOCATORS
+from muster.allocation.stop import Stop
+from muster.mission.model import Mission
+from muster.planning.loading import load
+from muster_studies.benches.measurement import Measurement
+from muster_studies.runs import accepted
+
+_FREE = ("prerequisites", "suitability")
+_WITHIN = 1e-4  # of the best known value: 0.01 %
+
+
+@dataclass(frozen=True)
+class Case:
+    """A mission, the objective value of the best plan known, and the seconds in which it is to be found."""
+
+    mission: str
+    objective: str
+    best: float
+    seconds: float
+    ignored: tuple[str, ...] = ()
+    salesmen: int | None = None
+
+    @property
+    def name(self) -> str:
+        salesmen = f", {self.salesmen} salesmen" if self.salesmen else ""
+        ignored = f", without {' and '.join(self.ignored)}" if self.ignored else ""
+        return f"{self.mission}{salesmen}, {self.objective}{ignored}, {self.seconds:g} s"
+
+    def load(self) -> Mission:
+        return load(self.mission, salesmen=self.salesmen) if self.salesmen else load(self.mission)
+
+
+def _under_rules(mission: str, values: Sequence[float], seconds: float) -> Iterator[Case]:
+    """Without constraints, with prerequisites, with suitability, with both."""
+    rules: tuple[tuple[str, ...], ...] = (_FREE, ("suitability",), ("prerequisites",), ())
+    for ignored, best in zip(rules, values, strict=True):
+        yield Case(mission, "total+max", best, seconds, ignored)
+
+
+def _salesmen(mission: str, values: Sequence[float], seconds: float) -> Iterator[Case]:
+    for salesmen, best in zip((2, 3, 5, 7), values, strict=True):
+        yield Case(mission, "max", best, seconds, salesmen=salesmen)
+
+
+CASES: tuple[Case, ...] = (
+    *_under_rules("31T-6R", (191.1537, 199.3274, 206.6694, 213.5615), 1.0),
+    Case("31T-6R-as-run", "total+max", 206.0983, 1.0, ("prerequisites",)),
+    Case("31T-6R-as-run", "total+max", 210.4557, 1.0),
+    *_under_rules("16T-3R", (320.9016, 321.3168, 340.7139, 342.9001), 0.2),
+    *_under_rules("24T-5R", (170.7460, 174.4141, 186.3985, 189.2522), 0.5),
+    Case("31T-6R50", "total+max", 213.5615, 1.0),
+    Case("31T-3R44-3R26", "total+max", 219.4802, 1.0),
+    Case("31T-2R65-4R25", "total+max", 232.1816, 1.0),
+    Case("eil51-3", "total+max", 629.9601, 0.5),
+    Case("eil51-5", "total+max", 629.9601, 0.5),
+    Case("eil51-7", "total+max", 629.9601, 0.5),
+    Case("berlin52-5", "total+max", 11923.2947, 1.0),
+    Case("eil76-7", "total+max", 778.0283, 1.0),
+    *_salesmen("eil51", (222.7334, 159.5715, 118.1338, 112.0714), 2.0),
+    *_salesmen("berlin52", (4110.2131, 3069.5857, 2440.9220, 2440.9220), 2.0),
+    *_salesmen("eil76", (280.8539, 195.7222, 142.8842, 127.5617), 5.0),
+)
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Objective values of one case, a seed each; inf for a plan that leaves something out."""
+
+    case: Case
+    values: tuple[float, ...]
+
+    @property
+    def gaps(self) -> list[float]:
+        """Per cent above the best value known."""
+        return [100 * (value / self.case.best - 1) for value in self.values]
+
+    @property
+    def reached(self) -> int:
+        """How many seeds came within 0.01 % of it."""
+        return sum(value <= self.case.best * (1 + _WITHIN) for value in self.values)
+
+    @property
+    def median(self) -> float:
+        return statistics.median(self.values)
+
+
+def quality(case: Case, seeds: int, iterations: int | None = None) -> Quality:
+    """Search with seeds 0, 1, ... for the case's time, or for so many iterations.
+
+    Raises
+    ------
+    MusterError
+        if the judge rejects a plan.
+    """
+    problem = Problem.compile(case.load(), case.objective, case.ignored).ready()
+    return Quality(case, tuple(_value(problem, case, seed, iterations) for seed in range(seeds)))
+
+
+def _value(problem: Problem, case: Case, seed: int, iterations: int | None) -> float:
+    stop = Stop(time_limit=case.seconds) if iterations is None else Stop(iterations=iterations)
+    plan = ALLOCATORS["search"].solve(problem, stop, seed=seed)
+    verdict = accepted(problem.mission, plan, f"{case.name}, seed {seed}")
+    value = verdict.value(case.objective)
+    return float("inf") if value is None or verdict.tasks_completed < verdict.tasks_total else value
+
+
+def search_quality(runs: int) -> list[Measurement]:
+    """The search on missions whose best plans are known; a seed a run."""
+    return [_above_best(quality(case, runs)) for case in CASES]
+
+
+def _above_best(found: Quality) -> Measurement:
+    note = (
+        f"median {found.median:.4f}, best known {found.case.best:.4f}, reached by {found.reached} of {len(found.gaps)}"
+    )
+    return Measurement.over_runs(f"search, {found.case.name}", "% above best known", found.gaps, "<= 0.01", note)

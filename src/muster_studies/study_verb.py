@@ -1,0 +1,204 @@
+"""`muster study`: a published experiment, repeated beside its published numbers."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
+from itertools import takewhile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.options import format_option, quiet_option
+from muster.mission.errors import ParameterError
+
+if TYPE_CHECKING:
+    from muster_studies.tables import Cell, Report, Table
+
+_SHORT_HEADERS = {"iterations": "iter."}  # what is wider than its numbers
+_LEAST_SECONDS = 0.01
+
+
+@click.command(short_help="Repeat a published experiment beside its published numbers.")
+@click.argument("name", required=False)
+@click.option("--list", "list_studies", is_flag=True, help="List the studies.")
+@click.option("--tables", metavar="N,N", help="Only these tables, such as 3.2,3.5.")
+@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 10; with --quick 2]")
+@click.option("--iterations", type=click.IntRange(min=0), metavar="N", help="Of random algorithms, in all tables.")
+@click.option("--quick", is_flag=True, help="The published numbers of iterations only, and few seeds.")
+@click.option(
+    "--workers", type=click.IntRange(min=1), metavar="N", help="Processes.  [default: one for each processor]"
+)
+@format_option
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write the tables (.json, .md, or text).",
+)
+@click.option(
+    "--plot", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Draw its pictures into a folder."
+)
+@quiet_option
+def command(
+    name: str | None,
+    list_studies: bool,
+    tables: str | None,
+    seeds: int | None,
+    iterations: int | None,
+    quick: bool,
+    workers: int | None,
+    form: str,
+    output: Path | None,
+    plot: Path | None,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Repeat the published experiment NAME and print its tables, published and own numbers side by side.
+
+    All own numbers are the judge's. Without NAME the studies are listed.
+    """
+    from muster_studies.effort import Effort
+    from muster_studies.registry import Illustrated, study_named
+
+    if name is None or list_studies:
+        _list(form)
+        return DONE
+    study = study_named(name)
+    wanted = tuple(number.strip() for number in (tables or "").split(",") if number.strip())
+    effort = Effort(seeds=seeds, iterations=iterations, quick=quick, tables=wanted)
+    if output is not None and (output.is_dir() or not output.parent.is_dir()):
+        raise ParameterError(f"{output}: cannot be written; expected a file in a folder that exists")
+    if plot is not None and not isinstance(study, Illustrated):
+        raise ParameterError(f"--plot: study {study.name} has no pictures; expected one that has, such as rvo")
+    with _progress_bar(not quiet, study.name) as on_done:
+        report = study.run(effort, workers or os.cpu_count() or 1, on_done)
+    _show(report, form, output)
+    if plot is not None and isinstance(study, Illustrated):
+        plot.mkdir(parents=True, exist_ok=True)
+        for path in study.draw(effort, plot):
+            click.echo(f"drew {path}", err=True)
+    if verbose:
+        click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)
+    return DONE
+
+
+def _list(form: str) -> None:
+    from muster.cli.tables import print_table
+    from muster_studies.registry import STUDIES
+    from muster_studies.tables import span
+
+    if form == "json":
+        click.echo(_json([{"name": s.name, "summary": s.summary, "tables": s.tables} for s in STUDIES.values()]))
+        return
+    rows = [(s.name, s.summary, span(s.tables)) for s in STUDIES.values()]
+    print_table(("study", "what it is", "tables"), rows)
+
+
+def _show(report: Report, form: str, output: Path | None) -> None:
+    if form == "json":
+        click.echo(_json(report.as_dict()))
+    else:
+        _print_report(report)
+    if output is None:
+        return
+    if output.suffix == ".md":
+        from muster_studies.markdown import as_markdown
+
+        output.write_text(as_markdown(report, f"muster {' '.join(sys.argv[1:])}"), encoding="utf-8")
+        return
+    with redirect_stdout(StringIO()) as text:
+        if form == "json" or output.suffix == ".json":
+            click.echo(_json(report.as_dict()))
+        else:
+            _print_report(report)
+    output.write_text(text.getvalue(), encoding="utf-8")
+
+
+def _json(data: object) -> str:
+    import json
+
+    return json.dumps(data, indent=1)
+
+
+def _print_report(report: Report) -> None:
+    seeds = "" if report.seeds is None else f"seeds 0 to {report.seeds - 1}; "
+    _print_text(f"{report.study}: {report.document}; {seeds}{report.runs} runs, {report.cpu_s:.1f} s of processor time")
+    for line in (*report.legend, ""):
+        _print_text(line)
+    for table in report.tables:
+        _print_table(table)
+
+
+def _print_table(table: Table) -> None:
+    from muster.cli.tables import print_table
+
+    headers = [_SHORT_HEADERS.get(column, column) for column in table.columns]
+    numeric = [header for k, header in enumerate(headers) if any(isinstance(row[k], int | float) for row in table.rows)]
+    rows = [
+        [_text(column, cell, table.decimals) for column, cell in zip(table.columns, row, strict=True)]
+        for row in table.rows
+    ]
+    print_table(headers, _without_repetition(rows), title=table.heading, right=numeric)
+    for note in table.notes:
+        _print_text(note)
+    _print_text("")
+
+
+def _without_repetition(rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
+    """Rows in which the first cells are empty as long as they are those of the row above."""
+    above: Sequence[str] = ()
+    for row in rows:
+        same = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(row, above, strict=False)))
+        yield [*[""] * same, *row[same:]]
+        above = row
+
+
+def _print_text(line: str) -> None:
+    from rich.text import Text
+
+    from muster.cli.tables import console
+
+    console().print(Text(_printable(line)))
+
+
+def _printable(text: str) -> str:
+    """The text with `=` for a check mark where standard output cannot show one."""
+    try:
+        "✓".encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        return text.replace("✓", "=")
+    return text
+
+
+def _text(column: str, cell: Cell, decimals: int) -> str:
+    from muster.cli.tables import sequence
+
+    if isinstance(cell, float):
+        return "<0.01" if column == "s" and cell < _LEAST_SECONDS else f"{cell:.{decimals}f}"
+    if isinstance(cell, tuple):
+        if cell and isinstance(cell[0], float):
+            return " to\n".join(f"{value:.2f}" for value in cell)
+        return sequence([str(part) for part in cell])
+    return "-" if cell is None else _printable(str(cell))
+
+
+@contextmanager
+def _progress_bar(wanted: bool, study: str) -> Iterator[Callable[[int, int], None] | None]:
+    """A function that shows how many runs are done; None where nothing is to be shown."""
+    if not wanted or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn(study), BarColumn(), MofNCompleteColumn(), TextColumn("runs"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        line = bar.add_task("", total=None)
+        yield lambda done, whole: bar.update(line, completed=done, total=whole)

@@ -1,0 +1,100 @@
+"""Any function that makes routes is an allocator; what it returns is checked."""
+
+import pytest
+
+import muster
+from muster.allocation.allocator import Allocator
+from muster.allocation.problem import Problem
+from muster.allocation.registry import ALLOCATORS, allocator_of
+from muster.allocation.stop import Stop
+
+
+def nearest(problem, stop, seed, most=2):
+    """Give each robot the first tasks that it may do."""
+    routes = [[] for _ in problem.robots]
+    free = [j for j in range(len(problem.tasks)) if not problem.prerequisites[j]]
+    for i, route in enumerate(routes):
+        route += [j for j in free if problem.may(i, j)][:most]
+        free = [j for j in free if j not in route]
+    return routes
+
+
+def solved(allocator, **parameters):
+    problem = Problem.compile(muster.load("31T-6R50")).ready()
+    chosen = allocator_of(allocator)
+    params = chosen.parameters(**parameters)
+    return problem, chosen.solve(problem, Stop(), seed=3, params=params)
+
+
+def test_a_function_with_a_parameter_of_its_own_makes_a_plan():
+    _, plan = solved(nearest)
+    assert plan.allocator == "nearest"
+    assert max(len(route.tasks) for route in plan.routes) == 2
+    assert muster.verify(muster.load("31T-6R50"), plan).valid
+    assert plan.history[-1][1] == plan.objective_value
+    _, fewer = solved(nearest, most=1)
+    assert max(len(route.tasks) for route in fewer.routes) == 1
+
+
+def test_an_allocator_whose_algorithm_returns_plain_routes():
+    def allocate(problem, stop, seed, params, start):
+        return nearest(problem, stop, seed)
+
+    described = Allocator(
+        name="first", summary="-", anytime=False, parameters=ALLOCATORS["greedy"].parameters, algorithm=allocate
+    )
+    assert solved(described)[1].routes == solved(nearest)[1].routes
+
+
+def test_a_function_is_given_what_it_asks_for():
+    seen = {}
+
+    def watch(problem, *, start, seed, params, stop):
+        seen.update(start=start, seed=seed, stop=stop)
+        return [[] for _ in problem.robots]
+
+    solved(watch)
+    assert seen["start"] is None
+    assert seen["seed"] == 3
+    assert isinstance(seen["stop"], Stop)
+
+
+@pytest.mark.parametrize(
+    ("returned", "message"),
+    [
+        (lambda m, n: None, "returned NoneType; expected {m} routes, one for each robot"),
+        (lambda m, n: [[]], "returned 1 routes; expected {m} routes, one for each robot"),
+        (lambda m, n: [["a"]] + [[]] * (m - 1), "returned a route that is no list of indices of tasks; expected"),
+        (lambda m, n: [[n]] + [[]] * (m - 1), "returned index {n}; expected indices from 0 to {last}"),
+        (lambda m, n: [[0], [0]] + [[]] * (m - 2), "returned task 0 twice; expected each at most once"),
+    ],
+)
+def test_what_a_function_returns_is_checked(returned, message):
+    problem = Problem.compile(muster.load("31T-6R50"))
+    m, n = len(problem.robots), len(problem.tasks)
+
+    def wrong(problem):
+        return returned(m, n)
+
+    with pytest.raises(muster.ParameterError) as refusal:
+        solved(wrong)
+    assert f"allocator wrong: {message.format(m=m, n=n, last=n - 1)}" in str(refusal.value)
+
+
+def nothing():
+    return []
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (nothing, "no parameters; expected the problem as the first"),
+        (lambda problem, sead: [], "expected a default, or one of stop, seed, params, start; did you mean 'seed'?"),
+        (3, "allocator: 3; expected a name, an Allocator or a function"),
+        ("serch", "did you mean 'search'?"),
+    ],
+)
+def test_what_cannot_be_called_as_an_allocator_is_refused(function, message):
+    with pytest.raises(muster.ParameterError) as refusal:
+        allocator_of(function)
+    assert message in str(refusal.value)
