@@ -86,9 +86,19 @@ def test_where_nothing_is_heard_any_more_the_last_telemetry_counts():
 )
 def test_the_exit_code_and_the_last_lines(capsys, moving, halted, code):
     report = Report(
-        mission_time_s=1.0, tasks_done=(), tasks_lost=(("t", "why"),), contacts=None, min_distance_m=None, waiting_s=0.0,
-        reallocations=0, robots=(), starts_s={}, ends_s={}, objective=ObjectiveReport("max", None, 0.0), tasks=(),
-    )  # fmt: skip
+        mission_time_s=1.0,
+        tasks_done=(),
+        tasks_lost=(("t", "why"),),
+        contacts=None,
+        min_distance_m=None,
+        waiting_s=0.0,
+        reallocations=0,
+        robots=(),
+        starts_s={},
+        ends_s={},
+        objective=ObjectiveReport("max", None, 0.0),
+        tasks=(),
+    )
     wishes = SimpleNamespace(form="json", verbose=False, require_complete=True, quiet=True)
     halt = threading.Event()
     if halted:
