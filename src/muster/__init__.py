@@ -21,8 +21,9 @@ from muster.mission.errors import (
 )
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route, read_plan
+from muster.planning.judging import plot, verify
 from muster.planning.loading import load
-from muster.planning.planning import plot, solve, verify
+from muster.planning.solving import solve
 from muster.running.running import carry_out, simulate
 
 if TYPE_CHECKING:

@@ -139,6 +139,12 @@ def asked(muster, tmp_path, monkeypatch):
         (("--tls-cert", "nowhere", "--tls-key", "tokens"), "nowhere: No such file or directory"),
         (("--user-header", "X-User"), "--user-header given without --tokens FILE"),
         (("--user-header", "X-User", "--tokens", "tokens"), "--user-header X-User given without --trusted-proxy"),
+        (
+            ("--user-header", "X-User", "--tokens", "tokens", "--trusted-proxy", "::1"),
+            "--user-header X-User given without --proxy-secret FILE, as any process of that machine could send",
+        ),
+        (("--proxy-secret", "tokens"), "--proxy-secret given without --tokens FILE"),
+        (("--proxy-secret", "tokens", "--tokens", "tokens"), "--proxy-secret tokens given without --user-header"),
         (("--trusted-proxy", "127.0.0.1"), "--trusted-proxy given without --tokens FILE"),
         (("--trusted-proxy", "x", "--tokens", "tokens"), "--trusted-proxy: 'x'; expected an IP address or network"),
         (("--public-origin", "https://a.b"), "--public-origin given without --tokens FILE"),
@@ -147,8 +153,8 @@ def asked(muster, tmp_path, monkeypatch):
         (("--role", "watch"), "--role watch given without --new-token NAME; expected both"),
         (("--new-token", "a b"), "--new-token: name: 'a b'; expected up to 64 of letters"),
         (("--new-token", "wall", "--tokens", "tokens"), "tokens: wall has a token; expected another name"),
-        (("--db", "mysql://secret@host/x"), "--db: mysql://...; expected sqlite:///FILE or postgresql://"),
-        (("--db", "postgresql://u:secret@localhost:1/x"), "PostgreSQL x at localhost:1: "),
+        (("--db", "mysql://pa55word@host/x"), "--db: mysql://...; expected sqlite:///FILE or postgresql://"),
+        (("--db", "postgresql://u:pa55word@localhost:1/x"), "PostgreSQL x at localhost:1: "),
         (("--db", "sqlite:////proc/x/muster.db"), "/proc/x/muster.db.lock: "),
         (("--db", "sqlite:///tokens"), "tokens: "),
         (("nowhere.yaml",), "nowhere.yaml: no file, and no mission of that name"),
@@ -162,7 +168,7 @@ def test_what_it_refuses(asked, tmp_path, words, said):
     *_, last = err.splitlines()
     assert last.startswith(said)
     assert code == 2
-    assert "secret" not in err
+    assert "pa55word" not in err
     assert "Traceback" not in err
 
 

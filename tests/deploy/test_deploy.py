@@ -142,6 +142,8 @@ def test_nginx():
     assert sum(line.count("{") for line in lines) == sum(line.count("}") for line in lines)
     assert "proxy_set_header Upgrade $http_upgrade;" in lines
     assert "proxy_set_header X-Forwarded-User $remote_user;" in lines
+    assert "include /etc/nginx/muster-secret.conf;" in lines  # without it the server believes no user of the proxy
+    assert "proxy_set_header X-Muster-Proxy-Secret $(cat /etc/muster/proxy-secret);" in _text("nginx.conf")
 
 
 def _unit():

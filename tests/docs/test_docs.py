@@ -11,9 +11,9 @@ from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, run
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 from muster.mission.yaml_reader import parse_yaml
-from muster.planning.planning import DEFAULT_ALLOCATOR
+from muster.planning.options import DEFAULT_ALLOCATOR
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from muster.mission.clock import Clock, SystemClock
@@ -18,12 +18,29 @@ def usual_time_limit(anytime: bool, time_limit: float | None, iterations: int | 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far an algorithm is: seconds and iterations done, and the best plan's figures so far."""
+    """How far an algorithm is.
+
+    Parameters
+    ----------
+    elapsed_s, iterations
+        seconds and iterations done.
+    weight, objective
+        of the best plan so far.
+    share
+        of all work that is done, 0 to 1; None where that is not known.
+    bound
+        of the objective, where one was asked for and the best plan does all tasks.
+    history
+        (seconds, objective) of each improvement; it goes on growing.
+    """
 
     elapsed_s: float
     iterations: int
     weight: float
     objective: float
+    share: float | None = None
+    bound: float | None = None
+    history: Sequence[tuple[float, float]] = ()
 
 
 class Stop:
@@ -146,4 +163,7 @@ class Stop:
     def _report(self, now: float) -> None:
         self._reported = now
         if self._on_progress is not None and self.best is not None:
-            self._on_progress(Progress(now - self._begin, self.iterations_done, *self.best))
+            reached = Progress(
+                now - self._begin, self.iterations_done, *self.best, share=self.share or None, history=self.history
+            )
+            self._on_progress(reached)

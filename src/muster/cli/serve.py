@@ -64,6 +64,12 @@ _LOCAL = "local"
 @click.option(
     "--trusted-proxy", "trusted_proxies", multiple=True, metavar="ADDRESS", help="Whose headers are believed."
 )
+@click.option(
+    "--proxy-secret",
+    type=_FILE,
+    metavar="FILE",
+    help="What the proxy shows in X-Muster-Proxy-Secret: with --user-header.",
+)
 @click.option("--tls-cert", "certificate", type=_FILE, metavar="PEM", help="Serve HTTPS with this certificate.")
 @click.option("--tls-key", "key", type=_FILE, metavar="PEM", help="Its key.")
 @click.option("--insecure-http", is_flag=True, help="Listen beyond this machine without TLS.")

@@ -29,7 +29,7 @@ from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.plan import Plan, read_plan
-from muster.planning.planning import DEFAULT_ALLOCATOR
+from muster.planning.options import DEFAULT_ALLOCATOR
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator

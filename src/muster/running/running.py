@@ -13,7 +13,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
-from muster.planning.planning import require_mission
+from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
     import threading

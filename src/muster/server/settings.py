@@ -46,8 +46,9 @@ class Settings:
         worlds of real robots in which runs may be started here: `ros1`, `ros2`, `mavlink`.
     tokens
         a file of tokens with roles; None: no token is asked for, which is allowed on loopback alone.
-    user_header
-        the header in which a reverse proxy says who asks, and from which addresses that is believed.
+    user_header, trusted_proxies, proxy_secret
+        the header in which a reverse proxy says who asks, from which addresses that is believed, and a file with the
+        secret that the proxy has to show.
     certificate, key
         of TLS.
     insecure_http
@@ -73,6 +74,7 @@ class Settings:
     tokens: Path | None = None
     user_header: str | None = None
     trusted_proxies: tuple[str, ...] = ()
+    proxy_secret: Path | None = None
     certificate: Path | None = None
     key: Path | None = None
     insecure_http: bool = False

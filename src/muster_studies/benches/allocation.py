@@ -13,8 +13,8 @@ from muster.allocation.genetic import Parameters, evolve, first_population
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
+from muster.planning.judging import verify
 from muster.planning.loading import load
-from muster.planning.planning import verify
 from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import large_mission
 

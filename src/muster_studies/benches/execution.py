@@ -16,7 +16,8 @@ from muster.execution import Executor, Reallocation, Revision, travel_of
 from muster.execution.remaining_problem import Rest, posed
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
-from muster.planning.planning import solve, verify
+from muster.planning.judging import verify
+from muster.planning.solving import solve
 from muster.simulation import KinematicWorld
 from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission

@@ -32,6 +32,18 @@ def bearer(token: str) -> dict[str, str]:
     return {"authorization": f"Bearer {token}"}
 
 
+PROXY_SECRET = "0123456789abcdef" * 4
+SHOWN = {"x-muster-proxy-secret": PROXY_SECRET}
+
+
+def behind_proxy(folder: Path, user_header: str, *trusted: str) -> dict[str, object]:
+    """Settings of a server that believes a proxy who asks."""
+    file = folder / "proxy-secret"
+    file.write_text(f"{PROXY_SECRET}\n", encoding="ascii")
+    file.chmod(0o600)
+    return {"user_header": user_header, "trusted_proxies": trusted, "proxy_secret": file}
+
+
 def settings_in(folder: Path, *, tokens: str | None = None, **more: object) -> Settings:
     """Settings whose files are in the folder; with a file of these tokens."""
     if tokens is not None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 
 import pytest
 from hypothesis import given
@@ -11,6 +12,8 @@ from tests.server.security.shielded import (
     COMMANDER,
     FOREIGN,
     HOME,
+    PROXY_SECRET,
+    SHOWN,
     SOCKET,
     TOKENS,
     WATCHER,
@@ -18,9 +21,11 @@ from tests.server.security.shielded import (
     WebSocketDenialResponse,
     asgi_answer,
     bearer,
+    behind_proxy,
     settings_in,
 )
 
+from muster.mission.errors import ParameterError
 from muster.server.security.guard import Guard
 from muster.server.security.tokens import line_of
 
@@ -94,17 +99,17 @@ def test_other_names_and_origins(tmp_path, tokens):
 
 def test_a_proxy_says_who_asks(tmp_path):
     tokens = f"{TOKENS}command bob@example.org -\n"
-    settings = settings_in(tmp_path, tokens=tokens, user_header="X-User", trusted_proxies=("10.1.0.0/16",))
+    settings = settings_in(tmp_path, tokens=tokens, **behind_proxy(tmp_path, "X-User", "10.1.0.0/16"))
     app = Shielded(settings)
-    bob = {"x-user": "bob@example.org", "x-forwarded-for": "192.0.2.9, 10.1.0.7"}
+    bob = {"x-user": "bob@example.org", "x-forwarded-for": "192.0.2.9, 10.1.0.7", **SHOWN}
     with app.client(peer="10.1.2.3") as client:
         assert client.get("/who", headers=bob).json() == {
             "name": "bob@example.org",
             "role": "command",
             "address": "192.0.2.9",
         }
-        assert client.get("/who", headers={"x-user": "eve"}).status_code == 401
-        assert client.get("/who", headers={"x-user": "wall"}).status_code == 401  # who has a token shows it
+        assert client.get("/who", headers={"x-user": "eve", **SHOWN}).status_code == 401
+        assert client.get("/who", headers={"x-user": "wall", **SHOWN}).status_code == 401  # who has a token shows it
         assert client.get("/who", headers=[("x-user", "eve"), ("x-user", "bob@example.org")]).status_code == 400
     with app.client(peer="10.2.0.1") as client:
         assert client.get("/who", headers=bob).status_code == 401
@@ -113,18 +118,52 @@ def test_a_proxy_says_who_asks(tmp_path):
 
 
 def test_everybody_whom_the_proxy_lets_in(tmp_path):
-    settings = settings_in(tmp_path, tokens="watch * -\n", user_header="x-user", trusted_proxies=("127.0.0.1",))
+    settings = settings_in(tmp_path, tokens="watch * -\n", **behind_proxy(tmp_path, "x-user", "127.0.0.1"))
     with Shielded(settings).client() as client:
-        assert client.get("/who", headers={"x-user": "eve\u00e9".encode("latin-1")}).json()["role"] == "watch"
-        assert len(client.get("/who", headers={"x-user": "e" * 5000}).json()["name"]) <= 64
+        for name, shown in (("eve\u00e9", None), ("e" * 5000, 64)):
+            known = client.get("/who", headers={"x-user": name.encode("latin-1"), **SHOWN}).json()
+            assert known["role"] == "watch"
+            assert shown is None or len(known["name"]) <= shown
+
+
+@pytest.mark.parametrize(
+    "shown", [{}, {"x-muster-proxy-secret": ""}, {"x-muster-proxy-secret": PROXY_SECRET[:-1]}, {"x-user-secret": "x"}]
+)
+def test_another_process_of_the_proxys_machine_names_nobody(tmp_path, shown):
+    """Its address is the proxy's; it does not know the secret."""
+    proxy = behind_proxy(tmp_path, "X-Forwarded-User", "127.0.0.1")
+    settings = settings_in(tmp_path, tokens="command * -\n", public_origins=("https://control.example.org",), **proxy)
+    someone = {"host": "control.example.org", "x-forwarded-user": "someone"}
+    with Shielded(settings).client() as client:
+        assert client.get("/who", headers=someone | shown).status_code == 401
+        assert client.get("/who", headers=someone | SHOWN).json()["role"] == "command"
+        twice = [*someone.items(), *SHOWN.items(), *SHOWN.items()]
+        assert client.get("/who", headers=twice).status_code == 400
+
+
+@pytest.mark.parametrize(
+    ("content", "mode", "said"),
+    [
+        (b"short", 0o600, "5 bytes; expected one line of 16 to 1024 ASCII characters"),
+        (b"x" * 32 + b"\n" + b"y" * 32, 0o600, "65 bytes; expected one line"),
+        ("é".encode() * 32, 0o600, "64 bytes; expected one line"),
+        (b"x" * 32, 0o644, "everybody may read or write it; expected chmod o-rw"),
+    ],
+)
+def test_a_secret_of_the_proxy_that_is_none(tmp_path, content, mode, said):
+    settings = settings_in(tmp_path, tokens=TOKENS, **behind_proxy(tmp_path, "x-user", "127.0.0.1"))
+    settings.proxy_secret.write_bytes(content)
+    settings.proxy_secret.chmod(mode)
+    with pytest.raises(ParameterError, match=re.escape(said)):
+        Shielded(settings)
 
 
 @pytest.mark.parametrize("name", ["", " ", "*", " * "])
 def test_a_header_that_names_nobody(tmp_path, name):
     """As of a proxy whose own login is switched off: it lets nobody in, not even as everybody else."""
     tokens = f"command * -\n{line_of('wall', 'watch', WATCHER)}\n"
-    settings = settings_in(tmp_path, tokens=tokens, user_header="X-User", trusted_proxies=("127.0.0.1",))
-    headers = {"x-user": name}
+    settings = settings_in(tmp_path, tokens=tokens, **behind_proxy(tmp_path, "X-User", "127.0.0.1"))
+    headers = {"x-user": name, **SHOWN}
     with Shielded(settings).client() as client:
         assert client.get("/who", headers=headers).status_code == 401
         assert client.get("/who", headers=headers | bearer(WATCHER)).json()["name"] == "wall"
@@ -287,7 +326,16 @@ def test_a_socket_ends_with_its_token(tmp_path):
     st.lists(
         st.tuples(
             st.sampled_from(
-                ["host", "origin", "authorization", "cookie", "content-length", "x-forwarded-for", "x-user"]
+                [
+                    "host",
+                    "origin",
+                    "authorization",
+                    "cookie",
+                    "content-length",
+                    "x-forwarded-for",
+                    "x-user",
+                    "x-muster-proxy-secret",
+                ]
             ),
             st.text(st.characters(min_codepoint=1, max_codepoint=255), max_size=40),
         ),
@@ -300,14 +348,15 @@ def test_hostile_headers_never_get_in_and_never_crash(tmp_path_factory, headers,
     if _hostile is None:
         folder = tmp_path_factory.mktemp("hostile")
         _hostile = Shielded(
-            settings_in(folder, tokens=TOKENS, user_header="x-user", trusted_proxies=("127.0.0.1",), requests_per_s=1e9)
+            settings_in(folder, tokens=TOKENS, requests_per_s=1e9, **behind_proxy(folder, "x-user", "127.0.0.1"))
         )
     status, answer_headers, body = asgi_answer(_hostile.app, path=f"/{path}", headers=headers)
     public = path in ("healthz", "login")
     assert status in ({200, 307} if public else set()) | {303, 400, 401, 413, 421, 429, 403}
     assert b"x-content-type-options" in answer_headers
     if status >= 400:
-        assert set(json.loads(body)) == {"error", "findings"}
+        assert set(json.loads(body)) == {"type", "title", "status", "error", "findings"}
+        assert json.loads(body)["status"] == status
         assert json.loads(body)["error"].isprintable()
 
 

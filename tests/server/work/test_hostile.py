@@ -45,7 +45,7 @@ def test_a_map_file_leads_nowhere_else(asked):
 )
 def test_a_file_is_laid_down_nowhere_else(asked, name):
     with pytest.raises(WorkError, match=r"^[^\n]*; expected [^\n]*$"):
-        asked("verdict", mission=given(TINY, {name: b"x"}), plan={"schema": "muster-plan/1", "routes": []})
+        asked("judge", mission=given(TINY, {name: b"x"}), plan={"schema": "muster-plan/1", "routes": []})
 
 
 @pytest.mark.parametrize("key", ["image", "resolution", "origin", "negate"])
@@ -59,7 +59,7 @@ def test_a_map_file_that_is_a_bomb_describes_no_floor(asked, key):
     assert answer["errors"]
     assert all(len(str(error)) < 1000 for error in answer["errors"])
     assert (answer["floor"], answer["mission"]["name"]) == (None, "mapped")
-    assert asked("ground", mission=given(text, files)) == {"floor": None, "earth": None}
+    assert asked("floor_plan", mission=given(text, files)) == {"floor": None, "earth": None}
 
 
 def bomb(first, levels):
@@ -115,7 +115,7 @@ def test_an_image_that_unpacks_to_gigabytes_ends_with_a_line(asked):
 )
 def test_a_plan_that_means_harm_is_refused(asked, plan):
     with pytest.raises(WorkError, match=r"^plan: [^\n]*; expected [^\n]*$"):
-        asked("verdict", mission=given(TINY), plan=plan)
+        asked("judge", mission=given(TINY), plan=plan)
 
 
 @pytest.mark.parametrize(
@@ -126,19 +126,19 @@ def test_a_plan_that_means_harm_is_refused(asked, plan):
     ],
 )
 def test_an_edit_of_a_bomb_is_refused_by_a_worker(asked, text):
-    for task, how in (("look", {"keys": ["tasks"]}), ("edit", {"change": "add", "with": ["task", 1, 2]})):
+    for task, how in (("read_mission", {"keys": ["tasks"]}), ("edit", {"change": "add", "with": ["task", 1, 2]})):
         with pytest.raises(WorkError, match=r"^[^\n]+$"):
             asked(task, text=text, **how)
 
 
 def test_more_than_a_page_can_show_is_not_read_into_the_server(asked):
     with pytest.raises(WorkError, match="too many values; expected at most"):
-        asked("look", text="tasks: [" + "1," * 60_000 + "]", keys=["tasks"])
+        asked("read_mission", text="tasks: [" + "1," * 60_000 + "]", keys=["tasks"])
 
 
 def test_an_edit_is_made_and_what_is_unknown_refused(asked):
     moved = asked("edit", text=TINY, change="move", **{"with": [{"what": "task", "id": "a"}, 2.5, 3]})["text"]
     assert moved == TINY.replace("[1, 0]", "[2.5, 3]")
-    assert asked("look", text=moved, keys=["name", "map"]) == {"data": {"name": "tiny"}}
+    assert asked("read_mission", text=moved, keys=["name", "map"]) == {"data": {"name": "tiny"}}
     with pytest.raises(WorkError, match="expected move, add"):
         asked("edit", text=TINY, change="eval", **{"with": []})

@@ -53,7 +53,7 @@ def test_a_map_may_stand_beside_the_folder_of_the_mission(asked):
     answer = asked("check", mission=given(text, files))
     assert answer["errors"] == []
     assert answer["floor"]["file"] in files
-    assert asked("ground", mission=given(text, files)) == {"floor": answer["floor"], "earth": None}
+    assert asked("floor_plan", mission=given(text, files)) == {"floor": answer["floor"], "earth": None}
 
 
 def test_plan_as_the_command_does(plan):
@@ -106,7 +106,7 @@ def test_a_wish_that_cannot_be_met_is_one_line(asked, wish, line):
 
 
 def test_a_verdict_has_figures_times_and_ways(asked, plan):
-    answer = asked("verdict", mission=shipped("31T-6R50"), plan=plan)
+    answer = asked("judge", mission=shipped("31T-6R50"), plan=plan)
     verdict = muster.verify(muster.load("31T-6R50"), plan_from(plan, "plan"))
     assert {key: answer[key] for key in verdict.as_dict()} == verdict.as_dict()
     first = answer["routes"][0]
@@ -117,7 +117,7 @@ def test_a_verdict_has_figures_times_and_ways(asked, plan):
 
 def test_a_verdict_on_a_plan_that_is_wrong(asked):
     routes = [{"robot": "r_0", "tasks": ["b"]}, {"robot": "nobody", "tasks": []}]
-    answer = asked("verdict", mission=given(TINY), plan={"schema": "muster-plan/1", "routes": routes})
+    answer = asked("judge", mission=given(TINY), plan={"schema": "muster-plan/1", "routes": routes})
     assert not answer["valid"]
     assert {"unknown-robot", "prerequisite"} <= {violation["kind"] for violation in answer["violations"]}
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Response
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from muster.exchange.mission_control import Job, PlanEntry
+from muster.mission.model import OBJECTIVES
+from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import Asker, TheDesk
 from muster.server.api.parameter_types import (
@@ -29,8 +31,10 @@ from muster.server.api.responses import a_file, errors, file_answer, parcel_answ
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
-Objective = Literal["total+max", "total", "max", "average", "makespan"]
+Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
+Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
 ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
+PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
 _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
 
@@ -38,16 +42,20 @@ _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
 class Wanted(Body):
     """How a mission is to be planned; what is left out is as `muster solve` has it."""
 
-    allocator: Name | None = Field(default=None, examples=["search"])
-    objective: Objective | None = Field(default=None, description="Instead of the mission's own.")
-    time_limit: Seconds | None = Field(default=None, description="Seconds.", examples=[1.0])
-    iterations: Count | None = Field(default=None, description="Stop after so many; then a seed gives one plan.")
-    seed: Seed = 0
-    ignore: Ignored = Field(default=[])
-    bound: Literal["quick", "exact"] | None = Field(default=None, description="Prove how good the plan is.")
-    start: int | None = Field(default=None, ge=1, le=LARGEST, description="The id of a plan to go on from.")
+    allocator: Name | None = Field(default=None, description=HELP["allocator"], examples=["search"])
     parameters: dict[Name, bool | int | float | Name] = Field(
-        default={}, max_length=50, description="Of the allocator; GET /allocators says which."
+        default={}, max_length=50, description=f"{HELP['parameters']} GET /allocators says which there are."
+    )
+    objective: Objective | None = Field(default=None, description=HELP["objective"])
+    time_limit: Seconds | None = Field(default=None, description=HELP["time_limit"], examples=[1.0])
+    iterations: Count | None = Field(default=None, description=HELP["iterations"])
+    seed: Seed = Field(default=0, description=HELP["seed"])
+    ignore: Ignored = Field(default=[])
+    bound: Bound | None = Field(default=None, description=HELP["bound"])
+    rewire: bool = Field(default=False, description=HELP["rewire"])
+    start: PlanNumber | None = Field(default=None, description="The id of a plan to go on from.")
+    fixed: PlanNumber | None = Field(
+        default=None, description="The id of a plan whose routes stay, as the beginnings of the new ones."
     )
     version: int | None = Field(default=None, ge=1, le=LARGEST, description="Of the mission; null: the newest.")
 

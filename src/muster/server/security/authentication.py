@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hmac
 import ipaddress
+import stat
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +20,9 @@ from muster.server.security.tokens import Holder, Tokens
 from muster.server.settings import Settings
 
 SCOPE_KEY = "muster.asker"
+SECRET_HEADER = "x-muster-proxy-secret"  # noqa: S105 - the name of a header
+"""In which a reverse proxy shows the secret that it shares with this server."""
+_SECRET_BYTES = (16, 1024)
 _FORWARDED = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-real-ip")
 
 
@@ -43,6 +48,28 @@ def who_of(connection: HTTPConnection) -> Who:
     return asker.who
 
 
+def read_proxy_secret(file: Path) -> bytes:
+    """The secret that a reverse proxy shares with this server: the only line of a file.
+
+    Raises
+    ------
+    ParameterError
+        if it is too short to be one, or everybody on this machine may read it.
+    OSError
+        if it cannot be read.
+    """
+    least, most = _SECRET_BYTES
+    if file.stat().st_mode & (stat.S_IROTH | stat.S_IWOTH):
+        raise ParameterError(f"--proxy-secret {file}: everybody may read or write it; expected chmod o-rw {file}")
+    secret = file.read_bytes().strip()
+    if not least <= len(secret) <= most or not secret.isascii() or b"\n" in secret:
+        raise ParameterError(
+            f"--proxy-secret {file}: {len(secret)} bytes; expected one line of {least} to {most} ASCII characters "
+            "(openssl rand -hex 32)"
+        )
+    return secret
+
+
 class Proxies:
     """The reverse proxies that are believed.
 
@@ -50,14 +77,18 @@ class Proxies:
     ----------
     trusted
         addresses, or networks: `10.0.0.0/24`.
+    secret
+        what a proxy shows in `SECRET_HEADER` before it is believed who the user is: any process of its machine has
+        the same address. None: no proxy is believed that.
 
     Raises
     ------
     ParameterError
-        if one of them is none.
+        if one of the addresses is none.
     """
 
-    def __init__(self, trusted: Iterable[str]) -> None:
+    def __init__(self, trusted: Iterable[str], secret: bytes | None = None) -> None:
+        self._secret = secret
         self._networks = []
         for text in trusted:
             try:
@@ -68,6 +99,11 @@ class Proxies:
     def trust(self, address: str) -> bool:
         found = address_in(address)
         return found is not None and any(found in network for network in self._networks)
+
+    def may_name_users(self, peer: str, headers: Mapping[str, str]) -> bool:
+        """Whether a request comes from a trusted address, and shows the secret."""
+        shown = headers.get(SECRET_HEADER, "").encode("latin-1")
+        return self._secret is not None and hmac.compare_digest(shown, self._secret) and self.trust(peer)
 
     def address(self, peer: str, headers: Mapping[str, str]) -> str:
         """Where a request comes from: the last hop that is no trusted proxy."""
@@ -90,7 +126,7 @@ class Asking:
     tokens, sessions
         None: no token is asked for, and everybody who reaches this machine's own address may command.
     user_header
-        in which proxies say who asks; believed of `proxies` alone.
+        in which proxies say who asks; believed of `proxies` alone, and with their secret.
     """
 
     def __init__(
@@ -104,7 +140,8 @@ class Asking:
     @classmethod
     def of(cls, settings: Settings) -> Asking:
         """As the server was asked to be; reads the tokens, and makes the secret of sessions where there is none."""
-        proxies = Proxies(settings.trusted_proxies)
+        secret = None if settings.proxy_secret is None else read_proxy_secret(settings.proxy_secret)
+        proxies = Proxies(settings.trusted_proxies, secret)
         if settings.tokens is None:
             return cls(None, None, None, proxies)
         sessions = Sessions(kept_secret(Path(settings.folder) / "session.key"))
@@ -113,7 +150,8 @@ class Asking:
     @property
     def once(self) -> frozenset[str]:
         """Headers that may be there once only, as it would be open which of them counts."""
-        return frozenset({"host", "origin", "authorization", "content-length", self._user_header or "host"})
+        counting = {"host", "origin", "authorization", "content-length", SECRET_HEADER}
+        return frozenset(counting | ({self._user_header} if self._user_header else set()))
 
     def asker(self, headers: Mapping[str, str], peer: str, address: str) -> Asker | None:
         """Who asks; None: they do not say.
@@ -137,7 +175,7 @@ class Asking:
                 raise RefusalError(403, "it came through a proxy; expected a server with --tokens behind one")
             return Asker(Who("local", "command", address))
         user = self._user(headers)
-        if user and self.proxies.trust(peer):
+        if user and self.proxies.may_name_users(peer, headers):
             holder = self.tokens.named(user) or self.tokens.named("*")
             if holder is None:
                 return None

@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
 from muster.exchange.mission_control import Who
+from muster.server.problem import MEDIA_TYPE
 from muster.server.security.authentication import SCOPE_KEY, Asker, Asking, WrongTokenError
 from muster.server.security.headers import is_page, is_static, with_security
 from muster.server.security.limits import Body, Buckets, Places, network_of
@@ -24,6 +25,7 @@ from muster.server.security.origins import Hosts
 from muster.server.security.refusal import RefusalError, printable
 from muster.server.security.refusal_log import Audit
 from muster.server.settings import Settings
+from muster.server.work.turns import CURRENT_USER
 
 log = logging.getLogger("muster.security")
 
@@ -73,21 +75,19 @@ class Shield:
         """What whoever looks after the server should mend."""
         return "" if self.asking.tokens is None else self.asking.tokens.look()
 
-    def require_unblocked(self, address: str) -> None:
-        """Slow down whoever tries tokens.
+    def count_wrong_token(self, address: str) -> None:
+        """Count a wrong token of an address. A right token is never refused: others may share the address.
+
+        Guessing is bounded by the rate of requests of an address, and by the 256 random bits of each token.
 
         Raises
         ------
         RefusalError
-            if too many of this address were wrong.
+            if there were too many.
         """
-        wait_s = self.failed.wait_s(network_of(address))
+        wait_s = self.failed.take(network_of(address))
         if wait_s > 0:
             raise RefusalError(429, f"too many wrong tokens; expected a pause of {math.ceil(wait_s)} s", retry_s=wait_s)
-
-    def failed_from(self, address: str) -> None:
-        """A wrong token came from there."""
-        self.failed.take(network_of(address))
 
 
 @dataclass(frozen=True)
@@ -134,6 +134,7 @@ class Guard:
             request = self._read(scope, peer)
             asker = self._admitted(request, peer)
             scope[SCOPE_KEY] = asker
+            CURRENT_USER.set(asker.who.name or network_of(request.address))
             scope[REQUEST_KEY] = answer.id
             await (self._socket if request.socket else self._http)(request, asker, receive, answer)
         except RefusalError as refusal:
@@ -213,9 +214,8 @@ class Guard:
     def _asker(self, request: _Request, peer: str) -> Asker | None:
         try:
             return self._shield.asking.asker(request.headers, peer, request.address)
-        except WrongTokenError:  # whoever has a right one is let in, whatever neighbours tried
-            self._shield.require_unblocked(request.address)
-            self._shield.failed_from(request.address)
+        except WrongTokenError:
+            self._shield.count_wrong_token(request.address)
             raise
 
     async def _http(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
@@ -318,7 +318,7 @@ class _Answer:
     async def _respond(self, status: int, headers: dict[str, str], content: Any) -> None:
         body = json.dumps(content).encode()
         raw = [(name.encode(), value.encode("latin-1")) for name, value in headers.items()]
-        raw += [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
+        raw += [(b"content-type", MEDIA_TYPE.encode()), (b"content-length", str(len(body)).encode())]
         kind = "websocket.http.response" if self._scope["type"] == "websocket" else "http.response"
         await self.send({"type": f"{kind}.start", "status": status, "headers": raw})
         await self.send({"type": f"{kind}.body", "body": body})

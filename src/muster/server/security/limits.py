@@ -57,10 +57,6 @@ class Buckets:
             self._levels.popitem(last=False)
         return 0.0
 
-    def wait_s(self, key: str) -> float:
-        """After how many seconds there is one; nothing is taken."""
-        return max(0.0, (1.0 - self._level(key)) / self._rate)
-
     def _level(self, key: str) -> float:
         now = self._clock()
         level, since = self._levels.get(key, (self._burst, now))

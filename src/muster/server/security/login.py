@@ -30,6 +30,7 @@ _PAGE = """<!doctype html>
          box-shadow: 0 1px 6px #0003; }}
   h1 {{ font-size: 1.3rem; margin: 0 0 1rem; }}
   label, input, button {{ display: block; width: 100%; box-sizing: border-box; font: inherit; }}
+  [hidden] {{ display: none; }}
   input {{ padding: .5rem; margin: .3rem 0 1rem; border: 1px solid #5d6d7e; border-radius: 4px; }}
   button {{ padding: .6rem; border: 0; border-radius: 4px; background: #0b5394; color: #fff; cursor: pointer; }}
   :focus-visible {{ outline: 3px solid #e69f00; outline-offset: 2px; }}
@@ -87,11 +88,10 @@ async def _logged_in(shield: Shield, request: Request) -> Response:
         return RedirectResponse("/", 303)
     asker: Asker = request.scope[SCOPE_KEY]
     address = asker.who.address
-    shield.require_unblocked(address)
     form = await _fields(request)
     holder = asking.tokens.holder(form.get("token", "").strip())
     if holder is None:
-        shield.failed_from(address)
+        shield.count_wrong_token(address)
         shield.audit.refused(Who("", "watch", address), "wrong token at login", "/login", 403)
         return _form(form.get("next", "/"), "Nobody has this token.", status=403)
     shield.audit.logged_in(Who(holder.name, holder.role, address))

@@ -21,8 +21,8 @@ def require_safe(settings: Settings) -> None:
         raise ParameterError("--tls-cert and --tls-key: one of them given; expected both")
     if settings.tokens is None:
         _require_alone(settings)
-    elif settings.user_header is not None and not settings.trusted_proxies:
-        raise ParameterError(f"--user-header {settings.user_header} given without --trusted-proxy; expected both")
+    else:
+        _require_proven_proxy(settings)
     encrypted = settings.certificate is not None
     if not is_loopback(settings.host) and not encrypted and not settings.insecure_http:
         raise ParameterError(
@@ -35,6 +35,20 @@ def require_safe(settings: Settings) -> None:
             raise ParameterError(f"--public-origin: {origin!r}; expected such as https://control.example.org")
 
 
+def _require_proven_proxy(settings: Settings) -> None:
+    """Who asks is believed of a proxy that is known by its address and by a secret."""
+    if settings.user_header is None:
+        if settings.proxy_secret is not None:
+            raise ParameterError(f"--proxy-secret {settings.proxy_secret} given without --user-header; expected both")
+        return
+    for option, value, why in (
+        ("--trusted-proxy ADDRESS", settings.trusted_proxies, "from which it comes"),
+        ("--proxy-secret FILE", settings.proxy_secret, "as any process of that machine could send the header"),
+    ):
+        if not value:
+            raise ParameterError(f"--user-header {settings.user_header} given without {option}, {why}; expected both")
+
+
 def _require_alone(settings: Settings) -> None:
     """Without tokens everybody may command: nobody but this machine may reach the server."""
     if not is_loopback(settings.host):
@@ -45,6 +59,7 @@ def _require_alone(settings: Settings) -> None:
     for name, given in (
         ("--user-header", settings.user_header),
         ("--trusted-proxy", settings.trusted_proxies),
+        ("--proxy-secret", settings.proxy_secret),
         ("--public-origin", settings.public_origins),
     ):
         if given:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -22,7 +22,7 @@ from muster.exchange.mission_control import (
 from muster.mission.errors import MusterError
 from muster.server.services.actions import Actions, Refused, unheard
 from muster.server.services.missions import Missions
-from muster.server.services.plan_requests import checked_wishes
+from muster.server.services.plan_requests import PLANS, checked_request
 from muster.server.services.uploads import for_work
 from muster.server.settings import Settings
 from muster.server.store import Store
@@ -88,8 +88,8 @@ class Jobs:
         Parameters
         ----------
         wishes
-            as `muster solve` takes them: `allocator`, `objective`, `time_limit` (s), `iterations`, `seed`, `ignore`,
-            `bound` (quick, exact), `start` (the id of a plan to go on from), `parameters` (of the allocator).
+            the options of a planning request, by the names of `PlanningOptions`; and `start` and `fixed`, the ids of
+            plans.
 
         Raises
         ------
@@ -100,16 +100,24 @@ class Jobs:
         NotFoundError, ForbiddenError
         """
         async with self._actions.of(who, "plan.ask", {"mission": mission, "version": version, **wishes}):
-            checked_wishes(wishes, self._settings.job_s)
+            checked_request(wishes, self._settings.job_s)
             if len(self._queued) >= self._settings.queue:
                 raise BusyError(f"{len(self._queued)} jobs wait, the most that may; expected to be asked again later")
             wanted = self._missions.get(mission, version) if version else self._missions.stored(mission)
             found = await wanted
-            if wishes.get("start") is not None:
-                await asyncio.to_thread(self._store.plans.get, wishes["start"])
+            await self._require_known(wishes)
+            for name in PLANS:
+                if wishes.get(name) is not None:
+                    await asyncio.to_thread(self._store.plans.get, wishes[name])
             job = await asyncio.to_thread(self._store.jobs.add, "plan", mission, found.version, wishes, who.name)
             self._enqueue(job.id)
             return job
+
+    async def _require_known(self, wishes: Mapping[str, Any]) -> None:
+        """Refuse an unknown allocator, or parameters that it does not take; a worker knows which there are."""
+        if wishes.get("allocator") is not None or wishes.get("parameters"):
+            options = {name: value for name, value in wishes.items() if name not in PLANS}
+            await self._pool.run("check_request", options)
 
     async def cancel(self, who: Who, job: int) -> Job:
         """End a job that is not over; its process is gone at once.
@@ -226,8 +234,9 @@ class Jobs:
         """What a worker answers; one that dies under it may be chance, a second one is not."""
         mission = await self._patiently(job.id, self._store.missions.get, job.mission, job.mission_version)
         wishes = {**job.arguments, "mission": for_work(mission.text, mission.files, job.mission)}
-        if wishes.get("start") is not None:
-            wishes["start"] = (await self._patiently(job.id, self._store.plans.get, wishes["start"])).plan
+        for name in PLANS:
+            if wishes.get(name) is not None:
+                wishes[name] = (await self._patiently(job.id, self._store.plans.get, wishes[name])).plan
 
         def hear(progress: dict[str, Any]) -> None:
             self._learn(replace(job, progress=progress))

@@ -2,72 +2,45 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES
-from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.planning.options import options_from
 
-_BOUNDS = ("quick", "exact")
-_MOST_WORDS = 200  # letters in the name of something
+PLANS = ("start", "fixed")
+"""Plans that a request may name, by their ids."""
+_LARGEST_ID = 2**63 - 1
+_LONGEST_NAME = 200
 
 
-def checked_wishes(wishes: Mapping[str, Any], longest_s: float) -> None:
-    """Refuse wishes that cannot be met whatever the mission; None stands for no wish.
+def checked_request(asked: Mapping[str, Any], longest_s: float) -> None:
+    """Refuse a planning request that cannot be met whatever the mission; None stands for the default.
 
     Parameters
     ----------
+    asked
+        the options of a planning request, and the ids of the plans that it names.
     longest_s
         how long one job may take.
 
     Raises
     ------
     ParameterError
-        naming the wish, its value, and what was expected.
+        naming the option, its value, and what was expected.
     """
-    for name, value in wishes.items():
-        if name not in _WISHES:
-            raise ParameterError(f"{shown(name)}: unknown; expected {', '.join(_WISHES)}{did_you_mean(name, _WISHES)}")
-        fits, expected = _WISHES[name]
-        if value is not None and not fits(value):
-            raise ParameterError(f"{name}: {shown(value)}; expected {expected}")
-    asked_s = wishes.get("time_limit")
-    if asked_s is not None and asked_s > longest_s:
-        raise ParameterError(f"time_limit: {asked_s:g}; expected at most {longest_s:g} s, the limit of this server")
-
-
-def _is_whole(value: object, below: int) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < below
-
-
-def _is_word(value: object) -> bool:
-    return isinstance(value, str) and 0 < len(value) <= _MOST_WORDS
-
-
-def _is_time(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < math.inf
-
-
-def _are_rules(value: object) -> bool:
-    return isinstance(value, list | tuple) and all(name in IGNORABLE for name in value)
-
-
-def _are_parameters(value: object) -> bool:
-    plain = bool, int, float, str
-    return isinstance(value, dict) and all(_is_word(name) and isinstance(v, plain) for name, v in value.items())
-
-
-_WISHES: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "allocator": (_is_word, "the name of an allocator"),
-    "objective": (lambda value: value in OBJECTIVES, " or ".join(OBJECTIVES)),
-    "time_limit": (_is_time, "seconds, at least 0"),
-    "iterations": (lambda value: _is_whole(value, 2**63), "a whole number of at least 0"),
-    "seed": (lambda value: _is_whole(value, 2**64), "a whole number from 0 to 2**64 - 1"),
-    "ignore": (_are_rules, f"a list of {', '.join(IGNORABLE)}"),
-    "bound": (lambda value: value in _BOUNDS, " or ".join(_BOUNDS)),
-    "start": (lambda value: _is_whole(value, 2**63), "the id of a plan"),
-    "parameters": (_are_parameters, "names and values of the allocator's parameters"),
-}
+    for name in PLANS:
+        plan = asked.get(name)
+        if plan is not None and (isinstance(plan, bool) or not isinstance(plan, int) or not 0 <= plan <= _LARGEST_ID):
+            raise ParameterError(f"{name}: {shown(plan)}; expected the id of a plan")
+    options = options_from({name: value for name, value in asked.items() if name not in PLANS})
+    if not isinstance(options.allocator, str) or len(options.allocator) > _LONGEST_NAME:
+        raise ParameterError(f"allocator: {shown(options.allocator)}; expected the name of an allocator")
+    for name, value in options.parameters.items():
+        if not 0 < len(name) <= _LONGEST_NAME or not isinstance(value, bool | int | float | str):
+            raise ParameterError(f"parameters: {shown({name: value})}; expected names, and numbers or words")
+    if options.time_limit is not None and options.time_limit > longest_s:
+        raise ParameterError(
+            f"time_limit: {options.time_limit:g}; expected at most {longest_s:g} s, the limit of this server"
+        )

@@ -60,20 +60,20 @@ class Plans:
         async with self._actions.of(who, "plan.upload", {"mission": mission}):
             version = await self._missions.stored(mission)
             given = for_work(version.text, version.files, mission)
-            adopted = (await self._pool.run("adopt", {"mission": given, "plan": plan}))["plan"]
+            adopted = (await self._pool.run("upload_plan", {"mission": given, "plan": plan}))["plan"]
             return await asyncio.to_thread(
                 self._store.plans.add, mission, version.version, "uploaded", who.name, adopted
             )
 
     async def verdict(self, plan: int) -> dict[str, Any]:
-        """What the judge says: as the task `verdict` gives it.
+        """What the judge says: as the task `judge` gives it.
 
         Raises
         ------
         NotFoundError, WorkError
         """
         if plan not in self._verdicts:
-            self._verdicts[plan] = await self._asked("verdict", plan)
+            self._verdicts[plan] = await self._asked("judge", plan)
             while len(self._verdicts) > _MOST_VERDICTS:
                 self._verdicts.popitem(last=False)
         self._verdicts.move_to_end(plan)

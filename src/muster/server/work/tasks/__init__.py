@@ -37,18 +37,19 @@ _HERE = "muster.server.work.tasks"
 
 TASKS: Mapping[str, Task] = MappingProxyType(
     {
-        "adopt": Task(f"{_HERE}.adopt"),
         "allocators": Task(f"{_HERE}.allocators"),
         "check": Task(f"{_HERE}.check", 20.0),
+        "check_request": Task(f"{_HERE}.check_request", 20.0),
         "convert": Task(f"{_HERE}.convert", 20.0),
         "edit": Task(f"{_HERE}.edit", 20.0),
         "explain": Task(f"{_HERE}.explain", 120.0),
         "export": Task(f"{_HERE}.export", 120.0),
-        "ground": Task(f"{_HERE}.ground", 20.0),
-        "look": Task(f"{_HERE}.look", 20.0),
+        "floor_plan": Task(f"{_HERE}.floor_plan", 20.0),
+        "judge": Task(f"{_HERE}.judge"),
         "picture": Task(f"{_HERE}.picture"),
         "plan": Task(f"{_HERE}.plan", None, long=True, stoppable=True),
+        "read_mission": Task(f"{_HERE}.read_mission", 20.0),
         "record": Task("muster.server.runs.recording", 120.0),
-        "verdict": Task(f"{_HERE}.verdict"),
+        "upload_plan": Task(f"{_HERE}.upload_plan"),
     }
 )

@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from muster.allocation.registry import ALLOCATORS
-from muster.planning.planning import DEFAULT_ALLOCATOR
+from muster.planning.options import DEFAULT_ALLOCATOR
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
