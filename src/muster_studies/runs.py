@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean, stdev
@@ -95,12 +95,10 @@ def mission_named(name: str) -> Mission:
 def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
     """What the judge says of routes that state nothing else."""
     stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
-    return verify(mission_named(mission), Plan(routes=stated), ignored, "total+max")
+    return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
 
 
-def accepted(
-    mission: Mission, plan: Plan, whose: str, ignored: Collection[str] = (), objective: str | None = None
-) -> Verdict:
+def accepted(mission: Mission, plan: Plan, whose: str) -> Verdict:
     """What the judge says of a plan that is right; `whose` it is, is told where it is not.
 
     Raises
@@ -108,7 +106,7 @@ def accepted(
     MusterError
         if the judge rejects the plan.
     """
-    verdict = verify(mission, plan, ignored, objective)
+    verdict = verify(mission, plan)
     if not verdict.valid:
         raise MusterError(f"{whose}: the judge rejects the plan: {rejection(verdict)}")
     return verdict
@@ -140,11 +138,5 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
     begin = time.process_time()
     plan = allocator.solve(problem, stop, seed=seed)
     cpu_s = time.process_time() - begin
-    verdict = accepted(
-        mission,
-        plan,
-        f"internal error: {case.allocator} for {case.mission} with seed {seed}",
-        case.ignored,
-        case.objective,
-    )
+    verdict = accepted(mission, plan, f"internal error: {case.allocator} for {case.mission} with seed {seed}")
     return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])

@@ -17,7 +17,6 @@ from muster.cli.options import (
     Finite,
     Verb,
     format_option,
-    ignore_option,
     load_plan,
     quiet_option,
     require_admissible,
@@ -43,7 +42,6 @@ class Wishes:
     """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
 
     plan: Path | None
-    ignore: tuple[str, ...]
     seed: int
     time_limit: float
     record: Path | None
@@ -61,7 +59,6 @@ def real_options(verb: Verb) -> Verb:
     """The options of which `Wishes` is made."""
     options = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
-        ignore_option,
         click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
         click.option(
             "--time-limit",
@@ -134,8 +131,8 @@ def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
     """
     if wishes.plan is None:
         return None
-    plan = load_plan(wishes.plan, mission, wishes.ignore, quiet=wishes.quiet, verbose=wishes.verbose)
-    require_admissible(mission, plan, wishes.plan, wishes.ignore)
+    plan = load_plan(wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
+    require_admissible(mission, plan, wishes.plan)
     return plan
 
 
@@ -143,7 +140,7 @@ def planned(wishes: Wishes, mission: Mission) -> Plan:
     """A plan made now."""
     from muster import solve
 
-    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit, ignore=wishes.ignore)
+    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
@@ -183,7 +180,6 @@ def carried_out(
                 plan,
                 fleet,
                 seed=wishes.seed,
-                ignore=wishes.ignore,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if wishes.quiet else tell,

@@ -29,7 +29,7 @@ from muster.negotiation.valuation import AuctionValuer, Valuer
 
 def rules_of(problem: Problem) -> Rules:
     """What the robots' agreement must hold."""
-    linked = problem.holds("prerequisite")
+    linked = problem.holds("prerequisites")
     return Rules(
         robots=problem.robot_index,
         tasks=problem.task_index,

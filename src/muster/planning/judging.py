@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_of
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
@@ -16,43 +16,35 @@ if TYPE_CHECKING:
 _MOST_SHOWN = 3
 
 
-def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+def verify(mission: Mission, plan: Plan | Mapping[str, Any]) -> Verdict:
     """Judge a plan from scratch, by code that no allocator uses.
 
     Parameters
     ----------
-    ignore
-        rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
-    objective
-        the one that the plan was to minimise; the mission's by default.
+    plan
+        a plan; or a mapping from robots to their tasks in order, or the content of a plan file.
 
     Raises
     ------
-    ParameterError, NotSupportedError
+    ParameterError, PlanError
+        if it is no plan.
     """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan, ignore, objective)
+    return judge(mission, plan_of(plan))
 
 
-def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
-    """The verdict on a plan that an allocator has made for an objective, some rules ignored.
+def judged(mission: Mission, plan: Plan) -> Verdict:
+    """The verdict on a plan that an allocator has made.
 
     Raises
     ------
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
-    verdict = verify(mission, plan, ignored, objective)
+    verdict = verify(mission, plan)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
     return verdict
-
-
-def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
-    """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
-    from muster.report import plot_routes
-
-    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

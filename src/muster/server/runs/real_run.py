@@ -56,7 +56,6 @@ class RealCourse:
             found.plan,
             fleet,
             seed=seed,
-            ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,
             begin_s=begin_s,
