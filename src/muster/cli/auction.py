@@ -111,7 +111,7 @@ def command(
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))
     plan = chosen.plan(problem, terms, first, agreement.took_s)
-    show_plan(loaded, plan, form, output, plot, gantt)
+    show_plan(loaded, plan, ignore, objective, form=form, output=output, plot=plot, gantt=gantt)
     if views is not None:
         _write_views(views, {r: chosen.plan(problem, terms, v, agreement.took_s) for r, v in agreement.views.items()})
     if book is not None and not write_book(plan, book, quiet):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option, say_of_plan
+from muster.cli.options import MissionFile, format_option, ignore_option, mission_argument, quiet_option, say_of_plan
 from muster.cli.remote.server_option import server_option
 from muster.mission.plan import json_text, read_plan
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
 @click.option("--task", metavar="T", help="Only this task, which may also be one that is done.")
+@ignore_option
 @format_option
 @quiet_option
 @server_option
@@ -27,6 +28,7 @@ def command(
     mission: MissionFile,
     plan: Path,
     task: str | None,
+    ignore: tuple[str, ...],
     form: str,
     quiet: bool,
     verbose: bool,
@@ -37,13 +39,13 @@ def command(
 
     loaded = mission.load(verbose=verbose)
     given = read_plan(plan)
-    require_fit(loaded, given, str(plan))
-    say_of_plan(given, plan, loaded, quiet=quiet, verbose=verbose)
+    require_fit(loaded, given, str(plan), ignore)
+    say_of_plan(given, plan, loaded, ignore, quiet=quiet, verbose=verbose)
     if task is None:
-        missing = left_out(loaded, given)
+        missing = left_out(loaded, given, ignore)
         print_explained(form, missing.as_dict(), tables_on_left_out(missing))
     else:
-        found = one_task(loaded, given, task)
+        found = one_task(loaded, given, task, ignore)
         print_explained(form, found.as_dict(), tables_on_task(found))
 
 

@@ -11,7 +11,15 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, MissionFile, load_plan, mission_argument, quiet_option, require_admissible
+from muster.cli.options import (
+    Finite,
+    MissionFile,
+    ignore_option,
+    load_plan,
+    mission_argument,
+    quiet_option,
+    require_admissible,
+)
 from muster.cli.outputs import require_folder, require_writable
 from muster.cli.remote.server_option import server_option
 from muster.exchange.export_request import FORMATS, Wishes
@@ -60,11 +68,13 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.option(
     "--firmware", type=click.Choice(["px4", "ardupilot"]), default="px4", show_default=True, help="qgc: of the robots."
 )
+@ignore_option
 @quiet_option
 @server_option
 def command(
     mission: MissionFile,
     plan: Path,
+    ignore: tuple[str, ...],
     form: str,
     output: Path | None,
     altitude: float | None,
@@ -87,8 +97,8 @@ def command(
         _require_none_of_qgc(form)
         require_writable(None, (output,), mission.files, (plan,))
     loaded = mission.load(verbose=verbose)
-    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
-    verdict = require_admissible(loaded, given, plan)
+    given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
+    verdict = require_admissible(loaded, given, plan, ignore)
     if form == "qgc":
         assert output is not None
         wishes = Wishes(altitude, clearance, tolerance, firmware)

@@ -17,9 +17,17 @@ if TYPE_CHECKING:
 
 
 def show_plan(
-    mission: Mission, plan: Plan, form: str, output: Path | None, plot: Path | None, gantt: Path | None
+    mission: Mission,
+    plan: Plan,
+    ignored: tuple[str, ...],
+    objective: str | None,
+    *,
+    form: str,
+    output: Path | None,
+    plot: Path | None,
+    gantt: Path | None,
 ) -> None:
-    """Judge a plan, then write and draw and print it.
+    """Judge a plan that was made for that objective, some rules ignored; then write and draw and print it.
 
     Raises
     ------
@@ -29,7 +37,7 @@ def show_plan(
     from muster.cli.plan_tables import print_plan
     from muster.verification import verify
 
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")

@@ -19,6 +19,7 @@ from muster.cli.options import (
     Finite,
     MissionFile,
     format_option,
+    ignore_option,
     mission_argument,
     quiet_option,
     require_complete_option,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
-_OF_A_PLAN = ("plan", "time_limit", "iterations")
+_OF_A_PLAN = ("plan", "ignore", "time_limit", "iterations")
 _OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
 _WORLDS = ("kinematic", "physics")
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
@@ -47,6 +48,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.command()
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
+@ignore_option
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
 @click.option("--world", type=click.Choice(_WORLDS), default="kinematic", show_default=True, help="Where.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
@@ -88,6 +90,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 def command(
     mission: MissionFile,
     plan: Path | None,
+    ignore: tuple[str, ...],
     negotiate: bool,
     world: str,
     seed: int,
@@ -134,14 +137,16 @@ def command(
     loaded = mission.load(verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
+    how: dict[str, Any] = {}
     if negotiate:
         planned, speed = _negotiation(method, transport, others, settings), speed or 1.0
     else:
-        planned = _plan(loaded, plan, seed, time_limit, iterations)
+        how["ignore"] = ignore
+        planned = _plan(loaded, plan, ignore, seed, time_limit, iterations)
         if plan is not None:
-            say_of_plan(planned, plan, loaded, quiet=quiet, verbose=verbose)
+            say_of_plan(planned, plan, loaded, ignore, quiet=quiet, verbose=verbose)
     with kept_record(record, html, plot, gantt) as file:
-        how: dict[str, Any] = {
+        how |= {
             "seed": seed,
             "world": world,
             "dt_s": dt,
@@ -203,12 +208,20 @@ def _negotiation(method: str, transport: str, others: Mapping[str, Any], setting
     return Negotiation(method=method, transport=transport, params=terms)
 
 
-def _plan(mission: Mission, file: Path | None, seed: int, time_limit: float, iterations: int | None) -> Plan:
+def _plan(
+    mission: Mission,
+    file: Path | None,
+    ignore: tuple[str, ...],
+    seed: int,
+    time_limit: float,
+    iterations: int | None,
+) -> Plan:
     from muster import solve
 
     if file is not None:
         return read_plan(file)
-    return solve(mission, seed=seed, time_limit=None if iterations is not None else time_limit, iterations=iterations)
+    limit = None if iterations is not None else time_limit
+    return solve(mission, seed=seed, time_limit=limit, iterations=iterations, ignore=ignore)
 
 
 def noise_of(noises: tuple[str, ...]) -> Noise:

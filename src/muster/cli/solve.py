@@ -160,7 +160,7 @@ def command(
                 proof = prove(problem, plan, bound, stop, time_limit)
                 plan = proof.plan
     with _ctrl_c_interrupts(stop):
-        show_plan(loaded, plan, form, output, plot, gantt)
+        show_plan(loaded, plan, ignore, objective, form=form, output=output, plot=plot, gantt=gantt)
     if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     if stop.interrupted:

@@ -227,19 +227,19 @@ class Plans:
         """Have a plan kept: what a plan file holds."""
         return read(PlanEntry, self._connection.post(f"/missions/{_in(mission)}/plans/upload", plan))
 
-    def verdict(self, plan: int) -> dict[str, Any]:
-        """What the judge says."""
-        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/verdict")
+    def verdict(self, plan: int, ignore: Sequence[str] | None = None, objective: str | None = None) -> dict[str, Any]:
+        """What the judge says, some rules ignored; by default those without which the server made the plan."""
+        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/verdict", ignore=ignore, objective=objective)
         return found
 
-    def explain(self, plan: int, task: str | None = None) -> dict[str, Any]:
-        """Why tasks are left out; of one task, why this robot does it."""
-        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/explain", task=task)
+    def explain(self, plan: int, task: str | None = None, ignore: Sequence[str] | None = None) -> dict[str, Any]:
+        """Why tasks are left out; of one task, why this robot does it. `ignore` is as for `verdict`."""
+        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/explain", task=task, ignore=ignore)
         return found
 
-    def export(self, plan: int, to: str, **options: Any) -> tuple[str, bytes]:
+    def export(self, plan: int, to: str, ignore: Sequence[str] | None = None, **options: Any) -> tuple[str, bytes]:
         """The name and the bytes of a file for other tools; of qgc with several robots a ZIP."""
-        return self._connection.file(f"/plans/{plan}/export", to=to, **options)
+        return self._connection.file(f"/plans/{plan}/export", to=to, ignore=ignore, **options)
 
     def picture(self, plan: int, what: str = "routes", form: str = "svg") -> bytes:
         """Routes on the map, or the time chart (`gantt`); png or svg."""

@@ -14,10 +14,11 @@ from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.html_tables import html_line, html_table
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
-from muster.mission.rules import IGNORABLE, OBJECTIVES, Rules
+from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Map, Origin, Point, Tag, TravelTable, Zone
 from muster.mission.tasks import Action, Found, Task, Work
 from muster.mission.text_files import write_text

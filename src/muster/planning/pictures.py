@@ -30,7 +30,7 @@ def plot(mission: Mission, plan: Plan | Mapping[str, Any], *, ax: Axes | None = 
     from muster.report import plot_routes
 
     plan = plan_of(plan)
-    return plot_routes(mission, plan, verify(mission, plan), ax=ax)
+    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)
 
 
 def gantt(mission: Mission, plan: Plan | Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
@@ -43,4 +43,5 @@ def gantt(mission: Mission, plan: Plan | Mapping[str, Any], *, ax: Axes | None =
     """
     from muster.report import plot_gantt
 
-    return plot_gantt(mission, verify(mission, plan), ax=ax)
+    plan = plan_of(plan)
+    return plot_gantt(mission, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

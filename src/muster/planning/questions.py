@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING, overload
 
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.request import require_mission
@@ -12,8 +13,10 @@ from muster.planning.request import require_mission
 if TYPE_CHECKING:
     from muster.planning.explaining import LeftOut, OneTask, Possible
 
+Rules = str | Collection[str]
 
-def check(mission: Mission, *, ignore: Collection[str] = (), time_limit: float | None = 2.0) -> Possible:
+
+def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.0) -> Possible:
     """Find the tasks of a mission that can never be done, and whether one plan can do all others.
 
     Parameters
@@ -31,19 +34,26 @@ def check(mission: Mission, *, ignore: Collection[str] = (), time_limit: float |
     from muster.planning.explaining import possible
 
     require_mission(mission)
-    return possible(mission, ignored=(ignore,) if isinstance(ignore, str) else tuple(ignore), time_limit=time_limit)
+    return possible(mission, ignored=ignored_rules(ignore), time_limit=time_limit)
 
 
 @overload
-def explain(mission: Mission, plan: Plan, task: None = None) -> LeftOut: ...
+def explain(mission: Mission, plan: Plan, task: None = None, *, ignore: Rules = ()) -> LeftOut: ...
 
 
 @overload
-def explain(mission: Mission, plan: Plan, task: str) -> OneTask: ...
+def explain(mission: Mission, plan: Plan, task: str, *, ignore: Rules = ()) -> OneTask: ...
 
 
-def explain(mission: Mission, plan: Plan, task: str | None = None) -> LeftOut | OneTask:
+def explain(mission: Mission, plan: Plan, task: str | None = None, *, ignore: Rules = ()) -> LeftOut | OneTask:
     """Explain why tasks are left out of a plan; or why a task is done by this robot and not by another.
+
+    Parameters
+    ----------
+    task
+        the id of one task; None: all that are left out.
+    ignore
+        rules that do not hold.
 
     Raises
     ------
@@ -55,5 +65,6 @@ def explain(mission: Mission, plan: Plan, task: str | None = None) -> LeftOut | 
     from muster.planning.explaining import left_out, one_task, require_fit
 
     require_mission(mission)
-    require_fit(mission, plan, "<plan>")
-    return left_out(mission, plan) if task is None else one_task(mission, plan, task)
+    ignored = ignored_rules(ignore)
+    require_fit(mission, plan, "<plan>", ignored)
+    return left_out(mission, plan, ignored) if task is None else one_task(mission, plan, task, ignored)

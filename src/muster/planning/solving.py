@@ -83,7 +83,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
     plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
     plan, why = _improved(request, problem, plan, stop)
-    verdict = judged(request.mission, plan)
+    verdict = judged(request.mission, plan, request.ignore, request.objective)
     return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
 
 
@@ -159,7 +159,7 @@ def solve(
     objective
         instead of the mission's own.
     ignore
-        rules that do not hold: prerequisites, suitability, skills, capacity.
+        rules that do not hold: prerequisite, suitability, skill, lock, capacity.
     start
         a plan to go on from.
     fixed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
@@ -13,12 +13,13 @@ if TYPE_CHECKING:
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance` and `noise` as `Simulation` takes them."""
+    """How the world is: `world`, `dt_s`, `avoidance`, `noise` and `ignore` as `Simulation` takes them."""
 
     world: str
     dt_s: float
     avoidance: str
     noise: Noise
+    ignore: str | Collection[str]
     on_look: OnLook | None
     on_world: Callable[[SimulatedWorld], None] | None
 

@@ -20,14 +20,15 @@ def run(
     mission: MissionFile,
     plan: Path,
     task: str | None,
+    ignore: tuple[str, ...],
     form: str,
     quiet: bool,
     verbose: bool,
 ) -> None:
     """Send the mission and the plan; print what comes back as it is printed here."""
     loaded = mission.load(verbose=verbose)
-    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
-    found = control.plans.explain(kept_plan(control, loaded, given, verbose=verbose).id, task)
+    given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
+    found = control.plans.explain(kept_plan(control, loaded, given, verbose=verbose).id, task, ignore)
     found.pop("words")
     print_explained(form, found, [_part(part) for part in found.pop("tables")])
 

@@ -27,6 +27,7 @@ def run(
     *,
     mission: MissionFile,
     plan: Path,
+    ignore: tuple[str, ...],
     form: str,
     output: Path | None,
     altitude: float | None,
@@ -44,12 +45,12 @@ def run(
     else:
         require_writable(None, (output,), mission.files, (plan,))
     loaded = mission.load(verbose=verbose)
-    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
+    given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
     wishes = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
     asked = {name: value for name, value in wishes.items() if _is_given(name)}
     if asked and form != "qgc":
         raise ParameterError(f"--{next(iter(asked))} given; expected it with --to qgc, not {form}")
-    name, data = control.plans.export(kept_plan(control, loaded, given, verbose=verbose).id, form, **asked)
+    name, data = control.plans.export(kept_plan(control, loaded, given, verbose=verbose).id, form, ignore, **asked)
     if form == "qgc":
         assert output is not None
         notes = _unpack(name, data, output)

@@ -34,6 +34,7 @@ def run(
     *,
     mission: MissionFile,
     plan: Path | None,
+    ignore: tuple[str, ...],
     world: World,
     seed: int,
     time_limit: float,
@@ -54,11 +55,11 @@ def run(
     """Send the mission, have it planned unless there is a plan, follow the run, and report."""
     require_writable(None, (record, html, plot, gantt), mission.files, (plan,))
     require_drawable(plot, gantt)
-    settings: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance}
+    settings: dict[str, Any] = {"seed": seed, "dt_s": dt, "avoidance": avoidance, "ignore": list(ignore)}
     if noises:
         settings["noise"] = {kind: amount for kind, amount in asdict(noise_of(noises)).items() if amount}
     loaded = mission.load(verbose=verbose)
-    number = _plan(control, loaded, plan, seed, time_limit, iterations, quiet=quiet, verbose=verbose)
+    number = _plan(control, loaded, plan, ignore, seed, time_limit, iterations, quiet=quiet, verbose=verbose)
     with ctrl_c_halts() as halt:  # no exception, so that there is no run of which we do not know
         carried = control.start(number, world=world, speed=speed, **settings)
     interrupted = _followed(carried, halt.is_set(), telling=speed is not None and not quiet)
@@ -81,6 +82,7 @@ def _plan(
     control: Client,
     mission: Mission,
     file: Path | None,
+    ignore: tuple[str, ...],
     seed: int,
     time_limit: float,
     iterations: int | None,
@@ -90,11 +92,11 @@ def _plan(
 ) -> int:
     """The id of the plan that is carried out."""
     if file is not None:
-        given = load_plan(file, mission, quiet=quiet, verbose=verbose)
+        given = load_plan(file, mission, ignore, quiet=quiet, verbose=verbose)
         return kept_plan(control, mission, given, verbose=verbose).id
     limit = None if iterations is not None else time_limit
     there = kept(control, mission, verbose=verbose)
-    ask = partial(control.plan, there, seed=seed, time_limit=limit, iterations=iterations)
+    ask = partial(control.plan, there, seed=seed, time_limit=limit, iterations=iterations, ignore=list(ignore))
     entry, interrupted = planned(ask, mission, quiet=quiet, time_limit=limit, iterations=iterations)
     if interrupted:
         click.echo(f"interrupted: plan {entry.id} is kept at the server; nothing was started", err=True)

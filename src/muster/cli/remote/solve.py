@@ -71,7 +71,7 @@ def run(
     )
     entry, interrupted = planned(ask, loaded, quiet=quiet, time_limit=time_limit, iterations=iterations)
     plan = plan_from(entry.plan, f"plan {entry.id}")
-    show_plan(loaded, plan, form, output, plot, gantt)
+    show_plan(loaded, plan, ignore, objective, form=form, output=output, plot=plot, gantt=gantt)
     if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     if interrupted:

@@ -19,7 +19,7 @@ from muster.verification.verdict import RouteFigures, Violation, Visit
 if TYPE_CHECKING:
     from muster.client import Client
 
-_NOT_OF_VERDICTS = ("valid", "objective", "waiting_s", "lines", "violations", "routes")
+_NOT_OF_VERDICTS = ("valid", "ignored", "objective", "waiting_s", "lines", "violations", "routes")
 _NOT_PRINTED = ("waiting_s", "lines", "routes")
 
 
@@ -28,14 +28,16 @@ def run(
     *,
     mission: MissionFile,
     plan: Path,
+    objective: str | None,
+    ignore: tuple[str, ...],
     form: str,
     quiet: bool,
     verbose: bool,
 ) -> int:
     """Send the mission and the plan, and show what the judge there says."""
     loaded = mission.load(verbose=verbose)
-    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
-    said = control.plans.verdict(kept_plan(control, loaded, given, verbose=verbose).id)
+    given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
+    said = control.plans.verdict(kept_plan(control, loaded, given, verbose=verbose).id, ignore, objective)
     if form == "json":
         click.echo(json_text({key: value for key, value in said.items() if key not in _NOT_PRINTED}), nl=False)
     else:
@@ -48,6 +50,7 @@ def _verdict(said: Mapping[str, Any]) -> Verdict:
     figures = {key: value for key, value in said.items() if key not in _NOT_OF_VERDICTS}
     return Verdict(
         violations=tuple(Violation(**violation) for violation in said["violations"]),
+        ignored=tuple(said["ignored"]),
         routes=tuple(_route(route) for route in said["routes"]),
         **figures,
     )
