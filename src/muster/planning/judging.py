@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_of
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
@@ -15,12 +16,23 @@ if TYPE_CHECKING:
 _MOST_SHOWN = 3
 
 
-def verify(mission: Mission, plan: Plan) -> Verdict:
-    """Judge a plan from scratch, by code that no allocator uses."""
+def verify(mission: Mission, plan: Plan | Mapping[str, Any]) -> Verdict:
+    """Judge a plan from scratch, by code that no allocator uses.
+
+    Parameters
+    ----------
+    plan
+        a plan; or a mapping from robots to their tasks in order, or the content of a plan file.
+
+    Raises
+    ------
+    ParameterError, PlanError
+        if it is no plan.
+    """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan)
+    return judge(mission, plan_of(plan))
 
 
 def judged(mission: Mission, plan: Plan) -> Verdict:
@@ -36,10 +48,3 @@ def judged(mission: Mission, plan: Plan) -> Verdict:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
     return verdict
-
-
-def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
-    """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
-    from muster.report import plot_routes
-
-    return plot_routes(mission, plan, verify(mission, plan), ax=ax)
