@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
+from muster.mission.interrupts import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
 from muster.cli.real_robots import (
     Wishes,

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import click
 
 from muster.cli.exits import INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
+from muster.mission.interrupts import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
     Wishes,
