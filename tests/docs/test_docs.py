@@ -11,7 +11,7 @@ from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, run
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 from muster.mission.yaml_reader import parse_yaml
 from muster.planning.options import DEFAULT_ALLOCATOR
 

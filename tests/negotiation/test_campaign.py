@@ -51,10 +51,16 @@ def test_an_error_is_a_failure(monkeypatch):
 
 
 PLANTED = {  # from which seed on a few runs find the fault, and what it is: module, right, wrong
-    "half of the team is enough": (0, "base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
-    "nobody need know what is begun": (25, "work", "said and sum(declared.knows for declared in tell)", "said and 99"),
-    "who begins need not have said so": (0, "work", "return said and sum", "return sum"),
+    "half of the team is enough": (0, "epoch_base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
+    "nobody need know what is begun": (
+        25,
+        "owned_tasks",
+        "declared.knows for declared in tell",
+        "99 for declared in tell",
+    ),
+    "who begins need not have said so": (0, "owned_tasks", "return said and sum", "return sum"),
     "who has forgotten counts": (90, "participant", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
+    "a clock that was set back is not noticed": (0, "identity", "if not self.may_rise or", "if True or"),
     "what is waived stays closed": (65, "knowledge", 'fact.kind == "waived"}', 'fact.kind == ""}'),
 }
 

@@ -3,15 +3,18 @@
 import itertools
 
 import pytest
+from tests.negotiation.networks import line_mission
 from tests.random_missions import random_mission
 
 from muster import load, verify
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.mission.plan import read_plan
 from muster.negotiation.memory_network import MemoryNetwork, Weather
-from muster.negotiation.participation import negotiator_of, plan_of, plan_of_view, rules_of
+from muster.negotiation.participation import bundler_of, negotiator_of, plan_of, plan_of_bundles, plan_of_view, rules_of
 from muster.negotiation.robot_view import view_of
 
 ALL_TERMS = tuple(itertools.product(BIDS, PLACEMENTS, WINNERS))
@@ -130,3 +133,22 @@ def test_rules_follow_the_problem():
     assert list(rules.robots) == [f"r_{k}" for k in range(6)]
     assert rules.once == frozenset()
     assert not any(rules_of(Problem.compile(mission, ignored=("prerequisites",))).prerequisites.values())
+
+
+@pytest.mark.parametrize(("make", "plan"), [(negotiator_of, plan_of_view), (bundler_of, plan_of_bundles)])
+def test_a_plan_names_tasks_that_several_robots_have_begun(make, plan, tmp_path):
+    problem, params = Problem.compile(line_mission(robots=2, tasks=3)).ready(), {bundler_of: BundleParameters}
+    terms = params.get(make, Parameters)()
+    held = MemoryNetwork(lambda r, n: make(problem, terms, r, incarnation=n), ["r_0", "r_1"])
+    held.start()
+    settle(held)
+    assert "done_twice" not in plan(problem, terms, view_of(held.nodes["r_0"])).as_dict()
+    held.cut(["r_0"], ["r_1"])
+    assert held.run(60, lambda: all(len(node.route) == 3 and node.settled for node in held.nodes.values()))
+    assert all(node.begin("2") for node in held.nodes.values())
+    held.heal()
+    assert held.run(90, lambda: all(len(node.epoch.own.members) == 2 and node.settled for node in held.nodes.values()))
+    told = plan(problem, terms, view_of(held.nodes["r_0"]))
+    assert {task: sorted(robots) for task, robots in told.as_dict()["done_twice"].items()} == {"2": ["r_0", "r_1"]}
+    told.save(tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json").book.done_twice == told.book.done_twice

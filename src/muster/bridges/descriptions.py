@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 from muster.mission.errors import MissionError
-from muster.mission.model import Robot, Task, findings
+from muster.mission.model import Robot, Task
+from muster.mission.records import Record, findings
 from muster.mission.source import Source
-from muster.mission.value_types import Fault, Record
+from muster.mission.value_types import Fault
 from muster.mission.yaml_writer import plain
 
 R = TypeVar("R", Robot, Task)

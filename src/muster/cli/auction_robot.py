@@ -83,9 +83,13 @@ class _Watch:
         self._negotiator, self._say = negotiator, say
         self._there: set[str] = set()
         self._settled = False
+        self._incarnation = negotiator.incarnation
 
     def __call__(self, status: NodeStatus) -> None:
         members = self._negotiator.members
+        if self._negotiator.incarnation != self._incarnation:
+            self._incarnation = self._negotiator.incarnation
+            self._say(f"{status.robot} has started later before: its clock was set back; taking part as a new start")
         heard = {robot for robot in status.members if members.incarnation(robot) >= 0}
         for robot in self._negotiator.rules.robots:
             if robot in heard and robot not in self._there:

@@ -33,6 +33,8 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     lost = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
     if lost:
         print_table(("task lost", "reason"), lost)
+    for task, robots in report.get("done_twice", {}).items():
+        click.echo(f"{'done twice':<17} {task}, by {', '.join(robots)}")
     _print_found(report, mission)
     for remark in report.get("remarks", ()):
         click.echo(f"{'remark':<17} {remark}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from muster.execution.task_ledger import Ledger
@@ -21,7 +21,7 @@ class Account:
         of the tasks; why each task is lost that is.
     used, usage_planned
         by robot, in the mission's unit: measured; and by the plan that the mission began with, 0 of who joined.
-    mission_time_s, reallocations
+    mission_time_s, reallocations, done_twice
         as in `Report`.
     """
 
@@ -33,6 +33,7 @@ class Account:
     usage_planned: Mapping[str, float]
     mission_time_s: float
     reallocations: int
+    done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -119,6 +120,8 @@ class Report:
         of the plan; `average` is of the usages with which robots came to tasks, `makespan` the mission time.
     tasks
         of tasks done, in order of completion.
+    done_twice
+        by task that several robots have begun, as they could not hear each other, these robots.
     found
         what cameras found, in order of time.
     remarks
@@ -137,6 +140,7 @@ class Report:
     ends_s: dict[str, float]
     objective: ObjectiveReport
     tasks: tuple[TaskReport, ...]
+    done_twice: dict[str, tuple[str, ...]] = field(default_factory=dict)
     found: tuple[FoundReport, ...] = ()
     remarks: tuple[str, ...] = ()
 
@@ -175,6 +179,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         tasks=tuple(
             TaskReport(task, ledger.done_by[task], *ledger.usage[task], ledger.waited_s(task)) for task in done
         ),
+        done_twice=dict(account.done_twice),
     )
 
 

@@ -1,8 +1,15 @@
-"""The keys that each task action has in a mission file: the words of `motion.actions`, which tells what they do."""
+"""The keys that each task action has in a mission file. What an action does is told by `motion.actions`."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from muster.mission.errors import ParameterError
+from muster.mission.plugins import Registry
+from muster.mission.value_types import Key
+
+ACTION_GROUP = "muster.actions"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -12,23 +19,66 @@ class ActionKeys:
     Parameters
     ----------
     needed, optional
-        names of fields of `model.Action`.
+        names of fields of `model.Action`, or of `own`.
     has_geometry
         whether its cost follows from way points, so that a mission must not type it. Without geometry the robot is at
         the task's position, as in `go-to-goal`.
+    own
+        keys that are no fields of `model.Action`: `Action.extra` holds their values.
     """
 
     needed: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
     has_geometry: bool = True
+    own: Mapping[str, Key] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All keys that a mission may give."""
+        return (*self.needed, *self.optional)
 
 
-ACTION_KEYS: dict[str, ActionKeys] = {
-    "go-to-goal": ActionKeys(has_geometry=False),
-    "stationary-observation": ActionKeys(needed=("width_m",), optional=("heading_deg",)),
-    "raster-search": ActionKeys(needed=("side_m", "height_m", "spacing_m")),
-    "ground-patrol": ActionKeys(needed=("side_m",)),
-    "delivery": ActionKeys(needed=("pickup",)),
-    "sensor-activation": ActionKeys(needed=("duration_s",), has_geometry=False),
+GO_TO_GOAL = ActionKeys(has_geometry=False)
+STATIONARY_OBSERVATION = ActionKeys(needed=("width_m",), optional=("heading_deg",))
+RASTER_SEARCH = ActionKeys(needed=("side_m", "height_m", "spacing_m"))
+GROUND_PATROL = ActionKeys(needed=("side_m",))
+DELIVERY = ActionKeys(needed=("pickup",))
+SENSOR_ACTIVATION = ActionKeys(needed=("duration_s",), has_geometry=False)
+
+_SHIPPED = {
+    "go-to-goal": "GO_TO_GOAL",
+    "stationary-observation": "STATIONARY_OBSERVATION",
+    "raster-search": "RASTER_SEARCH",
+    "ground-patrol": "GROUND_PATROL",
+    "delivery": "DELIVERY",
+    "sensor-activation": "SENSOR_ACTIVATION",
 }
-"""By name. `motion.actions.register` adds to them."""
+_FIELDS = frozenset(key for constant in _SHIPPED.values() for key in globals()[constant].names)
+
+
+def keys_of(name: str, found: object) -> ActionKeys:
+    """The keys of a loaded action: themselves, or those of an implementation (`motion.actions.TaskAction`).
+
+    Raises
+    ------
+    ParameterError
+        if it is no action, or has another name.
+    """
+    found = found() if isinstance(found, type) else found
+    keys = found if isinstance(found, ActionKeys) else getattr(found, "keys", None)
+    if not isinstance(keys, ActionKeys):
+        raise ParameterError(f"it is a {type(found).__name__}; expected an action: name, keys and plan")
+    called = getattr(found, "name", name)
+    if called != name:
+        raise ParameterError(f"it is called {called}; expected the name of its entry point")
+    known = {*_FIELDS, *keys.own}
+    for key in keys.names:
+        if key not in known:
+            raise ParameterError(f"key {key}; expected keys of {', '.join(sorted(known))}")
+    return keys
+
+
+ACTION_KEYS: Registry[ActionKeys] = Registry(
+    "action", ACTION_GROUP, {name: f"{__name__}:{constant}" for name, constant in _SHIPPED.items()}, keys_of
+)
+"""By name, those of installed packages included. `motion.actions.register` adds to them."""

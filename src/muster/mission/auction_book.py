@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -60,12 +60,15 @@ class Book:
     """What an auction leaves behind besides its plan.
 
     `awards` holds the tasks of the plan, in the order in which they were won for good. `messages` is None where nothing
-    is sent. `recite` tells every bid of the auction in order; None in a book that was read from a plan file.
+    is sent. `done_twice` lists, for each task that several robots have begun, these robots; only robots that agree
+    without a centre do that. `recite` tells every bid of the auction in order; None in a book that was read from a plan
+    file.
     """
 
     rounds: int
     messages: int | None = None
     awards: tuple[Award, ...]
+    done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     recite: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
+from muster.mission.mission_data import MissionData
 from muster.mission.near_matches import did_you_mean
+from muster.mission.robots import Robot
+from muster.mission.site import Point
+from muster.mission.tasks import Found, Task, Work
 from muster.mission.value_types import Fault, Path, shown
-
-if TYPE_CHECKING:
-    from muster.mission.model import Found, Mission, Point, Robot, Task, Work
 
 _FLAT_M = 0.01
 """A tag lies on the ground that is no farther from it."""
 
 
-def inconsistencies(mission: Mission) -> Iterator[Fault]:
+def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     """Every fault that lies between the parts of a mission."""
     yield from _repeated_ids(mission)
     yield from _prerequisites(mission)
@@ -29,7 +29,7 @@ def inconsistencies(mission: Mission) -> Iterator[Fault]:
     yield from _tags_on_the_ground(mission)
 
 
-def _repeated_ids(mission: Mission) -> Iterator[Fault]:
+def _repeated_ids(mission: MissionData) -> Iterator[Fault]:
     groups = (("robots", [r.id for r in mission.robots]), ("tasks", [t.id for t in mission.tasks]))
     for group, ids in groups:
         first: dict[str, int] = {}
@@ -43,25 +43,25 @@ def _unknown(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
     return Fault(at, shown(name), f"the id of a {what}{did_you_mean(name, known)}", relies_on=f"{what}s")
 
 
-def _new_tasks(mission: Mission) -> list[tuple[Path, Task]]:
+def _new_tasks(mission: MissionData) -> list[tuple[Path, Task]]:
     return [(("events", k, "new_task"), e.new_task) for k, e in enumerate(mission.events) if e.new_task]
 
 
-def _robots_that_join(mission: Mission) -> list[tuple[Path, Robot]]:
+def _robots_that_join(mission: MissionData) -> list[tuple[Path, Robot]]:
     return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
 
 
-def _all_work(mission: Mission) -> list[tuple[Path, Work]]:
+def _all_work(mission: MissionData) -> list[tuple[Path, Work]]:
     """Tasks, those that come later, and what becomes of tags."""
     becomes = [(("found", k, "becomes"), found.becomes) for k, found in _rules(mission)]
     return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission), *becomes]
 
 
-def _all_robots(mission: Mission) -> list[tuple[Path, Robot]]:
+def _all_robots(mission: MissionData) -> list[tuple[Path, Robot]]:
     return [*((("robots", k), robot) for k, robot in enumerate(mission.robots)), *_robots_that_join(mission)]
 
 
-def _prerequisites(mission: Mission) -> Iterator[Fault]:
+def _prerequisites(mission: MissionData) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
     with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
@@ -77,7 +77,7 @@ def _prerequisites(mission: Mission) -> Iterator[Fault]:
             seen.add(name)
 
 
-def _cycles(mission: Mission) -> Iterator[Fault]:
+def _cycles(mission: MissionData) -> Iterator[Fault]:
     """One cycle of each knot of prerequisites, named in the order in which the tasks wait.
 
     Not all: there can be more than anyone could read, and the others go when one task of theirs is set right, or are
@@ -110,7 +110,7 @@ def _cycle(tasks: Sequence[Task], knot: list[int]) -> Fault:
     return Fault(("tasks", knot[0], "prerequisites"), f"cycle {names}", "prerequisites without a cycle")
 
 
-def _locks(mission: Mission) -> Iterator[Fault]:
+def _locks(mission: MissionData) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
     joining = [robot.id for _, robot in _robots_that_join(mission)]
     for path, task in _all_work(mission):
@@ -119,7 +119,7 @@ def _locks(mission: Mission) -> Iterator[Fault]:
                 yield _unknown((*path, "only_robots", r), name, ids, "robot")
 
 
-def _suitability(mission: Mission) -> Iterator[Fault]:
+def _suitability(mission: MissionData) -> Iterator[Fault]:
     if mission.suitability is None:
         return
     rows = list(mission.suitability)
@@ -137,7 +137,7 @@ def _suitability(mission: Mission) -> Iterator[Fault]:
                 yield Fault((*path, "type"), shown(name), expected + did_you_mean(name, known))
 
 
-def positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
+def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
     """Every position that a mission names, also in its events."""
     for k, robot in enumerate(mission.robots):
         yield ("robots", k, "position"), robot.position
@@ -155,20 +155,20 @@ def positions(mission: Mission) -> Iterator[tuple[Path, Point]]:
     for k, tag in enumerate(mission.tags):
         yield ("tags", k, "position"), tag.position
     for k, found in _rules(mission):
-        if found.becomes.action is not None and found.becomes.action.pickup is not None:
-            yield ("found", k, "becomes", "action", "pickup"), found.becomes.action.pickup
+        if found.becomes.action is not None:
+            for key, point in found.becomes.action.places.items():
+                yield ("found", k, "becomes", "action", key), point
 
 
 def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
-    pickup = task.action.pickup if task.action else None
     for name, point in (("position", task.position), ("entry", task.entry), ("exit", task.exit)):
         if point is not None:
             yield (*at, name), point
-    if pickup is not None:
-        yield (*at, "action", "pickup"), pickup
+    for key, point in ({} if task.action is None else task.action.places).items():
+        yield (*at, "action", key), point
 
 
-def _dimensions(mission: Mission) -> Iterator[Fault]:
+def _dimensions(mission: MissionData) -> Iterator[Fault]:
     """Positions with z among positions without; the fewer of the two are the wrong ones."""
     places = list(positions(mission))
     flat = [item for item in places if len(item[1]) == 2]
@@ -179,7 +179,7 @@ def _dimensions(mission: Mission) -> Iterator[Fault]:
             yield Fault(path, shown(list(point)), f"{expected} as the other positions are")
 
 
-def _travel(mission: Mission) -> Iterator[Fault]:
+def _travel(mission: MissionData) -> Iterator[Fault]:
     if mission.travel_rule == "map" and mission.map is None:
         yield Fault(("rules", "travel"), shown("map"), "a mission with a map, or another rule")
     if mission.travel_rule != "matrix":
@@ -196,7 +196,7 @@ def _travel(mission: Mission) -> Iterator[Fault]:
     yield from _places_without_row(mission)
 
 
-def _types_without_table(mission: Mission) -> Iterator[Fault]:
+def _types_without_table(mission: MissionData) -> Iterator[Fault]:
     types = mission.travel or {}
     expected = f"a type that has a travel table ({', '.join(types)})"
     for k, robot in enumerate(mission.robots):
@@ -204,7 +204,7 @@ def _types_without_table(mission: Mission) -> Iterator[Fault]:
             yield Fault(("robots", k, "type"), "missing" if robot.type is None else shown(robot.type), expected)
 
 
-def _table_faults(mission: Mission) -> Iterator[Fault]:
+def _table_faults(mission: MissionData) -> Iterator[Fault]:
     robots, tasks = [r.id for r in mission.robots], [t.id for t in mission.tasks]
     for name in sorted(set(robots) & set(tasks)):
         at: Path = ("tasks", tasks.index(name), "id")
@@ -226,7 +226,7 @@ def _table_faults(mission: Mission) -> Iterator[Fault]:
                     yield Fault(("travel", kind), f"{metres:g} from {start} to {end}", "metres of at least 0, or inf")
 
 
-def _places_without_row(mission: Mission) -> Iterator[Fault]:
+def _places_without_row(mission: MissionData) -> Iterator[Fault]:
     places: list[tuple[Path, Point | None]] = [
         (("robots", k, "end_position"), robot.end_position) for k, robot in enumerate(mission.robots)
     ]
@@ -237,7 +237,7 @@ def _places_without_row(mission: Mission) -> Iterator[Fault]:
             yield Fault(path, shown(list(point)), "nothing here: travel tables know robots and tasks alone")
 
 
-def _events(mission: Mission) -> Iterator[Fault]:
+def _events(mission: MissionData) -> Iterator[Fault]:
     robots = [r.id for r in mission.robots] + [e.robot_joins.id for e in mission.events if e.robot_joins]
     tasks = [t.id for t in mission.tasks] + [e.new_task.id for e in mission.events if e.new_task]
     for k, event in enumerate(mission.events):
@@ -260,12 +260,12 @@ def _events(mission: Mission) -> Iterator[Fault]:
                 yield Fault(("events", k, group, "id"), shown(name), "an id of its own")
 
 
-def _rules(mission: Mission) -> list[tuple[int, Found]]:
+def _rules(mission: MissionData) -> list[tuple[int, Found]]:
     """What becomes of tags, by number; one without a task is on the list of faults already."""
     return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]
 
 
-def _found(mission: Mission) -> Iterator[Fault]:
+def _found(mission: MissionData) -> Iterator[Fault]:
     cameras = any(robot.camera is not None for _, robot in _all_robots(mission))
     for_all: int | None = None
     for k, found in _rules(mission):
@@ -281,7 +281,7 @@ def _found(mission: Mission) -> Iterator[Fault]:
             for_all = k
 
 
-def _tags_on_the_ground(mission: Mission) -> Iterator[Fault]:
+def _tags_on_the_ground(mission: MissionData) -> Iterator[Fault]:
     """Robots take what they see to lie on the ground: 0, or the lowest place of the mission."""
     heights = [place[2] for path, place in positions(mission) if len(place) == 3 and path[0] != "tags"]
     ground = min([0.0, *heights])

@@ -11,9 +11,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.mission.model import Origin
-from muster.mission.place_types import LatLon
-from muster.mission.value_types import INVALID, Fault, Path, Record, shown
+from muster.mission.place_types import LatLon, Place
+from muster.mission.records import Record
+from muster.mission.site import Origin
+from muster.mission.tasks import Action
+from muster.mission.value_types import INVALID, Fault, Path, shown
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
 _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
@@ -67,10 +69,15 @@ def _places(data: object) -> Iterator[InDegrees]:
     for at, record in _records(data):
         if "lat_lon" in record:
             yield InDegrees(record["lat_lon"], (*at, "lat_lon"), (*at, "position"), record)
-        for key in _OTHER_PLACES:
+        for key in (*_OTHER_PLACES, *_own_places(record)):
             value = record.get(key)
             if isinstance(value, dict) and list(value) == ["lat_lon"]:
                 yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record)
+
+
+def _own_places(record: Mapping[str, Any]) -> list[str]:
+    """The keys of an action of another package that are places."""
+    return [key for key, own in Action.further_keys(record).items() if isinstance(own.kind, Place)]
 
 
 def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:

@@ -9,10 +9,11 @@ from __future__ import annotations
 from muster.mission.consistency import inconsistencies
 from muster.mission.degrees import degrees_to_metres, in_degrees
 from muster.mission.errors import MissionError
-from muster.mission.model import Mission, findings
+from muster.mission.model import Mission
+from muster.mission.records import Record, findings
 from muster.mission.source import Source
 from muster.mission.travel_csv import read_travel_tables
-from muster.mission.value_types import Fault, Path, Record
+from muster.mission.value_types import Fault, Path
 
 
 def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:

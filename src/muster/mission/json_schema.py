@@ -1,27 +1,101 @@
 """The published JSON Schema of mission files, made from the model.
 
-`python -m muster.mission.json_schema` prints it; the file beside this one is kept equal to it by a test.
+`python -m muster.mission.json_schema` prints it, with the actions of installed packages; the file beside this one has
+those that ship, and is kept equal to it by a test.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterator
+from dataclasses import Field
+from typing import Any
 
-from muster.mission.model import SCHEMA, Mission
-from muster.mission.value_types import JsonSchema, Record
+from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.model import SCHEMA, Action, Mission
+from muster.mission.records import Record, required, specified
+from muster.mission.value_types import JsonSchema, Kind, Many
 
 
 def mission_schema() -> JsonSchema:
     """JSON Schema (draft 2020-12) of mission YAML."""
-    schema = Record(Mission, "a mission").schema()
+    schema = _definition(Mission)
     schema["required"] = ["schema", *schema["required"]]
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA, "title": "Muster mission"}
-    return head | schema
+    definitions: dict[str, JsonSchema] = {}
+    _define_parts(Mission, definitions)
+    return head | schema | {"$defs": definitions}
 
 
 def schema_text() -> str:
     return json.dumps(mission_schema(), indent=1) + "\n"
+
+
+def _define_parts(of: type[Any], found: dict[str, JsonSchema]) -> None:
+    """Add the definition of each class that a value of this one may hold."""
+    for part in (record.of for f in specified(of) for record in _records(f.metadata["kind"])):
+        if part.__name__ not in found:
+            found[part.__name__] = _action() if part is Action else _definition(part)
+            _define_parts(part, found)
+
+
+def _records(kind: Kind) -> Iterator[Record]:
+    if isinstance(kind, Record):
+        yield kind
+    elif isinstance(kind, Many):
+        yield from _records(kind.kind)
+
+
+def _definition(of: type[Any]) -> JsonSchema:
+    own = specified(of)
+    properties = {f.name: _schema(f) | _described(f) for f in own}
+    need = [f.name for f in own if required(f) and "instead" not in f.metadata]
+    either: list[JsonSchema] = []
+    for f in own:
+        if "instead" in f.metadata:
+            key, kind, doc = f.metadata["instead"]
+            properties[key] = kind.schema() | {"description": doc}
+            either += [{"required": [f.name]}, {"required": [key]}]
+    choice: JsonSchema = {"oneOf": either} if either else {}
+    extra: JsonSchema = of.schema_extra()
+    return _object(properties, need) | choice | extra
+
+
+def _action() -> JsonSchema:
+    """One form for each action."""
+    return {"oneOf": [_form(name, keys) for name, keys in ACTION_KEYS.usable().items()]}
+
+
+def _form(name: str, keys: ActionKeys) -> JsonSchema:
+    fields = {f.name: f for f in specified(Action)}
+    properties: dict[str, JsonSchema] = {"name": {"const": name}}
+    for key in keys.names:
+        if key in keys.own:
+            properties[key] = keys.own[key].kind.schema() | {"description": keys.own[key].doc}
+        else:
+            kind = fields[key].metadata["kind"].schema()
+            properties[key] = (kind if key in keys.needed else _or_null(kind)) | _described(fields[key])
+    return _object(properties, ["name", *keys.needed])
+
+
+def _object(properties: dict[str, JsonSchema], need: list[str]) -> JsonSchema:
+    return {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
+
+
+def _schema(f: Field[Any]) -> JsonSchema:
+    """A key whose default is None may also stand without a value."""
+    own: JsonSchema = f.metadata["kind"].schema()
+    return _or_null(own) if f.default is None else own
+
+
+def _or_null(schema: JsonSchema) -> JsonSchema:
+    return {"anyOf": [schema, {"type": "null"}]}
+
+
+def _described(f: Field[Any]) -> JsonSchema:
+    shown_default = {"default": f.default} if isinstance(f.default, str | int | float) else {}
+    return {"description": f.metadata["doc"]} | shown_default
 
 
 if __name__ == "__main__":

@@ -91,6 +91,8 @@ class Plan:
                 data[name] = value
         if self.book is not None:
             data |= {"rounds": self.book.rounds, "messages": self.book.messages}
+            if self.book.done_twice:
+                data["done_twice"] = {task: list(robots) for task, robots in self.book.done_twice.items()}
             data["book"] = [award.as_dict() for award in self.book.awards]
         return data
 
@@ -291,6 +293,7 @@ class _Reading:
             rounds=self._given(data, "rounds", int, 0),
             messages=self._given(data, "messages", int),
             awards=tuple(Award(**award | {"bids": tuple(award["bids"].items())}) for award in awards),
+            done_twice={task: tuple(robots) for task, robots in self._given(data, "done_twice", dict, {}).items()},
         )
 
     def _is_award(self, award: object, k: int) -> bool:

@@ -101,8 +101,15 @@ class Registry(Mapping[str, T], Generic[T]):
         """
         if name in self._entries:
             raise ParameterError(f"{self._what}: {name}; expected a name that no {self._what} has yet")
-        self._loaded[name] = self._checked(name, implementation)
+        try:
+            self._loaded[name] = self._checked(name, implementation)
+        except ParameterError as error:
+            raise ParameterError(f"{self._what} {name}: {error}") from None
         self._entries[name] = []
+
+    def remove(self, name: str) -> None:
+        """Forget an implementation that `add` made known."""
+        del self._loaded[name], self._entries[name]
 
     @cached_property
     def _entries(self) -> dict[str, list[EntryPoint]]:

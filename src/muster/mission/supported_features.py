@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from muster.mission.errors import NotSupportedError
-from muster.mission.model import Action, Mission, Point, Task, findings
+from muster.mission.model import Action, Mission, Point, Task
+from muster.mission.records import findings
 from muster.mission.value_types import Fault, shown
 
 _LARGEST_COORDINATE = 1e150  # the square of a greater one may be beyond float64
@@ -48,7 +49,7 @@ def _bound(mission: Mission) -> float:
     points += [robot.camera.mount for robot in robots if robot.camera is not None]
     sizes = [(t.action.side_m, t.action.spacing_m, t.action.height_m, t.action.width_m) for t in tasks if t.action]
     points += [tuple(size for size in row if size is not None) for row in sizes]
-    points += [t.action.pickup for t in tasks if t.action is not None]
+    points += [point for t in tasks if t.action is not None for point in t.action.places.values()]
     far = max(abs(c) for point in points if point is not None for c in point)
     stretch = _STRETCH if any(t.action is not None and t.action.has_geometry for t in tasks) else 1.0
     if far > _LARGEST_COORDINATE / stretch:

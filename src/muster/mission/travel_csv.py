@@ -8,7 +8,7 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.model import TravelTable
+from muster.mission.site import TravelTable
 from muster.mission.source import Source
 from muster.mission.value_types import Fault, shown
 

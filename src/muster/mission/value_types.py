@@ -1,8 +1,6 @@
 """What a value of a mission may be.
 
-The fields of the model (`model.py`) are declared once, each with its *kind*. From that one declaration follow
-reading a file, checking a mission built in Python, writing, the "did you mean" of unknown keys and the published
-JSON Schema, so that these cannot disagree.
+The fields of the model are declared once, each with its *kind* (`records.py`).
 """
 
 from __future__ import annotations
@@ -10,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import dataclass
 from numbers import Real
 from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
 
@@ -59,6 +57,14 @@ class Kind(Protocol):
     def schema(self) -> JsonSchema: ...
 
 
+@dataclass(frozen=True)
+class Key:
+    """A key of a file whose values are of `kind`; `doc` says what it means."""
+
+    kind: Kind
+    doc: str
+
+
 def shown(value: object, limit: int = 60) -> str:
     """A value as a message shows it: on one line, and short."""
     if isinstance(value, float) and not math.isfinite(value):
@@ -82,7 +88,8 @@ def _trimmed(value: object, levels: int = 3) -> object:
     )
 
 
-def _refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:
+def refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:
+    """Put a value that is not of a kind on the list of faults."""
     faults.append(Fault(at, shown(value), kind.expected))
     return INVALID
 
@@ -113,12 +120,12 @@ class Number:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, bool) or not isinstance(value, int | float | Real):
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         try:
             number = float(value)
         except OverflowError:
             number = math.inf
-        return number if self._holds(number) else _refuse(self, value, at, faults)
+        return number if self._holds(number) else refuse(self, value, at, faults)
 
     def _holds(self, number: float) -> bool:
         return (
@@ -153,9 +160,9 @@ class Whole:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, bool) or not isinstance(value, int) or value < self.minimum:
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         if self.maximum is not None and value > self.maximum:
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         return value
 
     def schema(self) -> JsonSchema:
@@ -171,7 +178,7 @@ class Flag:
     expected: ClassVar[str] = "true or false"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        return value if isinstance(value, bool) else _refuse(self, value, at, faults)
+        return value if isinstance(value, bool) else refuse(self, value, at, faults)
 
     def schema(self) -> JsonSchema:
         return {"type": "boolean"}
@@ -240,7 +247,7 @@ class Position:
         lengths = (2,) if self.planar else (2, 3)
         value = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) not in lengths:
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         numbers = [Number().read(number, (*at, k), faults) for k, number in enumerate(value)]
         return INVALID if INVALID in numbers else tuple(numbers)
 
@@ -263,7 +270,7 @@ class Many:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) < self.minimum:
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         items = [self.kind.read(item, (*at, k), faults) for k, item in enumerate(value)]
         return INVALID if any(item is INVALID for item in items) else tuple(items)
 
@@ -286,7 +293,7 @@ class Table:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if not isinstance(value, Mapping) or not value:
-            return _refuse(self, value, at, faults)
+            return refuse(self, value, at, faults)
         names = [Text().read(key, (*at, str(key)), faults) for key in value]
         items = [self.kind.read(item, (*at, str(key)), faults) for key, item in value.items()]
         wrong = any(part is INVALID for part in (*names, *items))
@@ -294,111 +301,3 @@ class Table:
 
     def schema(self) -> JsonSchema:
         return {"type": "object", "additionalProperties": self.kind.schema(), "minProperties": 1}
-
-
-@dataclass(frozen=True)
-class Record:
-    """A mapping with known keys: one of the model's dataclasses.
-
-    Always reads to an instance. Where a value is wrong, a filler stands in its place, so that the rest can still be
-    checked; whoever reads looks at `faults` before using the instance. INVALID in the data was refused before.
-    """
-
-    of: type[Any]
-    what: str
-    filler: ClassVar[None] = None
-
-    @property
-    def expected(self) -> str:
-        keys = [f.name for f in specified(self.of) if required(f)]
-        if keys:
-            return f"{self.what} with the keys {', '.join(keys)}"
-        return f"{self.what} with some of the keys {', '.join(f.name for f in specified(self.of))}"
-
-    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, self.of):
-            return value
-        if not isinstance(value, Mapping):
-            _refuse(self, value, at, faults)
-            return self._instance({})
-        before = len(faults)
-        known = {f.name: f for f in specified(self.of)}
-        faults.extend(_unknown_key(str(key), item, at, known) for key, item in value.items() if key not in known)
-        values: dict[str, Any] = {}
-        for name, f in known.items():
-            item = value.get(name, INVALID)
-            if name in value and not (item is None and f.default is None):
-                values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
-            elif required(f):
-                faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
-        if len(faults) == before:
-            faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
-        return self._instance(values)
-
-    def _instance(self, values: Mapping[str, Any]) -> Any:
-        """An instance made without checks: they have just been made, and all faults are on the list."""
-        instance = object.__new__(self.of)
-        for f in fields(self.of):
-            value = values.get(f.name, INVALID)
-            if value is INVALID:
-                value = f.metadata["kind"].filler if required(f) else _default(f)
-            object.__setattr__(instance, f.name, value)
-        return instance
-
-    def schema(self) -> JsonSchema:
-        own = specified(self.of)
-        properties = {f.name: _schema(f) | _described(f) for f in own}
-        need = [f.name for f in own if required(f) and "instead" not in f.metadata]
-        either: list[JsonSchema] = []
-        for f in own:
-            if "instead" in f.metadata:
-                key, kind, doc = f.metadata["instead"]
-                properties[key] = kind.schema() | {"description": doc}
-                either += [{"required": [f.name]}, {"required": [key]}]
-        extra: JsonSchema = getattr(self.of, "schema_extra", dict)()
-        choice: JsonSchema = {"oneOf": either} if either else {}
-        whole = {"type": "object", "properties": properties, "required": need, "additionalProperties": False}
-        return whole | choice | extra
-
-
-def _schema(f: Field[Any]) -> JsonSchema:
-    """A key whose default is None may also stand without a value."""
-    own: JsonSchema = f.metadata["kind"].schema()
-    return {"anyOf": [own, {"type": "null"}]} if f.default is None else own
-
-
-def _default(f: Field[Any]) -> Any:
-    return f.default if f.default_factory is MISSING else f.default_factory()
-
-
-def _described(f: Field[Any]) -> JsonSchema:
-    shown_default = {"default": f.default} if isinstance(f.default, str | int | float) else {}
-    return {"description": f.metadata["doc"]} | shown_default
-
-
-def _unknown_key(key: str, value: object, at: Path, known: Mapping[str, Field[Any]]) -> Fault:
-    if key in RESERVED_NAMES:
-        return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
-    if key == "<<":
-        return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
-    hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
-    return Fault((*at, key), "unknown key", f"a known key{hint}")
-
-
-def spec(kind: Kind, doc: str, *, default: Any = MISSING, instead: tuple[str, Kind, str] | None = None) -> Any:
-    """A dataclass field whose values are of `kind`; without `default` it is required.
-
-    `instead` is a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
-    """
-    metadata: dict[str, Any] = {"kind": kind, "doc": doc} | ({"instead": instead} if instead else {})
-    return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
-
-
-def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
-    """The fields of a model class that a file may hold, in order."""
-    return tuple(f for f in fields(cls) if "kind" in f.metadata)
-
-
-def required(f: Field[Any]) -> bool:
-    """Whether a file must hold the field."""
-    return f.default is MISSING and f.default_factory is MISSING

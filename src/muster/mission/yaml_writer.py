@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from muster.mission.model import Mission
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 
 
 def yaml_text(mission: Mission) -> str:
@@ -35,7 +35,8 @@ def plain(value: Any) -> Any:
         return {key: plain(item) for key, item in value.items()}
     if hasattr(value, "__dataclass_fields__"):
         own = {f.name: (getattr(value, f.name), f.default) for f in specified(type(value))}
-        return {name: plain(item) for name, (item, default) in own.items() if item != default}
+        given = {name: plain(item) for name, (item, default) in own.items() if item != default}
+        return given | plain(getattr(value, "extra", {}))
     return value
 
 

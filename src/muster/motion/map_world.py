@@ -19,7 +19,8 @@ import numpy as np
 
 from muster.mission.consistency import positions
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.model import Map, Mission, Robot, Zone, findings
+from muster.mission.model import Map, Mission, Robot, Zone
+from muster.mission.records import findings
 from muster.mission.value_types import Fault
 from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace, Space
 from muster.motion.grid import Floats, Grid

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.errors import MissionError
-from muster.mission.model import Mission, Point, Robot, Task, findings
+from muster.mission.model import Mission, Point, Robot, Task
+from muster.mission.records import findings
 from muster.mission.value_types import Fault, Path, shown
 from muster.motion.actions import Doing, plan
 from muster.motion.free_space import PrismSpace

@@ -24,7 +24,8 @@ class Happening:
     ----------
     kind
         "silent": robots take part no longer. "back": they do again. "anew": one has started anew. "mute": one is heard,
-        but keeps the others waiting, and is left out. "rival": another process has this robot's name. "dropped": the
+        but keeps the others waiting, and is left out. "rival": another process has this robot's name. "renumbered":
+        this robot has taken a higher incarnation, as the others knew a later one than its clock gave it. "dropped": the
         robot has lost a task that it owned, as another owns it, or it cannot be done any more. "twice": the robots have
         all begun or done the task.
     robots, task

@@ -5,7 +5,7 @@ A pure function of the declarations: members that have the same ones find the sa
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
@@ -119,7 +119,7 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     """
     declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
-    added = _added(facts, rules)
+    added = tasks_added(facts, rules)
     rules = rules.with_added(added)
     known = frozenset(fact for fact in facts if fact.task in rules.tasks)  # of a task it may be heard that it was done
     finished = tuple(fact for fact in in_order(known) if fact.done)  # before it is heard that there is such a task
@@ -154,16 +154,25 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     )
 
 
-def _added(facts: frozenset[Fact], rules: Rules) -> tuple[Fact, ...]:
-    """The facts by which there are more tasks, of several of one name the first, or they are elsewhere, the last."""
+def tasks_added(facts: Collection[Fact], rules: Rules) -> tuple[Fact, ...]:
+    """The facts by which there are more tasks, of several of one name the first, or they are elsewhere, the last.
+
+    Facts may arrive in any order and in parts. An added task waits until all tasks that it waits for are known. A move
+    of an added task with other prerequisites belongs to another task of that name, and does not count.
+    """
     first: dict[str, Fact] = {}
     last: dict[str, Fact] = {}
     for fact in in_order(facts):
         if fact.kind == "added" and fact.task not in rules.tasks:
-            first.setdefault(fact.task, fact)
-        elif fact.kind == "moved" and (fact.task in rules.tasks or fact.task in first):
+            if all(task in rules.tasks or task in first for task in task_of(fact.content).prerequisites):
+                first.setdefault(fact.task, fact)
+        elif fact.kind == "moved" and (fact.task in rules.tasks or _is_same_task(first.get(fact.task), fact)):
             last[fact.task] = fact
     return (*first.values(), *last.values())
+
+
+def _is_same_task(added: Fact | None, moved: Fact) -> bool:
+    return added is not None and task_of(added.content).prerequisites == task_of(moved.content).prerequisites
 
 
 def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:

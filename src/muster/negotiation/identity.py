@@ -21,6 +21,8 @@ class Identity:
         incarnations of others under this robot's name.
     superseded
         whether one of them is later: this one is silent, and owns nothing.
+    may_rise
+        whether this process may still take a higher incarnation, once, when it hears of a later one.
     """
 
     robot: str
@@ -28,10 +30,22 @@ class Identity:
     number: int = 0
     rivals: set[int] = field(default_factory=set)
     superseded: bool = False
+    may_rise: bool = True
 
     @property
     def pulse(self) -> Pulse:
         return Pulse(self.robot, self.incarnation, self.number)
+
+    def rise_above(self, pulse: Pulse) -> bool:
+        """Take an incarnation above one that others have heard of; whether this process may, and has to.
+
+        The process that started last has the name. Its incarnation is lower than that of its past life if it has no
+        memory and its clock was set back.
+        """
+        if not self.may_rise or pulse.incarnation <= self.incarnation:
+            return False
+        self.may_rise, self.incarnation = False, pulse.incarnation + 1
+        return True
 
     def hear(self, pulse: Pulse) -> bool:
         """Take in what was heard of this name; whether it is new, and of another life that is not long past."""

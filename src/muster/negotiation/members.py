@@ -107,6 +107,11 @@ class Members:
             peer.misses = message.misses
         return peer.hear(message.incarnation, message.number, now)
 
+    def last_pulse(self, robot: str) -> Pulse | None:
+        """The last that was heard of a robot; None: it does not belong to the team."""
+        peer = self._peers.get(robot)
+        return None if peer is None else Pulse(robot, peer.incarnation, peer.number)
+
     def incarnation(self, robot: str) -> int:
         """The last incarnation heard of; -1: none."""
         peer = self._peers.get(robot)

@@ -88,7 +88,7 @@ def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]
 
     def keep() -> None:
         nonlocal kept
-        now = replace(kept, memory=negotiator.memory)
+        now = replace(kept, incarnation=negotiator.incarnation, memory=negotiator.memory)
         if now != kept:
             kept = now
             kept.save(file)

@@ -71,21 +71,24 @@ class MemoryNetwork:
         self._order = itertools.count()
         self._next_wake: dict[str, float] = {}
         self._queue: list[tuple[float, int, list[str], Message | None]] = []  # what comes, to whom; None: time to tick
-        self._born: Counter[str] = Counter()
+        self.incarnations: Counter[str] = Counter()  # the highest of each robot
         self._later: list[tuple[float, int, Callable[[], None]]] = []
 
-    def start(self, robots: Iterable[str] | None = None) -> None:
-        """Start robots, by default all."""
+    def start(self, robots: Iterable[str] | None = None, incarnation: int | None = None) -> None:
+        """Start robots, by default all, with an incarnation one above the last, or with the given one."""
         for robot in self.robots if robots is None else robots:
-            self._born[robot] += 1
-            node = self.nodes[robot] = self.make(robot, self._born[robot])
+            number = self.incarnations[robot] + 1 if incarnation is None else incarnation
+            self.incarnations[robot] = max(number, self.incarnations[robot])
+            node = self.nodes[robot] = self.make(robot, number)
             self._send(robot, node.start(self.now))
             self._wake(robot)
             self.watch(robot)
 
     def crash(self, robot: str) -> Negotiator:
         """A robot is gone, in the middle of whatever it did; returns what it was."""
-        return self.nodes.pop(robot)
+        node = self.nodes.pop(robot)
+        self.incarnations[robot] = max(node.incarnation, self.incarnations[robot])
+        return node
 
     def cut(self, *groups: Collection[str]) -> None:
         """Only robots of one group hear each other."""

@@ -10,6 +10,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Task
 from muster.mission.value_types import shown
 from muster.negotiation.effects import Memory
+from muster.negotiation.epoch_base import tasks_added
 from muster.negotiation.messages import Claim, Fact
 from muster.negotiation.new_tasks import content_of
 from muster.negotiation.participant import Participant
@@ -93,7 +94,7 @@ class Negotiator(Participant):
         """
         if task.id in {*self.rules.tasks, *(fact.task for fact in self.facts if fact.kind == "added")}:
             raise ParameterError(f"new task: {shown(task.id)}; expected an id that no task has")
-        self.valuer.check(task)
+        self._check(task)
         self._work.say(task.id, "added", content_of(task))
 
     def move(self, task: Task) -> None:
@@ -111,7 +112,7 @@ class Negotiator(Participant):
         """
         if task.id not in self._rules.tasks:
             raise ParameterError(f"moved task: {shown(task.id)}; expected the id of a task")
-        self.valuer.check(task)
+        self._check(task)
         self._work.say_again(task.id, "moved", content_of(task))
 
     def cancel(self, task: str) -> None:
@@ -139,3 +140,8 @@ class Negotiator(Participant):
     def come_back(self) -> None:
         """The robot that was out takes part again."""
         self._work.out, self._work.restless = False, True
+
+    def _check(self, task: Task) -> None:
+        """Raise MissionError unless a task fits into the mission with all tasks that this robot has heard of."""
+        known = [fact.content for fact in tasks_added(self.facts, self.rules)]
+        self.valuer.check([*known, content_of(task)])

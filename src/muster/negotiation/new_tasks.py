@@ -9,9 +9,10 @@ from functools import cache
 
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError
-from muster.mission.model import Task, findings
+from muster.mission.model import Task
+from muster.mission.records import Record, findings
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import Fault, Record, shown
+from muster.mission.value_types import Fault, shown
 from muster.mission.yaml_writer import plain
 
 

@@ -20,7 +20,7 @@ class Work:
 
     Parameters
     ----------
-    robot, life
+    robot, incarnation
         its id, and how often it has started.
     known
         what it knows for good.
@@ -37,7 +37,7 @@ class Work:
     """
 
     robot: str
-    life: int = 0
+    incarnation: int = 0
     known: Knowledge = field(default_factory=Knowledge)
     begun: set[str] = field(default_factory=set)
     refused: set[str] = field(default_factory=set)
@@ -47,10 +47,10 @@ class Work:
     restless: bool = False
 
     @classmethod
-    def remembered(cls, robot: str, life: int, memory: Memory) -> Work:
+    def remembered(cls, robot: str, incarnation: int, memory: Memory) -> Work:
         begun = {claim.task for claim in memory.claims if claim.begun}
         reserved = {fact.task: fact for fact in memory.reserved}
-        work = cls(robot, life, begun=begun, refused=set(memory.refused), reserved=reserved)
+        work = cls(robot, incarnation, begun=begun, refused=set(memory.refused), reserved=reserved)
         work.known.learn(memory.facts)
         return work
 
@@ -97,9 +97,9 @@ class Work:
         self.begun.add(task)
 
     def reserve(self, task: str) -> None:
-        """Say that the robot, in this life, is going to begin a task that nobody may begin twice."""
+        """Say that the robot, in this incarnation, is going to begin a task that nobody may begin twice."""
         if task not in self.reserved:
-            self.reserved[task] = self.say(task, "begun", str(self.life).encode())
+            self.reserved[task] = self.say(task, "begun", str(self.incarnation).encode())
 
     def finish(self, task: str) -> None:
         self.begun.discard(task)

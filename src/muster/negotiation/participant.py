@@ -109,10 +109,14 @@ class Participant:
 
     def handle(self, message: Message, now: float) -> list[Outgoing]:
         """Take in a message; returns what is to be sent."""
+        if self._identity.superseded:
+            return []
+        if not self._hear(message, now):
+            return self._correct(message, now)
         out: list[Outgoing] = []
-        if self._identity.superseded or not self._hear(message, now):
-            return out
         number = message.stage.epoch
+        if self.epoch.own.incarnation < self.incarnation:
+            out += self._enter(max(number, self.epoch.own.epoch + 1), now)
         if number > self.epoch.own.epoch:
             self.happenings.tell_each("mute", self._waiting.too_long_for(message, self.epoch, now))
             out += self._enter(number, now)
@@ -187,6 +191,8 @@ class Participant:
 
     def _hear(self, message: Message, now: float) -> bool:
         """Take in who lives, and what is true for good; False: it is said by a stranger, a rival, or in a life past."""
+        if message.sender == self.robot:
+            self._identity.may_rise = False  # another process of this name lives
         if message.sender == self.robot or not self.members.heeds(message):
             self._hear_of(message.pulse, now)
             return False
@@ -204,13 +210,33 @@ class Participant:
         self._repairs.hear(message)
         return True
 
+    def _correct(self, message: Message, now: float) -> list[Outgoing]:
+        """Tell a robot that sends with the incarnation of a past life which incarnation the others know.
+
+        It may have started without memory after its clock was set back; it takes a higher incarnation then.
+        """
+        last = self.members.last_pulse(message.sender)
+        is_past = last is not None and last.incarnation > message.incarnation
+        if last is None or not (is_past and message.pulses and self._repairs.may_answer(message, now)):
+            return []
+        self.counts.repairs += 1
+        return [Outgoing(self._message(None, pulses=(last,)), message.sender)]
+
     def _hear_of(self, pulse: Pulse, now: float) -> None:
-        """Take in that a robot lived; one of this name may be another."""
+        """Take in that a robot lived; one of this name may be another process, or a past life of this one."""
         if pulse.robot == self.robot:
-            if self._identity.hear(pulse):
+            if self._identity.rise_above(pulse):
+                self._rise()
+            elif self._identity.hear(pulse):
                 self.happenings.tell("rival", [self.robot])
         elif self.members.hear(pulse, now):
             self._note_anew(pulse.robot)
+
+    def _rise(self) -> None:
+        """Go on under a higher incarnation, as after a restart with memory; the next epoch is entered with it."""
+        self.incarnation = self._work.incarnation = self._identity.incarnation
+        self.epochs.clear()
+        self.happenings.tell("renumbered", [self.robot])
 
     def _note_anew(self, robot: str) -> None:
         self._anew = True
@@ -250,6 +276,7 @@ class Participant:
     def _note_base(self, base: Base) -> None:
         """Take in what all have declared."""
         self.epochs.append(self.epoch)
+        self._identity.may_rise &= len(base.routes) == 1  # else the others have accepted the incarnation
         self._agreement.find_base()
         self._learn(base.facts)
         me = self.epoch.own.members.index(self.robot)

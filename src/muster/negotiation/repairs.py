@@ -68,7 +68,7 @@ class Repairs:
         what = self._lacking(message, epoch)
         if message.known != known.digest and known.facts and self._helps(message):
             what = {**(what or {}), "facts": known.some(message.number)}
-        return what if what is not None and self._may_answer(message, now) else None
+        return what if what is not None and self.may_answer(message, now) else None
 
     def asks_s(self, number: int, members: int) -> float:
         """How long after its message of this number the robot asks for what it lacks, in a team of so many."""
@@ -101,7 +101,7 @@ class Repairs:
             if not self._in_round[before]:
                 del self._in_round[before]
 
-    def _may_answer(self, message: Message, now: float) -> bool:
+    def may_answer(self, message: Message, now: float) -> bool:
         """Whether the sender has got on since it was answered last, or that is long ago; if so, it is answered now."""
         to, state = message.sender, (message.stage, message.known)
         last_s, *last = self._answered.get(to, (-1.0, None, 0))

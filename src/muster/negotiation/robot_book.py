@@ -8,6 +8,7 @@ robot did not make, since it had given the task back, is told too: others cannot
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,7 +47,9 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
 
     whole = all(len(held.members) == len(problem.robots) for held in auctions)
     awards = tuple(_awards(problem, terms, auctions, view.claims))
-    return Book(rounds=view.rounds, messages=None if whole else view.sent, awards=awards, recite=recite)
+    return Book(
+        rounds=view.rounds, messages=None if whole else view.sent, awards=awards, done_twice=view.twice, recite=recite
+    )
 
 
 def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
@@ -89,7 +92,7 @@ def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:
     if not held.whole:
         owned = [(c.round, c.task, robot, score(c.price)) for robot, claims in view.claims.items() for c in claims]
         awards = tuple(Award.of(*won, [(won[2], won[3])]) for won in sorted(owned))
-        return Book(rounds=view.rounds, messages=view.sent, awards=awards)
+        return Book(rounds=view.rounds, messages=view.sent, awards=awards, done_twice=view.twice)
     watcher = BundleValuer(problem, params, held.members[0])
     watcher.begin(held.opening)
     for bids in held.published:
@@ -97,4 +100,5 @@ def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:
         for sold in watcher.resolve(bids).sales:
             watcher.award(sold)
     routes = [[problem.task_index[task] for task in watcher.route(robot.id)] for robot in problem.robots]
-    return watcher.ledger.book(problem, routes, neighbours("complete", len(problem.robots)))
+    book = watcher.ledger.book(problem, routes, neighbours("complete", len(problem.robots)))
+    return replace(book, done_twice=view.twice)

@@ -20,9 +20,8 @@ from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.fixed import admissible_part, with_past
 from muster.allocation.problem import Problem
 from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
-from muster.mission.model import Task
 from muster.negotiation.messages import Bid, RoundBids, Sold
-from muster.negotiation.new_tasks import content_of, with_tasks
+from muster.negotiation.new_tasks import with_tasks
 
 
 @dataclass(frozen=True)
@@ -63,8 +62,8 @@ class Valuer(Protocol):
         """Whether who missed rounds need only know what was sold in them; else also what was bid."""
         ...
 
-    def check(self, task: Task) -> None:
-        """Whether a new task fits into the mission; raises MissionError if not."""
+    def check(self, tasks: Sequence[bytes]) -> None:
+        """Raise MissionError unless these added or moved tasks, as `new_tasks.content_of` writes them, fit."""
         ...
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
@@ -105,8 +104,8 @@ class TeamValuer(ABC):
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
 
-    def check(self, task: Task) -> None:
-        with_tasks(self._whole, [content_of(task)])
+    def check(self, tasks: Sequence[bytes]) -> None:
+        with_tasks(self._given, tasks)
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
         if opening.added != self._added:

@@ -15,7 +15,7 @@ import numpy as np
 
 from muster.execution.report import FoundReport, Report
 from muster.mission.model import Camera, Event, Found, Mission, MovedTask, Robot, Task, Work
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 from muster.motion.frames import angles
 from muster.motion.port import RobotPort
 from muster.perception.camera import Intrinsics, View, mount_of_mission

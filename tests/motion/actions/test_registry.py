@@ -26,7 +26,8 @@ def there():
     """Registered for the time of a test."""
     register(There())
     yield There()
-    del ACTIONS["there-and-back"], ACTION_KEYS["there-and-back"]
+    ACTIONS.remove("there-and-back")
+    ACTION_KEYS.remove("there-and-back")
 
 
 def test_every_word_of_missions_has_an_action():

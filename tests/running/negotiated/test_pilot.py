@@ -140,6 +140,22 @@ def test_what_is_heard_of_a_task_before_it_is_heard_that_there_is_one_holds(kind
         assert company.pilots[robot]._executor.ledger.tasks["new"] == elsewhere
 
 
+def test_a_new_task_that_is_heard_before_what_it_waits_for_is_done_after_that():
+    company = Company(square())
+    company.run(2.0)
+    first, second = (
+        Task(id="first", position=(5.0, 5.0)),
+        Task(id="second", position=(6.0, 5.0), prerequisites=("first",)),
+    )
+    hear(company, "r_0", Fact("second", "r_1", "added", 2, content_of(second)))
+    company.run(4.0)
+    hear(company, "r_0", Fact("first", "r_1", "added", 1, content_of(first)))
+    done = ends(company)
+    assert done["first"] == done["second"] == 1
+    order = [data["task"] for _, _, said, data in company.told if said == "ends"]
+    assert order.index("first") < order.index("second")
+
+
 def test_of_two_places_of_a_task_the_last_holds_though_it_is_heard_first():
     company = Company(square())
     company.run(2.0)

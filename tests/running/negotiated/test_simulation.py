@@ -103,6 +103,8 @@ def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     assert set(report.tasks_done) == {"0", "1"}
     assert {h.data["task"] for h in told["twice"]} <= {"0", "1"}
     assert "twice" in told
+    assert report.as_dict()["done_twice"].keys() == {h.data["task"] for h in told["twice"]}
+    assert all(sorted(robots) == ["r_0", "r_1"] for robots in report.done_twice.values())
 
 
 def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():

@@ -7,8 +7,10 @@ import sys
 import pytest
 from tests.server.browser.conftest import Watched
 from tests.server.security.shielded import COMMANDER, TOKENS, WATCHER
+from tests.server.serving import served
 
 from muster.client import Client
+from muster.server.work.turns import Turns
 
 pytestmark = pytest.mark.xdist_group("watching")
 
@@ -83,6 +85,26 @@ def test_the_watcher_sees_missions_plans_and_runs_without_a_button_that_commands
     page.locator(".clock").wait_for()
     assert commanding(page) == []
     watched.shoot("watching")
+
+
+def test_work_for_a_page_and_for_the_api_takes_the_turn_of_who_asks(chromium, tmp_path, monkeypatch):
+    users, turn = [], Turns.turn
+    monkeypatch.setattr(Turns, "turn", lambda self, user: users.append(user) or turn(self, user))
+    (tmp_path / "tokens").write_text(TOKENS)
+    with served(tmp_path, tokens=tmp_path / "tokens") as url:
+        page = Watched(chromium, url)
+        page.open(f"/plan/{MISSION}")
+        page.page.fill("#token", WATCHER)
+        page.page.get_by_role("button", name="Log in").click()
+        page.page.locator("canvas, svg").first.wait_for()
+        page.page.get_by_role("button", name="Form", exact=True).click()
+        page.page.locator(".edit-table input").first.wait_for()
+        page.page.close()
+        assert users
+        assert set(users) == {"wall"}
+        with Client(url, token=COMMANDER) as boss:
+            boss.missions.check("schema: muster/1")
+        assert users[-1] == "anna"
 
 
 def test_a_forged_command_is_refused(watched, guarded):

@@ -162,14 +162,15 @@ def test_only_so_much_short_work_waits(monkeypatch):
     from muster.server.work import pool as module
     from muster.server.work.tasks import Task
 
-    monkeypatch.setattr(module, "MOST_WAITING", 2)
+    monkeypatch.setattr(module, "MOST_WAITING", 3)
+    monkeypatch.setattr(module, "MOST_WAITING_OF_ONE", 2)
     monkeypatch.setattr(module, "TASKS", {"counts": Task("", None, long=True)})
 
     async def story(pool):
         work, _, _ = await sleeping(pool)
         waiting = [asyncio.create_task(pool.run("echo", {"k": k})) for k in range(2)]
         await until(lambda: pool.waiting == 2)
-        with pytest.raises(BusyError, match=r"^2 requests wait, the most that may; expected [^\n]*$"):
+        with pytest.raises(BusyError, match=r"^2 requests of one user wait, the most that may; expected [^\n]*$"):
             await pool.run("echo", {})
         assert await pool.run("counts", {"times": 0}) == {}  # long work waits elsewhere
         work.cancel()

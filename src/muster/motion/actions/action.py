@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 from muster.mission.action_keys import ActionKeys
 from muster.mission.model import Point, Robot, Task
@@ -135,9 +135,10 @@ def staying(task: Task, robot: Robot) -> Doing:
     return Doing(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost)
 
 
-def given(task: Task, *keys: str) -> tuple[float, ...]:
-    """Numbers that a mission gives of the task's action."""
-    return tuple(getattr(task.action, key) for key in keys)
+def given(task: Task, *keys: str) -> tuple[Any, ...]:
+    """The values that a mission gives for keys of the task's action, fields or an action's own."""
+    assert task.action is not None
+    return tuple(task.action.value(key) for key in keys)
 
 
 def raised(point: Point, height_m: float) -> Point:
@@ -153,7 +154,7 @@ def duration_of(task: Task) -> float | None:
 
 
 def _rest_s(task: Task, robot: Robot, metres: float) -> float:
-    """What is left of the time that the task takes (DESIGN section 4), so many metres travelled; at least 0."""
+    """What is left of the time that the task takes (docs/design.md, Meaning), so many metres travelled; at least 0."""
     duration = duration_of(task)
     whole = task.actuation_cost / robot.speed_mps if duration is None else duration / robot.efficiency
     return max(0.0, whole - metres / robot.speed_mps)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import DELIVERY, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, along
 
@@ -14,7 +14,7 @@ class Delivery:
     """Enters at the pickup and leaves from the position; the way between the two is the cost."""
 
     name: str = "delivery"
-    keys: ActionKeys = ACTION_KEYS["delivery"]
+    keys: ActionKeys = DELIVERY
 
     def plan(self, task: Task, robot: Robot) -> Doing:
         assert task.action is not None

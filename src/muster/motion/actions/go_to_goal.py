@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import GO_TO_GOAL, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, staying
 
@@ -14,7 +14,7 @@ class GoToGoal:
     """Also what a task without an action is."""
 
     name: str = "go-to-goal"
-    keys: ActionKeys = ACTION_KEYS["go-to-goal"]
+    keys: ActionKeys = GO_TO_GOAL
 
     def plan(self, task: Task, robot: Robot) -> Doing:
         return staying(task, robot)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import GROUND_PATROL, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, along, given
 
@@ -14,7 +14,7 @@ class GroundPatrol:
     """From the south-west corner north, east, south and back: 4 L."""
 
     name: str = "ground-patrol"
-    keys: ActionKeys = ACTION_KEYS["ground-patrol"]
+    keys: ActionKeys = GROUND_PATROL
 
     def plan(self, task: Task, robot: Robot) -> Doing:
         (side,), (x, y, *z) = given(task, "side_m"), task.position

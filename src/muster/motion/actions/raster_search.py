@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import RASTER_SEARCH, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, Impossible, along, given, raised
 
@@ -27,7 +27,7 @@ class RasterSearch:
     """Enters at the south-western corner, leaves from the end of the last lane."""
 
     name: str = "raster-search"
-    keys: ActionKeys = ACTION_KEYS["raster-search"]
+    keys: ActionKeys = RASTER_SEARCH
 
     def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
         side, height, spacing = given(task, "side_m", "height_m", "spacing_m")

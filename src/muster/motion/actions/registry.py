@@ -1,49 +1,54 @@
-"""The actions by the names that missions have for them."""
+"""The actions by the names that missions have for them, those of installed packages included."""
 
 from __future__ import annotations
 
-from dataclasses import fields
+from typing import cast
 
-from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.action_keys import ACTION_GROUP, ACTION_KEYS, keys_of
 from muster.mission.errors import ParameterError
-from muster.mission.model import Action, Robot, Task
+from muster.mission.model import Robot, Task
+from muster.mission.plugins import Registry
 from muster.motion.actions.action import Doing, Impossible, TaskAction
-from muster.motion.actions.delivery import Delivery
 from muster.motion.actions.go_to_goal import GoToGoal
-from muster.motion.actions.ground_patrol import GroundPatrol
-from muster.motion.actions.raster_search import RasterSearch
-from muster.motion.actions.sensor_activation import SensorActivation
-from muster.motion.actions.stationary_observation import StationaryObservation
 
 _GO = GoToGoal()
-_IMPLEMENTATIONS: tuple[TaskAction, ...] = (
-    _GO,
-    StationaryObservation(),
-    RasterSearch(),
-    GroundPatrol(),
-    Delivery(),
-    SensorActivation(),
-)
 
-ACTIONS: dict[str, TaskAction] = {action.name: action for action in _IMPLEMENTATIONS}
+
+def _checked(name: str, found: object) -> TaskAction:
+    action = found() if isinstance(found, type) else found
+    keys_of(name, action)
+    if not callable(getattr(action, "plan", None)):
+        raise ParameterError(f"it is a {type(action).__name__} without plan; expected an action: name, keys and plan")
+    return cast("TaskAction", action)
+
+
+ACTIONS: Registry[TaskAction] = Registry(
+    "action",
+    ACTION_GROUP,
+    {
+        "go-to-goal": "muster.motion.actions.go_to_goal:GoToGoal",
+        "stationary-observation": "muster.motion.actions.stationary_observation:StationaryObservation",
+        "raster-search": "muster.motion.actions.raster_search:RasterSearch",
+        "ground-patrol": "muster.motion.actions.ground_patrol:GroundPatrol",
+        "delivery": "muster.motion.actions.delivery:Delivery",
+        "sensor-activation": "muster.motion.actions.sensor_activation:SensorActivation",
+    },
+    _checked,
+)
 
 
 def register(action: TaskAction) -> None:
-    """Make an action known: missions that are read or built from then on may name it.
+    """Make an action known in this process: missions that are read or built from then on may name it.
+
+    A package registers an action for every process by an entry point of the group `muster.actions`.
 
     Raises
     ------
     ParameterError
-        if the name is taken, or a key is none that an action may have.
+        if the name is taken, or a key is neither one of `model.Action` nor one of its own.
     """
-    if action.name in ACTION_KEYS:
-        raise ParameterError(f"action: {action.name}; expected a name that no action has yet")
-    known = {field.name for field in fields(Action)} - {"name"}
-    for key in (*action.keys.needed, *action.keys.optional):
-        if key not in known:
-            raise ParameterError(f"action {action.name}: key {key}; expected keys of {', '.join(sorted(known))}")
-    ACTION_KEYS[action.name] = action.keys
-    ACTIONS[action.name] = action
+    ACTION_KEYS.add(action.name, action.keys)
+    ACTIONS.add(action.name, action)
 
 
 def plan(task: Task, robot: Robot) -> Doing | Impossible:

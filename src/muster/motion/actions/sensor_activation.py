@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import SENSOR_ACTIVATION, ActionKeys
 from muster.mission.model import Robot, Task
 from muster.motion.actions.action import Doing, staying
 
@@ -14,7 +14,7 @@ class SensorActivation:
     """Takes `duration_s / efficiency` seconds; it costs what the mission types in."""
 
     name: str = "sensor-activation"
-    keys: ActionKeys = ACTION_KEYS["sensor-activation"]
+    keys: ActionKeys = SENSOR_ACTIVATION
 
     def plan(self, task: Task, robot: Robot) -> Doing:
         return staying(task, robot)

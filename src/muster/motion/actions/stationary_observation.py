@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.action_keys import STATIONARY_OBSERVATION, ActionKeys
 from muster.mission.model import Camera, Robot, Task
 from muster.motion.actions.action import Doing, Impossible, along, given, raised
 
@@ -27,7 +27,7 @@ class StationaryObservation:
     """Enters, stays and leaves at one place, without cost."""
 
     name: str = "stationary-observation"
-    keys: ActionKeys = ACTION_KEYS["stationary-observation"]
+    keys: ActionKeys = STATIONARY_OBSERVATION
 
     def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
         assert task.action is not None

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from muster.mission.errors import MissionError
-from muster.mission.model import findings
+from muster.mission.records import Checked, Record, findings, record, spec, specified
 from muster.mission.text_files import read_text
-from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Number, Record, Text, shown, spec, specified
+from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Number, Text, shown
 from muster.mission.value_types import Path as KeyPath
 from muster.mission.yaml_reader import parse_data
 
@@ -53,8 +53,8 @@ class _Switch:
         return {"enum": [0, 1, False, True]}
 
 
-@dataclass(frozen=True, kw_only=True)
-class RosMap:
+@record
+class RosMap(Checked):
     """The keys of a ROS map file. The image is found from the folder of that file."""
 
     image: str = spec(Text(), "the image's file")
@@ -80,10 +80,10 @@ def read_ros_map(path: Path) -> RosMap:
     MissionError
         with every finding: file, line, field, value, what was expected.
     """
-    record = Record(RosMap, "a map of ROS")
-    data, source, faults = parse_data(read_text(path), path, record.expected)
+    kind = Record(RosMap, "a map of ROS")
+    data, source, faults = parse_data(read_text(path), path, kind.expected)
     known = {f.name for f in specified(RosMap)}
-    chart: RosMap = record.read({key: value for key, value in data.items() if key in known}, (), faults)
+    chart: RosMap = kind.read({key: value for key, value in data.items() if key in known}, (), faults)
     if faults:
         raise MissionError(findings(faults, source))
     return chart

@@ -24,7 +24,8 @@ from typing import Any, Self
 
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Mission, Robot, Task
-from muster.mission.value_types import Fault, Record
+from muster.mission.records import Record
+from muster.mission.value_types import Fault
 
 OPEN, UNDER_WAY, DONE, LOST, CANCELLED = "open", "under way", "done", "lost", "cancelled"
 OUT = ("robot_fails", "robot_silent", "robot_stuck")

@@ -16,6 +16,7 @@ from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.motion.port import RobotPort
+from muster.negotiation.epoch_base import tasks_added
 from muster.negotiation.knowledge import in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
@@ -131,15 +132,16 @@ class Pilot:
     def _learn(self) -> None:
         """Take in what others did, and what is new, as it is known among the robots.
 
-        What is heard of a task before it is heard that there is one waits for that.
+        A fact of a task that is not known yet waits until it is, and so does a new task for those that it waits for.
         """
         if self._known == self._negotiator.known:
             return
         facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
-        places = {fact.task: fact for fact in facts if fact.kind == "moved"}  # the last of each
+        added = frozenset(tasks_added(facts, self._negotiator.rules))
         tasks = self._executor.ledger.tasks
         for fact in facts:
-            if fact in self._learned or (fact.kind != "added" and fact.task not in tasks):
+            holds = fact in added if fact.kind in ("added", "moved") else fact.task in tasks
+            if fact in self._learned or not holds:
                 continue
             self._learned.add(fact)
             if fact.kind == "done":
@@ -147,7 +149,7 @@ class Pilot:
             elif fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
                 self._negotiator.abandon(fact.task)
-            elif fact.kind == "moved" and fact is places[fact.task]:
+            elif fact.kind == "moved":
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
                 self._executor.report(Event(at_s=0.0, move_task=move))
             elif fact.kind == "added" and fact.task not in tasks:

@@ -49,6 +49,7 @@ class Log:
         self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
         self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
         self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
+        self._done_twice: dict[str, tuple[str, ...]] = {}
         self._out: dict[str, str] = {}  # robot: why
         self._plans: list[Plan] = []
         self._causes: list[dict[str, Any]] = []
@@ -155,12 +156,15 @@ class Log:
             usage_planned=usages,
             mission_time_s=self._now_s,
             reallocations=len(self._plans) - 1,
+            done_twice=self._done_twice,
         )
 
     def _start(self, robot: str, task: str, at_s: float) -> None:
         self._began_s[robot, task] = at_s
         other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
         if other != robot:
+            robots = self._done_twice.setdefault(task, (other,))
+            self._done_twice[task] = (*robots, robot) if robot not in robots else robots
             self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
         elif task not in self.ledger.ends_s and task not in self._at_work:
             self._at_work[task] = robot

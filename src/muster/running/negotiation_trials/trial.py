@@ -63,6 +63,7 @@ class Play:
         self._memory: dict[str, Memory] = {}
         self._forgot: set[str] = set()
         self._dice = Random(f"work {given.seed}")
+        self._clocks = Random(f"clocks {given.seed}")
         self._doing: dict[str, tuple[str, float]] = {}  # by robot its task, and when it ends
         links = given.links
         self.network = MemoryNetwork(
@@ -165,7 +166,10 @@ class Play:
         if forgets:
             self._forgot.add(robot)
             self._memory.pop(robot, None)
-        self.network.start([robot])
+        before = self.network.incarnations[robot]
+        clock_set_back = forgets and before > 0 and self._clocks.random() < 0.5
+        self.network.start([robot], self._clocks.randrange(before) if clock_set_back else None)
+        self.report.counts["starts without memory after a clock was set back"] += clock_set_back
 
     def _order(self, node: Negotiator, incident: Incident) -> None:
         task = "" if incident.task is None else incident.task.id

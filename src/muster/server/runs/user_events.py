@@ -7,7 +7,8 @@ from typing import Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
-from muster.mission.value_types import Fault, Record
+from muster.mission.records import Record
+from muster.mission.value_types import Fault
 
 
 def event_given(data: Mapping[str, Any], now: float) -> Event:

@@ -24,6 +24,7 @@ from muster.server.security.origins import Hosts
 from muster.server.security.refusal import RefusalError, printable
 from muster.server.security.refusal_log import Audit
 from muster.server.settings import Settings
+from muster.server.work.turns import CURRENT_USER
 
 log = logging.getLogger("muster.security")
 
@@ -132,6 +133,7 @@ class Guard:
             request = self._read(scope, peer)
             asker = self._admitted(request, peer)
             scope[SCOPE_KEY] = asker
+            CURRENT_USER.set(asker.who.name or network_of(request.address))
             scope[REQUEST_KEY] = answer.id
             await (self._socket if request.socket else self._http)(request, asker, receive, answer)
         except RefusalError as refusal:

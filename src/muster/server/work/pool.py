@@ -11,29 +11,29 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-from muster.exchange.mission_control import BusyError
 from muster.server.work.errors import TimedOut, WorkError
 from muster.server.work.process import PROGRAM, Progress, Worker
 from muster.server.work.stop_request import Halt
 from muster.server.work.tasks import TASKS, Task
 from muster.server.work.temporary_folders import OF_WORK, sweep
+from muster.server.work.turns import CURRENT_USER, Turns
 
-MOST_WAITING = 64
-"""Pieces of short work that wait; what each was sent with is held meanwhile."""
+MOST_WAITING, MOST_WAITING_OF_ONE = 64, 24
+"""Pieces of short work that wait, in all and of one user; what each was sent with is held meanwhile."""
 _ANY = Task("", limit_s=None)
 
 Arguments = Mapping[str, Any] | Callable[[], Mapping[str, Any]]
 
 
 class Pool:
-    """Gives work to processes, in the order in which it comes.
+    """Gives work to processes; users take turns.
 
     Long work (plans) never keeps short work (checks, explanations) waiting: each has places of its own.
 
     Parameters
     ----------
     workers
-        how many processes do long work at most; as many more may do short work.
+        how many processes do long work at most. As many more do short work of one user, and one more that of others.
     memory_mb
         how much memory each may have.
     idle_s
@@ -46,15 +46,24 @@ class Pool:
         self._memory_mb = memory_mb
         self._idle_s = idle_s
         self._program = program
-        self._places = {long: asyncio.Semaphore(workers) for long in (False, True)}
+        short = Turns(workers + 1, workers, waiting=MOST_WAITING, waiting_of_one=MOST_WAITING_OF_ONE)
+        self._turns = {False: short, True: Turns(workers, workers)}
         self._idle: list[Worker] = []
         self._alarms: dict[Worker, asyncio.TimerHandle] = {}
         self._workers: set[Worker] = set()
         self._leaving: set[asyncio.Task[None]] = set()
         self._closed = False
         self._folder: Path | None = None
-        self.busy = 0
-        self.waiting = 0
+
+    @property
+    def busy(self) -> int:
+        """Pieces of work under way."""
+        return sum(turns.taken for turns in self._turns.values())
+
+    @property
+    def waiting(self) -> int:
+        """Pieces of work that wait for their turn."""
+        return sum(turns.waiting for turns in self._turns.values())
 
     async def run(
         self,
@@ -64,6 +73,7 @@ class Pool:
         on_progress: Progress | None = None,
         limit_s: float | None = None,
         halt: Halt | None = None,
+        user: str | None = None,
     ) -> dict[str, Any]:
         """Have a task done; cancelling whoever awaits this kills the process at once.
 
@@ -79,19 +89,19 @@ class Pool:
             how long it may take once it has begun; by default as the task says.
         halt
             asks it to end with what it has; tasks that cannot do that pass it over.
+        user
+            whose turn it takes; by default the turn of whoever sent the present request (`CURRENT_USER`).
 
         Raises
         ------
         WorkError
             OutOfMemory, TimedOut, WorkerDied; with `.findings` of arguments that are wrong.
         BusyError
-            if as much short work waits as may.
+            if as much short work waits as may, in all or of this user.
         """
         known = TASKS.get(task, _ANY)
         limit_s = known.limit_s if limit_s is None else limit_s
-        if not known.long and self.waiting >= MOST_WAITING:
-            raise BusyError(f"{self.waiting} requests wait, the most that may; expected to be asked again later")
-        async with self._place(self._places[known.long]):
+        async with self._turns[known.long].turn(CURRENT_USER.get() if user is None else user):
             given = arguments if isinstance(arguments, Mapping) else await asyncio.to_thread(arguments)
             async with self._worker() as worker:
                 try:
@@ -110,20 +120,6 @@ class Pool:
             await worker.gone.wait()
         if self._folder is not None:
             await asyncio.to_thread(shutil.rmtree, self._folder, ignore_errors=True)
-
-    @asynccontextmanager
-    async def _place(self, places: asyncio.Semaphore) -> AsyncIterator[None]:
-        self.waiting += 1
-        try:
-            await places.acquire()
-        finally:
-            self.waiting -= 1
-        self.busy += 1
-        try:
-            yield
-        finally:
-            self.busy -= 1
-            places.release()
 
     @asynccontextmanager
     async def _worker(self) -> AsyncIterator[Worker]:

@@ -12,7 +12,7 @@ from nicegui import background_tasks, ui
 
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import OBJECTIVES, Robot, Rules, Task
-from muster.mission.value_types import specified
+from muster.mission.records import specified
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import warn, words_of
 from muster.server.pages.plan.table import Column, Table

@@ -1,0 +1,50 @@
+"""What happens while a mission is carried out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from muster.mission.records import Checked, Record, record, spec, specified
+from muster.mission.robots import Robot
+from muster.mission.site import IN_DEGREES, Point
+from muster.mission.tasks import Task
+from muster.mission.value_types import Fault, JsonSchema, Number, Position, Text
+
+
+@record
+class MovedTask(Checked):
+    task: str = spec(Text(), "id of the task")
+    position: Point = spec(Position(), "where it is from then on", instead=IN_DEGREES)
+
+
+@record
+class DelayedTask(Checked):
+    task: str = spec(Text(), "id of the task")
+    by_s: float = spec(Number(minimum=0), "how much longer it takes")
+
+
+@record
+class Event(Checked):
+    """Something that happens while the mission is carried out: a time, and exactly one of the others."""
+
+    at_s: float = spec(Number(minimum=0), "when")
+    robot_fails: str | None = spec(Text(), "id of the robot", default=None)
+    robot_silent: str | None = spec(Text(), "id of the robot", default=None)
+    robot_returns: str | None = spec(Text(), "id of the robot", default=None)
+    robot_joins: Robot | None = spec(Record(Robot, "a robot"), "the robot", default=None)
+    new_task: Task | None = spec(Record(Task, "a task"), "the task", default=None)
+    cancel_task: str | None = spec(Text(), "id of the task", default=None)
+    move_task: MovedTask | None = spec(Record(MovedTask, "a task and its position"), "what moves", default=None)
+    delay_task: DelayedTask | None = spec(Record(DelayedTask, "a task and its delay"), "what is late", default=None)
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        names = [f.name for f in specified(cls) if f.name != "at_s"]
+        given = [name for name in names if values.get(name) is not None]
+        if len(given) != 1:
+            yield Fault((), ", ".join(given) or "no happening", f"exactly one of {', '.join(names)}")
+
+    @classmethod
+    def schema_extra(cls) -> JsonSchema:
+        return {"minProperties": 2, "maxProperties": 2}

@@ -1,0 +1,66 @@
+"""The fields of a mission, before it is known whether they fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+
+from muster.mission.events import Event
+from muster.mission.records import Checked, Record, record, spec
+from muster.mission.robots import Robot
+from muster.mission.rules import Rules
+from muster.mission.site import Map, Origin, Tag, TravelTable
+from muster.mission.source import IN_PYTHON, Source
+from muster.mission.tasks import Found, Task
+from muster.mission.value_types import Choice, Many, Number, Table, Text
+
+SCHEMA = "muster/1"
+
+
+@record
+class MissionData(Checked):
+    """What a mission holds. `Mission` is the class whose parts fit together."""
+
+    schema: str = spec(Choice((SCHEMA,)), "the version of this format", default=SCHEMA)
+    name: str = spec(Text(), "what it is called", default="mission")
+    origin_wgs84: Origin | None = spec(Record(Origin, "an origin"), "where the map frame's origin is", default=None)
+    rules: Rules = spec(Record(Rules, "rules"), "what counts, and how", default=Rules())
+    map: Map | None = spec(Record(Map, "a map"), "walls and zones", default=None)
+    travel: Mapping[str, str] | None = spec(
+        Table(Text(), "a mapping from robot types to CSV files"),
+        "travel tables, with rules.travel: matrix",
+        default=None,
+    )
+    suitability: Mapping[str, Mapping[str, float]] | None = spec(
+        Table(
+            Table(Number(minimum=0, maximum=1), "a mapping from task types to scores"),
+            "a mapping from robot types to scores of task types",
+        ),
+        "scores of robot types for task types; without it every pair is allowed",
+        default=None,
+    )
+    robots: tuple[Robot, ...] = spec(Many(Record(Robot, "a robot"), minimum=1), "the team")
+    tasks: tuple[Task, ...] = spec(Many(Record(Task, "a task")), "the work")
+    events: tuple[Event, ...] = spec(
+        Many(Record(Event, "an event")), "what happens while it is carried out", default=()
+    )
+    tags: tuple[Tag, ...] = spec(
+        Many(Record(Tag, "a tag")), "what there is to be found, in simulated worlds", default=()
+    )
+    found: tuple[Found, ...] = spec(
+        Many(Record(Found, "what becomes of tags")),
+        "what becomes of tags that are found: the first that fits",
+        default=(),
+    )
+    travel_tables: Mapping[str, TravelTable] = field(default_factory=dict)
+    source: Source = field(default=IN_PYTHON, compare=False, repr=False)
+
+    @property
+    def travel_rule(self) -> str:
+        """How travel is measured: as the rules say, else by the map where there is one, else straight."""
+        return self.rules.travel or ("euclidean" if self.map is None else "map")
+
+    @property
+    def dimensions(self) -> int:
+        """2 or 3: how many coordinates the mission's positions have."""
+        return len(self.robots[0].position)

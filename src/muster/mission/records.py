@@ -1,0 +1,195 @@
+"""Classes of the model whose fields are each declared once, with the kind of their values.
+
+From that one declaration follow reading a file, checking a mission built in Python, writing, the "did you mean" of
+unknown keys, the help of the class and the published JSON Schema, so that these cannot disagree.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields
+from typing import Any, ClassVar, TypeVar, dataclass_transform
+
+from muster.mission.errors import Finding, MissionError
+from muster.mission.field_help import fields_text
+from muster.mission.keywords import require_known
+from muster.mission.near_matches import did_you_mean
+from muster.mission.source import IN_PYTHON, Source
+from muster.mission.value_types import INVALID, RESERVED_NAMES, Fault, JsonSchema, Key, Kind, Path, refuse, shown
+
+C = TypeVar("C")
+
+
+def spec(
+    kind: Kind,
+    doc: str,
+    *,
+    default: Any = MISSING,
+    unit: str = "",
+    instead: tuple[str, Kind, str] | None = None,
+) -> Any:
+    """A dataclass field whose values are of `kind`; without `default` it is required.
+
+    Parameters
+    ----------
+    unit
+        of the value, for the help of the class, where the name of the field does not say it.
+    instead
+        a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
+    """
+    metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit} | ({"instead": instead} if instead else {})
+    return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(spec, field))
+def record(cls: type[C]) -> type[C]:
+    """Make a class of fields made by `spec` a frozen, keyword-only dataclass whose help tells of each field."""
+    made: Any = dataclass(frozen=True, kw_only=True)(cls)
+    made.__init__ = _naming_unknown_fields(made.__init__, made)
+    made.__doc__ = f"{cls.__doc__}\n\n{fields_text(specified(made))}"
+    return cls
+
+
+def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callable[..., None]:
+    @functools.wraps(init)
+    def checked(self: Any, *args: Any, **values: Any) -> None:
+        try:
+            init(self, *args, **values)
+        except TypeError:
+            require_known(values, [f.name for f in fields(cls)], cls.__name__)
+            raise
+
+    return checked
+
+
+def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
+    """The fields of a model class that a file may hold, in order."""
+    return tuple(f for f in fields(cls) if "kind" in f.metadata)
+
+
+def required(f: Field[Any]) -> bool:
+    """Whether a file must hold the field."""
+    return f.default is MISSING and f.default_factory is MISSING
+
+
+class Checked:
+    """Checks and converts the fields of a model class by their kinds when one is made in Python."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __post_init__(self) -> None:
+        faults: list[Fault] = []
+        for f in specified(type(self)):
+            value = getattr(self, f.name)
+            if value is None and f.default is None:
+                continue
+            object.__setattr__(self, f.name, f.metadata["kind"].read(value, (f.name,), faults))
+        if not faults:
+            faults.extend(self.cross_check(self.__dict__))
+        if faults:
+            raise MissionError(findings(faults, IN_PYTHON))
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        """Faults that lie between fields; `values` holds the fields that are given."""
+        return ()
+
+    @classmethod
+    def schema_extra(cls) -> JsonSchema:
+        """What its JSON Schema holds besides its fields."""
+        return {}
+
+    @classmethod
+    def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
+        """Keys that a file may hold besides the fields, in view of its other keys; their values go into `extra`."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Record:
+    """A mapping with known keys: one of the model's dataclasses.
+
+    Always reads to an instance. Where a value is wrong, a filler stands in its place, so that the rest can still be
+    checked; whoever reads looks at `faults` before using the instance. INVALID in the data was refused before.
+    """
+
+    of: type[Checked]
+    what: str
+    filler: ClassVar[None] = None
+
+    @property
+    def expected(self) -> str:
+        keys = [f.name for f in specified(self.of) if required(f)]
+        if keys:
+            return f"{self.what} with the keys {', '.join(keys)}"
+        return f"{self.what} with some of the keys {', '.join(f.name for f in specified(self.of))}"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, self.of):
+            return value
+        if not isinstance(value, Mapping):
+            refuse(self, value, at, faults)
+            return self._instance({})
+        before = len(faults)
+        known = {f.name: f for f in specified(self.of)}
+        further = {key: one.kind for key, one in self.of.further_keys(value).items()}
+        names = (*known, *further)
+        faults.extend(_unknown_key(str(key), item, at, names) for key, item in value.items() if key not in names)
+        values = _read_further(further, value, at, faults)
+        for name, f in known.items():
+            item = value.get(name, INVALID)
+            if name in value and not (item is None and f.default is None):
+                values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
+            elif required(f):
+                faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
+        if len(faults) == before:
+            faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
+        return self._instance(values)
+
+    def schema(self) -> JsonSchema:
+        """A reference to the definition that `json_schema` makes of the class."""
+        return {"$ref": f"#/$defs/{self.of.__name__}"}
+
+    def _instance(self, values: Mapping[str, Any]) -> Any:
+        """An instance made without checks: they have just been made, and all faults are on the list."""
+        instance = object.__new__(self.of)
+        for f in fields(self.of):
+            value = values.get(f.name, INVALID)
+            if value is INVALID:
+                value = f.metadata["kind"].filler if required(f) else _default(f)
+            object.__setattr__(instance, f.name, value)
+        return instance
+
+
+def _read_further(kinds: Mapping[str, Kind], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
+    """The values of keys that are not fields, as the field `extra`; nothing where there are none."""
+    read = {key: kinds[key].read(data[key], (*at, key), faults) for key in kinds if data.get(key) is not None}
+    return {"extra": {key: value for key, value in read.items() if value is not INVALID}} if read else {}
+
+
+def _default(f: Field[Any]) -> Any:
+    return f.default if f.default_factory is MISSING else f.default_factory()
+
+
+def _unknown_key(key: str, value: object, at: Path, known: Iterable[str]) -> Fault:
+    if key in RESERVED_NAMES:
+        return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
+    if key == "<<":
+        return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
+    hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
+    return Fault((*at, key), "unknown key", f"a known key{hint}")
+
+
+def findings(faults: Iterable[Fault], source: Source) -> list[Finding]:
+    """Faults as findings: with file and line, in the order of the files."""
+    found = [Finding(*source.place(fault.path), path_text(fault.path), fault.value, fault.expected) for fault in faults]
+    return sorted(found, key=lambda finding: (finding.file, finding.line or 0))
+
+
+def path_text(path: Path) -> str:
+    """`("tasks", 3, "position")` as `tasks[3].position`."""
+    text = ""
+    for step in path:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text and step else step
+    return text

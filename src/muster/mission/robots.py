@@ -1,0 +1,56 @@
+"""The robots of a mission."""
+
+from __future__ import annotations
+
+from muster.mission.place_types import Place
+from muster.mission.records import Checked, Record, record, spec
+from muster.mission.rules import Rules
+from muster.mission.site import IN_DEGREES, Point
+from muster.mission.value_types import Choice, Flag, Many, Number, Position, Text, Whole
+
+
+@record
+class Camera(Checked):
+    """A camera fixed to a robot's body."""
+
+    fov_deg: float = spec(Number(above=0, below=180), "field of view, horizontal")
+    tilt_deg: float = spec(Number(minimum=-90, maximum=90), "downward tilt", default=0.0)
+    mount: Point = spec(Position(), "place on the body, body frame", default=(0.0, 0.0, 0.0))
+    width_px: int = spec(Whole(minimum=1, maximum=1920), "width of its picture", default=640)
+    height_px: int = spec(Whole(minimum=1, maximum=1440), "height of its picture", default=480)
+    rate_hz: float = spec(Number(above=0, maximum=100), "pictures a second", default=2.0)
+
+
+@record
+class Robot(Checked):
+    """One agent."""
+
+    id: str = spec(Text(), "unique among the robots")
+    position: Point = spec(Position(), "where it starts", instead=IN_DEGREES)
+    type: str | None = spec(Text(), "row of the suitability table", default=None)
+    work_capacity: float | None = spec(
+        Number(minimum=0), "most usage; without it unlimited", unit="unit of usage", default=None
+    )
+    skills: tuple[str, ...] = spec(Many(Text()), "what it can do", default=())
+    speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
+    efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
+    return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
+    end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
+    available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
+    heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
+    radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
+    kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")
+    kinematics: str = spec(
+        Choice(("holonomic", "differential-drive", "quadcopter")), "how it moves", default="holonomic"
+    )
+    yaw_rate_radps: float | None = spec(Number(above=0), "greatest yaw rate", default=None)
+    acceleration_mps2: float | None = spec(Number(above=0), "greatest acceleration", default=None)
+    avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
+    camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
+
+    def place_at_end(self, rules: Rules) -> Point | None:
+        """Where the robot's route must end, or None where it may end anywhere."""
+        if self.end_position is not None:
+            return self.end_position
+        returns = rules.return_to_start if self.return_to_start is None else self.return_to_start
+        return self.position if returns else None

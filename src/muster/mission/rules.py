@@ -1,0 +1,26 @@
+"""The rules of a mission: what counts, and how."""
+
+from __future__ import annotations
+
+from muster.mission.records import Checked, record, spec
+from muster.mission.value_types import Choice, Flag, Number, Whole
+
+OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
+IGNORABLE = ("prerequisites", "suitability", "skills", "capacity")
+
+
+@record
+class Rules(Checked):
+    """What counts, and how."""
+
+    objective: str = spec(Choice(OBJECTIVES), "what is minimised after most tasks completed", default="total+max")
+    usage: str = spec(Choice(("distance", "time")), "the unit of usage: metres or seconds", default="distance")
+    min_suitability: float = spec(Number(minimum=0, maximum=1), "least suitability to be assigned", default=0.65)
+    return_to_start: bool = spec(Flag(), "every robot goes back to its start", default=False)
+    travel: str | None = spec(
+        Choice(("euclidean", "map", "matrix")),
+        "how travel is measured: euclidean without a map, else map",
+        default=None,
+    )
+    capacity_reserve: float = spec(Number(minimum=0, below=1), "share of the work capacity kept free", default=0.0)
+    stability: int | None = spec(Whole(), "tasks that may change robot per event", default=None)

@@ -1,0 +1,88 @@
+"""Where a mission takes place: its origin on Earth, its map and zones, its tags and its travel tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from muster.mission.place_types import LatLon
+from muster.mission.records import Checked, Record, record, spec
+from muster.mission.value_types import Choice, Fault, Many, Number, Position, Text, Whole, shown
+
+Point = tuple[float, ...]
+
+IN_DEGREES = ("lat_lon", LatLon(), "in place of position, beside origin_wgs84")
+
+
+@record
+class Origin(Checked):
+    """Where on Earth the map frame's origin is."""
+
+    lat_deg: float = spec(Number(minimum=-90, maximum=90), "latitude")
+    lon_deg: float = spec(Number(minimum=-180, maximum=180), "longitude")
+    alt_m: float = spec(Number(), "altitude above the ellipsoid", default=0.0)
+
+
+@record
+class Zone(Checked):
+    """A part of the map that some robots may not enter."""
+
+    polygon: tuple[Point, ...] = spec(Many(Position(planar=True), minimum=3), "corners in order")
+    floor_m: float | None = spec(Number(), "lower end of the zone", default=None)
+    ceiling_m: float | None = spec(Number(), "upper end of the zone", default=None)
+    forbidden_to: tuple[str, ...] = spec(
+        Many(Choice(("ground", "air")), minimum=1), "kinds of robot that may not enter", default=("ground", "air")
+    )
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        floor, ceiling = values.get("floor_m"), values.get("ceiling_m")
+        if floor is not None and ceiling is not None and floor >= ceiling:
+            yield Fault(("ceiling_m",), shown(ceiling), f"a number above floor_m ({floor:g})")
+
+
+@record
+class Map(Checked):
+    """The map: one of a ROS map file, an image, or polygons."""
+
+    ros_yaml: str | None = spec(Text(), "a map in the form of ROS map_server", default=None)
+    image: str | None = spec(Text(), "an image of the floor", default=None)
+    resolution_m: float | None = spec(Number(above=0), "side of one pixel of the image", default=None)
+    origin: Point | None = spec(
+        Position(third="yaw"), "[x, y, yaw] of the image's lower left corner, metres and radians", default=None
+    )
+    boundary: tuple[Point, ...] | None = spec(
+        Many(Position(planar=True), minimum=3), "corners of the arena in order", default=None
+    )
+    zones: tuple[Zone, ...] = spec(Many(Record(Zone, "a zone")), "parts that some robots may not enter", default=())
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        forms = [name for name in ("ros_yaml", "image", "boundary") if values.get(name) is not None]
+        if len(forms) != 1:
+            yield Fault((), ", ".join(forms) or "no form", "exactly one of ros_yaml, image, boundary")
+        if "image" in forms and values.get("resolution_m") is None:
+            yield Fault(("resolution_m",), "missing", "a finite number above 0, beside image")
+        if forms in (["ros_yaml"], ["boundary"]):
+            for key in ("resolution_m", "origin"):
+                if values.get(key) is not None:
+                    yield Fault((key,), shown(values[key]), f"no such key beside {forms[0]}: it goes with image")
+
+
+@record
+class Tag(Checked):
+    """A tag that lies there to be found: simulated worlds show it to cameras, and nobody else knows of it."""
+
+    id: int = spec(Whole(maximum=586), "which tag of the AprilTag family 36h11")
+    position: Point = spec(Position(), "where its middle is", instead=IN_DEGREES)
+    heading_deg: float = spec(Number(), "where its upper edge is, from east, anticlockwise", default=0.0)
+    size_m: float = spec(Number(above=0), "side of its black square", default=0.4)
+
+
+@dataclass(frozen=True)
+class TravelTable:
+    """Travel between places for one robot type: `metres[from][to]`, inf where there is no way."""
+
+    places: tuple[str, ...]
+    metres: tuple[tuple[float, ...], ...]

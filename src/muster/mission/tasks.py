@@ -1,0 +1,127 @@
+"""The tasks of a mission, and what a robot does at them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import field
+from typing import Any
+
+from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.errors import MissionError
+from muster.mission.place_types import Place
+from muster.mission.records import Checked, Record, findings, record, spec
+from muster.mission.site import IN_DEGREES, Point
+from muster.mission.source import IN_PYTHON
+from muster.mission.value_types import Choice, Fault, Key, Many, Number, Position, Text, Whole, shown
+
+
+@record
+class Action(Checked):
+    """What a robot does at a task."""
+
+    name: str = spec(Choice(ACTION_KEYS.keys()), "which action")
+    width_m: float | None = spec(Number(above=0), "stationary-observation: width in view", default=None)
+    heading_deg: float | None = spec(Number(), "stationary-observation: direction of view, 0 if absent", default=None)
+    side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
+    height_m: float | None = spec(Number(above=0), "raster-search: height of flight", default=None)
+    spacing_m: float | None = spec(Number(above=0), "raster-search: distance between lanes", default=None)
+    pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
+    duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
+
+    extra: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    """Values of the keys that a package gives an action of its own; in files they stand beside the others."""
+
+    def __post_init__(self) -> None:
+        faults: list[Fault] = []
+        kinds = ACTION_KEYS[self.name].own if self.name in ACTION_KEYS else {}
+        read = {key: kinds[key].kind.read(value, (key,), faults) for key, value in self.extra.items() if key in kinds}
+        if faults:
+            raise MissionError(findings(faults, IN_PYTHON))
+        object.__setattr__(self, "extra", dict(self.extra) | read)
+        super().__post_init__()
+
+    @property
+    def has_geometry(self) -> bool:
+        """Whether the action's cost follows from way points, not from a typed number."""
+        return ACTION_KEYS[self.name].has_geometry
+
+    @property
+    def places(self) -> dict[str, Point]:
+        """The places that the action names, by key."""
+        own = ACTION_KEYS[self.name].own if self.name in ACTION_KEYS else {}
+        extra = {key: point for key, point in self.extra.items() if isinstance(own[key].kind, Position)}
+        return extra if self.pickup is None else {"pickup": self.pickup} | extra
+
+    def value(self, key: str) -> Any:
+        """The value of a key, a field or one of `extra`; None where the mission gives none."""
+        return self.extra[key] if key in self.extra else getattr(self, key, None)
+
+    @classmethod
+    def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
+        name = data.get("name")
+        return ACTION_KEYS[name].own if isinstance(name, str) and name in ACTION_KEYS else {}
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        name, extra = values["name"], values.get("extra", {})
+        keys = ACTION_KEYS[name]
+        given = {*extra, *(key for key, value in values.items() if value is not None and key not in ("name", "extra"))}
+        for key in keys.needed:
+            if key not in given:
+                yield Fault((key,), "missing", f"a value: {name} needs {', '.join(keys.needed)}")
+        for key in sorted(given.difference(keys.names)):
+            yield Fault((key,), "unknown key", f"the keys of {name}: {', '.join(keys.names) or 'none'}")
+
+
+@record
+class Work(Checked):
+    """What there is to do, wherever that is."""
+
+    type: str | None = spec(Text(), "column of the suitability table", default=None)
+    actuation_cost: float = spec(Number(minimum=0), "cost of doing it", unit="unit of usage", default=0.0)
+    prerequisites: tuple[str, ...] = spec(Many(Text()), "ids of tasks that must be done before", default=())
+    requires: tuple[str, ...] = spec(Many(Text()), "skills a robot must have", default=())
+    duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
+    priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
+    only_robots: tuple[str, ...] | None = spec(
+        Many(Text(), minimum=1), "ids of the only robots that may do it", default=None
+    )
+    action: Action | None = spec(Record(Action, "an action"), "what the robot does there", default=None)
+    across_partition: str = spec(
+        Choice(("at-least-once", "at-most-once")), "what a split network may do to it", default="at-least-once"
+    )
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        action = values.get("action")
+        if action is not None and action.has_geometry and values.get("actuation_cost"):
+            cost = shown(values["actuation_cost"])
+            yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
+        if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
+            yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+@record
+class _Placed(Checked):
+    """What comes first of a task."""
+
+    id: str = spec(Text(), "unique among the tasks")
+    position: Point = spec(Position(), "where it is", instead=IN_DEGREES)
+
+
+@record
+class Task(Work, _Placed):
+    """One piece of work at a place."""
+
+    entry: Point | None = spec(Place(), "where a robot arrives; without it the position", default=None)
+    exit: Point | None = spec(Place(), "where a robot leaves; without it the position", default=None)
+
+
+@record
+class Found(Checked):
+    """What becomes of tags that cameras find."""
+
+    becomes: Work = spec(Record(Work, "a task without id and position"), "the task that each becomes, at its place")
+    tags: tuple[int, ...] | None = spec(
+        Many(Whole(maximum=586), minimum=1), "of which tags; without it of all", default=None
+    )
