@@ -10,7 +10,8 @@ import pytest
 from tests.cli.yard import MUSTER, comparable, table_rows
 
 from muster.allocation.registry import ALLOCATORS
-from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.ignorable_rules import IGNORABLE
+from muster.mission.model import OBJECTIVES
 from muster.mission.plan import read_plan
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -93,20 +94,25 @@ def test_ignored_rules_are_in_the_plan_and_obeyed(muster):
     assert muster("solve", "yard.yaml", *flags)[0] == 3
     code, out, _ = muster("solve", "yard.yaml", *flags, "--ignore", "skills, prerequisites")
     assert code == 0
-    assert table_rows(out)[-1] == ["ignored", "prerequisites,", "skills"]
-    assert read_plan("p.json").ignored == ("prerequisites", "skills")
-    assert muster("verify", "yard.yaml", "p.json")[0] == 0
+    assert table_rows(out)[-1] == ["ignored", "prerequisite,", "skill"]
+    assert read_plan("p.json").ignored == ("prerequisite", "skill")
+    code, out, err = muster("verify", "yard.yaml", "p.json", "--ignore", "skill,prerequisite")
+    assert (code, err) == (0, "")
+    assert ["ignored", "prerequisite,", "skill"] in table_rows(out)
     text = Path("p.json").read_text(encoding="utf-8")
-    assert '"ignored": ["prerequisites", "skills"]' in text
-    Path("p.json").write_text(text.replace('["prerequisites", "skills"]', "[]"), encoding="utf-8")
+    assert '"ignored": ["prerequisite", "skill"]' in text
+    code, _, err = muster("verify", "yard.yaml", "p.json")
+    assert code == 1, "a plan does not excuse itself"
+    assert "p.json: ignored: prerequisite, skill; expected --ignore prerequisite,skill, or these rules hold" in err
+    Path("p.json").write_text(text.replace('["prerequisite", "skill"]', "[]"), encoding="utf-8")
     assert muster("verify", "yard.yaml", "p.json")[0] == 1
 
 
 @pytest.mark.parametrize("verb", ["check", "solve"])
 def test_unknown_rule_to_ignore(verb, muster):
-    code, out, err = muster(verb, "yard.yaml", "--ignore", "capacity,skill")
+    code, out, err = muster(verb, "yard.yaml", "--ignore", "capacity,skils")
     assert (code, out) == (2, "")
-    assert f"'skill' is not one of {', '.join(IGNORABLE)}; did you mean 'skills'?" in err
+    assert f"'skils'; expected {' or '.join(IGNORABLE)}; did you mean 'skill'?" in err.replace('"', "'")
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES)
@@ -114,10 +120,11 @@ def test_objective(objective, muster):
     assert muster("solve", "11T-2R", "--iterations", 5, "--objective", objective, "-o", "p.json")[0] == 0
     plan = read_plan("p.json")
     assert plan.objective == objective
-    code, out, _ = muster("verify", "11T-2R", "p.json", "--format", "json")
+    code, out, _ = muster("verify", "11T-2R", "p.json", "--objective", objective, "--format", "json")
     assert code == 0
     assert json.loads(out)["objective_name"] == objective
     assert json.loads(out)["objective"] == pytest.approx(plan.objective_value)
+    assert muster("verify", "11T-2R", "p.json")[0] == (0 if objective == "total+max" else 1)
 
 
 def test_unknown_objective(muster):

@@ -19,7 +19,7 @@ from muster.mission.plan import Plan
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.exchange.export_request import Files, QgcOptions
-    from muster.exchange.mission_control import MissionEntry
+    from muster.exchange.mission_control import MissionEntry, World
     from muster.execution import Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
@@ -45,9 +45,7 @@ class Backend(Protocol):
     def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
         """Which tasks can never be done, alone or together."""
 
-    def plan(
-        self, request: Request, on_progress: Callable[[Progress], None] | None, interrupt: Stop
-    ) -> Solution:
+    def plan(self, request: Request, on_progress: Callable[[Progress], None] | None, interrupt: Stop) -> Solution:
         """A judged plan. Interrupted once, planning ends with its best plan.
 
         Raises
@@ -62,7 +60,9 @@ class Backend(Protocol):
     def explain(self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str) -> Explanation:
         """Why tasks are left out, or why one task is done by this robot."""
 
-    def export(self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str) -> Files:
+    def export(
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+    ) -> Files:
         """An admissible plan as files of other tools."""
 
     def simulate(
@@ -70,7 +70,7 @@ class Backend(Protocol):
         mission: Mission,
         plan: Plan | Negotiation,
         *,
-        world: str,
+        world: World,
         seed: int,
         dt_s: float,
         avoidance: str,
@@ -122,7 +122,7 @@ def server_option(*in_this_process: str) -> Callable[[Verb], Verb]:
 
 @contextmanager
 def _backend(server: str | None, token_file: Path | None, *, verbose: bool) -> Iterator[Backend]:
-    """This process; or a server of our version that takes our token."""
+    """The backend of a verb: this process, or a server that speaks this version of the API and takes the token."""
 
     def say(line: str) -> None:
         click.echo(line, err=True)

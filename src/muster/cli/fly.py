@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.mission.interrupts import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
 from muster.mission.errors import ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 

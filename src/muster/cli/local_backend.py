@@ -60,7 +60,9 @@ class LocalBackend:
 
         return explained(mission, plan, task, ignore, file)
 
-    def export(self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str) -> Files:
+    def export(
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+    ) -> Files:
         from muster.exchange.files import exported
         from muster.verification.required import require_admissible
 

@@ -63,9 +63,7 @@ def planning_options(verb: Verb) -> Verb:
             help=f"{HELP['time_limit']}  [default: 5, without --iterations]",
         ),
         click.option("--iterations", type=int, metavar="N", help=HELP["iterations"]),
-        click.option(
-            "--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]"
-        ),
+        click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]"),
         click.option(
             "--ray", metavar="ADDRESS", help="Work on the parts of a large team on a Ray cluster (docs/search.md)."
         ),

@@ -16,9 +16,7 @@ _QUIET_UNTIL_S = 0.5
 
 
 @contextmanager
-def progress_bar(
-    wanted: bool, mission: Mission
-) -> Iterator[Callable[[Progress], None] | None]:
+def progress_bar(wanted: bool, mission: Mission) -> Iterator[Callable[[Progress], None] | None]:
     """A function that shows the progress it is called with; None where nothing is to be shown."""
     if not wanted or not sys.stderr.isatty():
         yield None

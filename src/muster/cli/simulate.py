@@ -26,8 +26,8 @@ from muster.cli.options import (
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
-from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.planning_options import ctrl_c_interrupts
+from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
@@ -38,6 +38,7 @@ from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster import Negotiation
+    from muster.exchange.mission_control import World
     from muster.report.camera_pictures import Looks
     from muster.simulation import Noise
 
@@ -106,7 +107,7 @@ def command(
     plan: Path | None,
     ignore: tuple[str, ...],
     negotiate: bool,
-    world: str,
+    world: World,
     seed: int,
     time_limit: float,
     iterations: int | None,

@@ -73,7 +73,10 @@ class ServerBackend:
         self._note(f"plan {plan.id} of the server, in {plan.elapsed_s or 0.0:.3f} s")
         why = (job.seen.result or {}).get("why", "")
         return Solution(
-            plan=plan, verdict=judged(request.mission, plan), why=why, interrupted=interrupt.interrupted
+            plan=plan,
+            verdict=judged(request.mission, plan, request.ignore, request.objective),
+            why=why,
+            interrupted=interrupt.interrupted,
         )
 
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
@@ -87,7 +90,9 @@ class ServerBackend:
         parts = [part if isinstance(part, str) else Table(**part) for part in found.pop("tables")]
         return Explanation(found, parts)
 
-    def export(self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str) -> Files:
+    def export(
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+    ) -> Files:
         asked = asdict(options) if form == "qgc" else {}
         return unpacked(*self._client.plans.export(self._kept_plan(mission, plan), form, ignore, **asked))
 
@@ -133,9 +138,7 @@ class ServerBackend:
         return entry
 
 
-def awaited(
-    job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say
-) -> ServerPlan:
+def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say) -> ServerPlan:
     """The plan of a job. Interrupted once, the job ends with its best plan; twice, it is cancelled.
 
     Raises
@@ -163,8 +166,8 @@ def _translated(on_progress: Callable[[Progress], None]) -> Callable[[Mapping[st
 
     def report(seen: Mapping[str, Any]) -> None:
         if seen.get("objective") is not None:
-            known = {name: seen.get(name) for name in ("share", "bound")}
-            on_progress(Progress(seen["elapsed_s"], 0, seen["weight"], seen["objective"], **known))
+            figures = (seen["elapsed_s"], 0, seen["weight"], seen["objective"])
+            on_progress(Progress(*figures, share=seen.get("share"), bound=seen.get("bound")))
 
     return report
 

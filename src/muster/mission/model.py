@@ -14,12 +14,11 @@ from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
-from muster.mission.rules import IGNORABLE, OBJECTIVES, Rules
+from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Map, Origin, Point, Tag, TravelTable, Zone
 from muster.mission.tasks import Action, Found, Task, Work
 
 __all__ = [
-    "IGNORABLE",
     "OBJECTIVES",
     "SCHEMA",
     "Action",

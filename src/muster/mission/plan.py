@@ -11,7 +11,8 @@ from typing import Any
 
 from muster.mission.auction_book import Award, Book
 from muster.mission.errors import Finding, MissionError, PlanError
-from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
+from muster.mission.model import OBJECTIVES
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
@@ -180,7 +181,7 @@ class _Reading:
         objective = self._given(data, "objective", dict, {})
         ignored = self._names(data.get("ignored", []), "ignored", f"a list of {', '.join(IGNORABLE)}")
         for name in ignored:
-            if name not in IGNORABLE:
+            if ignorable_rule(name) is None:
                 self._refuse("ignored", name, " or ".join(IGNORABLE))
         if objective.get("name") not in (None, *OBJECTIVES):
             self._refuse("objective.name", objective["name"], " or ".join(OBJECTIVES))
@@ -197,7 +198,7 @@ class _Reading:
             mission=self._given(data, "mission", str),
             allocator=self._given(data, "allocator", str),
             seed=self._given(data, "seed", int),
-            ignored=ignored,
+            ignored=tuple(ignorable_rule(name) or name for name in ignored),
             objective=objective.get("name") if objective.get("name") in OBJECTIVES else None,
             objective_value=self._number(objective, "value", "objective."),
             usage_unit=self._given(data, "usage_unit", str),

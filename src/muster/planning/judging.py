@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
@@ -15,23 +16,35 @@ if TYPE_CHECKING:
 _MOST_SHOWN = 3
 
 
-def verify(mission: Mission, plan: Plan) -> Verdict:
-    """Judge a plan from scratch, by code that no allocator uses."""
+def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+    """Judge a plan from scratch, by code that no allocator uses.
+
+    Parameters
+    ----------
+    ignore
+        rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
+    objective
+        the one that the plan was to minimise; the mission's by default.
+
+    Raises
+    ------
+    ParameterError, NotSupportedError
+    """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan)
+    return judge(mission, plan, ignore, objective)
 
 
-def judged(mission: Mission, plan: Plan) -> Verdict:
-    """The verdict on a plan that an allocator has made.
+def judged(mission: Mission, plan: Plan, ignore: Collection[str], objective: str | None) -> Verdict:
+    """The verdict on a plan that was made for this objective, some rules ignored.
 
     Raises
     ------
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, ignore, objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
@@ -42,4 +55,4 @@ def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
     """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
     from muster.report import plot_routes
 
-    return plot_routes(mission, plan, verify(mission, plan), ax=ax)
+    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

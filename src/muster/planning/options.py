@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.model import OBJECTIVES
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
@@ -99,24 +100,10 @@ def options_from(data: Mapping[str, Any]) -> PlanningOptions:
     return PlanningOptions(**{name: value for name, value in data.items() if value is not None})
 
 
-def require_rules(names: Collection[str]) -> None:
-    """Refuse rules that do not exist, or cannot be ignored.
-
-    Raises
-    ------
-    ParameterError
-    """
-    for name in names:
-        if name not in IGNORABLE:
-            near = did_you_mean(str(name), IGNORABLE)
-            raise ParameterError(f"ignore: {shown(name)}; expected {' or '.join(IGNORABLE)}{near}")
-
-
 def _rules(given: object) -> tuple[str, ...]:
     if isinstance(given, str) or not isinstance(given, Collection):
         raise ParameterError(f"ignore: {shown(given)}; expected a list of {', '.join(IGNORABLE)}")
-    require_rules(given)
-    return tuple(given)
+    return ignored_rules(given)
 
 
 def _is_allocator(value: object) -> bool:

@@ -78,7 +78,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
     plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
     plan, why = _improved(request, problem, plan, stop)
-    verdict = judged(request.mission, plan)
+    verdict = judged(request.mission, plan, request.ignore, request.objective)
     return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
 
 
@@ -134,7 +134,7 @@ def solve(
     *,
     iterations: int | None = None,
     objective: str | None = None,
-    ignore: Collection[str] = (),
+    ignore: str | Collection[str] = (),
     start: Plan | None = None,
     fixed: Plan | None = None,
     bound: str | None = None,
@@ -153,7 +153,7 @@ def solve(
     objective
         instead of the mission's own.
     ignore
-        rules that do not hold: prerequisites, suitability, skills, capacity.
+        rules that do not hold: prerequisite, suitability, skill, lock, capacity.
     start
         a plan to go on from.
     fixed

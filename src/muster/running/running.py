@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -51,7 +51,8 @@ def simulate(
     observers
         who else is told, such as `muster.report.live.FoxgloveServer`.
     how
-        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
+        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; `ignore`, rules that do not hold,
+        whatever the plan says of itself; and `speed`, times real time.
 
     Raises
     ------
@@ -83,6 +84,7 @@ def carry_out(
     fleet: Fleet,
     *,
     seed: int = 0,
+    ignore: str | Collection[str] = (),
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
     on_event: Callable[[ExecutionEvent], None] | None = None,
@@ -96,6 +98,8 @@ def carry_out(
         the robots, behind a bridge of `muster.bridges`; stays open.
     seed
         of planning anew.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     record
         a file (.mcap) that is to hold what happened; needs the extra `record`.
     observers
@@ -119,7 +123,9 @@ def carry_out(
     require_mission(mission)
     remarks: list[str] = []
     with _recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
-        report = carry_out_live(mission, plan, fleet, seed=seed, recorder=recorder, on_event=on_event, halt=halt)
+        report = carry_out_live(
+            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_event=on_event, halt=halt
+        )
     return replace(report, remarks=(*report.remarks, *remarks))
 
 

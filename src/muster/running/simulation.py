@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ from muster.execution import (
     way_of,
 )
 from muster.mission.errors import ParameterError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
@@ -56,6 +57,8 @@ class Simulation:
         how robots pass each other: orca, rvo, hrvo or none.
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     recorder
         is told all that happens.
     on_look
@@ -81,6 +84,7 @@ class Simulation:
         dt_s: float = 0.1,
         avoidance: str = "orca",
         noise: Noise = NO_NOISE,
+        ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
@@ -93,7 +97,7 @@ class Simulation:
         self._hearing = heard(self._world)
         self._executor = Executor(
             mission,
-            _with_objective(mission, plan),
+            _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
             self._hearing.ports,
             way=way_of(mission, roads),
             travel=travel,
@@ -267,7 +271,7 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
     """A plan from elsewhere may not tell its objective: then as the judge has it."""
     if plan.objective_value is not None:
         return plan
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, plan.ignored, plan.objective)
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 

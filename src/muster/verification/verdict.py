@@ -22,6 +22,7 @@ KINDS = (
     "deadlock",
     "unassigned",
     "book",
+    "objective",
     "figure",
 )
 """The kinds of violation."""
@@ -74,11 +75,13 @@ class Verdict:
     """The judgement of one plan.
 
     `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` is None where routes and prerequisites
-    deadlock. `routes` holds every robot, in mission order. All numbers are finite.
+    deadlock. `ignored` are the rules that the caller had ignored. `routes` holds every robot, in mission order. All
+    numbers are finite.
     """
 
     violations: tuple[Violation, ...]
     objective_name: str
+    ignored: tuple[str, ...]
     usage_unit: str
     total_cost: float
     max_usage: float
@@ -103,7 +106,7 @@ class Verdict:
         return sum(visit.starts_s - visit.arrives_s for route in self.routes for visit in route.visits)
 
     def value(self, name: str | None = None) -> float | None:
-        """Return the value of an objective, the plan's own by default; None for the makespan of a plan that deadlocks.
+        """Return the value of an objective, by default the one judged by; None for the makespan of a deadlocked plan.
 
         Raises
         ------
@@ -127,6 +130,7 @@ class Verdict:
         return {
             "valid": self.valid,
             "violations": [asdict(violation) for violation in self.violations],
+            "ignored": list(self.ignored),
             "objective_name": self.objective_name,
             "objective": self.value(),
             "usage_unit": self.usage_unit,

@@ -150,7 +150,7 @@ def undisturbed(run: Run) -> Result:
 
 def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float, cpu: float) -> Result:
     took_s, cpu_s = time.perf_counter() - begin - answer.build_s, time.process_time() - cpu
-    verdict = verify(problem.mission, plan)
+    verdict = verify(problem.mission, plan, problem.ignored, problem.objective)
     value = verdict.value(run.match.objective) or 0.0  # none of a plan that deadlocks, which is invalid
     fault = None
     if not verdict.valid:

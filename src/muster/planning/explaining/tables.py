@@ -11,7 +11,16 @@ from muster.allocation.remedy import Remedy
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
-from muster.planning.explaining.phrases import award_text, lines, place, reserve, short, smallest_change, what_then
+from muster.planning.explaining.phrases import (
+    award_text,
+    ignored,
+    lines,
+    place,
+    reserve,
+    short,
+    smallest_change,
+    what_then,
+)
 
 
 @dataclass(frozen=True)
@@ -59,7 +68,11 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
         return ["no task is left out; --task T explains a task that is done"]
     title = "1 task left out" if len(left_out) == 1 else f"{len(left_out)} tasks left out"
     rows = tuple((item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons)
-    parts: list[Part] = [Table(title, ("task", "robot", "reason", "detail"), rows), _smallest(found.problem, changes)]
+    parts: list[Part] = [
+        *ignored(found.problem),
+        Table(title, ("task", "robot", "reason", "detail"), rows),
+        _smallest(found.problem, changes),
+    ]
     if len(left_out) > len(changes):
         parts.append(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
     return parts
@@ -67,7 +80,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
 
 def tables_on_task(found: OneTask) -> list[Part]:
     """Who does the task, what it would be with others, and what each of them would need."""
-    parts: list[Part] = [*place(found)]
+    parts: list[Part] = [*place(found), *ignored(found.problem)]
     if found.plan.book is not None and found.award is not None:
         parts.append(award_text(found.problem, found.plan.book, found.award))
     parts += [_alternatives(found), _remedies(found)]

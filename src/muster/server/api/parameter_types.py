@@ -72,7 +72,11 @@ Files = Annotated[
 Count = Annotated[int, Field(ge=0, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Ignored = Annotated[
-    list[Literal["prerequisites", "suitability", "skills", "capacity"]],
-    Field(max_length=4, description="Rules that do not hold."),
+    list[Literal["prerequisite", "suitability", "skill", "lock", "capacity", "prerequisites", "skills"]],
+    Field(max_length=7, description="Rules that do not hold."),
+]
+IgnoredQuery = Annotated[
+    Ignored | None,
+    Query(description="Rules that do not hold. Default: those without which the server made the plan."),
 ]
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

@@ -17,6 +17,7 @@ from muster.server.api.parameter_types import (
     Body,
     Count,
     Ignored,
+    IgnoredQuery,
     Limit,
     MissionId,
     MissionQuery,
@@ -106,15 +107,20 @@ async def plan(desk: TheDesk, plan: PlanId) -> PlanEntry:
 
 
 @router.get("/plans/{plan}/verdict", summary="Judge a plan")
-async def verdict(desk: TheDesk, plan: PlanId) -> dict[str, Any]:
+async def verdict(
+    desk: TheDesk,
+    plan: PlanId,
+    ignore: IgnoredQuery = None,
+    objective: Annotated[Objective | None, Query(description="That was to be minimised.")] = None,
+) -> dict[str, Any]:
     """Whether it is admissible, all figures, who is where when: from scratch, by code that no allocator uses."""
-    return dict(await desk.plans.verdict(plan))
+    return dict(await desk.plans.verdict(plan, ignore, objective))
 
 
 @router.get("/plans/{plan}/explain", summary="Say why")
-async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None) -> dict[str, Any]:
+async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None, ignore: IgnoredQuery = None) -> dict[str, Any]:
     """Why tasks are left out; of one task, why this robot does it and not another."""
-    return dict(await desk.plans.explain(plan, task))
+    return dict(await desk.plans.explain(plan, task, ignore))
 
 
 @router.get(
@@ -129,6 +135,7 @@ async def export(
     desk: TheDesk,
     plan: PlanId,
     to: ExportTo,
+    ignore: IgnoredQuery = None,
     altitude: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: at least so many metres up.")] = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: warn of bodies that near, in m.")] = None,
     tolerance: Annotated[float | None, Query(ge=0, le=1e3, description="qgc: bends thinned out, in m.")] = None,
@@ -136,7 +143,9 @@ async def export(
 ) -> Response:
     """As `muster export` writes it."""
     options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
-    files = await desk.plans.export(plan, to, {name: value for name, value in options.items() if value is not None})
+    files = await desk.plans.export(
+        plan, to, {name: value for name, value in options.items() if value is not None}, ignore
+    )
     return await parcel_answer(files, f"plan-{plan}")
 
 

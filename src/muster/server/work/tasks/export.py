@@ -18,7 +18,7 @@ from muster.verification.required import require_admissible
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "plan", "to", "options"}` -> `{"files": {name: base64}, "messages"}`.
+    """`{"mission", "plan", "ignore", "to", "options"}` -> `{"files": {name: base64}, "messages"}`.
 
     `to` is one of FORMATS, or `json`: the plan's own file. `options` are those of `QgcOptions`, for qgc.
     """
@@ -33,7 +33,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
     if form == "json":
         return _answer({f"{_stem(mission.name)}.json": plan.text()})
-    verdict = require_admissible(mission, plan, "plan")
+    verdict = require_admissible(mission, plan, "plan", arguments.get("ignore", ()))
     if wishes is not None:
         files = plan_files(mission, verdict, wishes)
         return _answer(files.texts, files.messages)
