@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, STILL_MOVING
 from muster.cli.live_output import foxglove_option, require_free_port, shown_live, tell
 from muster.cli.options import (
     Finite,
@@ -31,6 +31,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
+    from muster.bridges.final_state import FinalState
     from muster.bridges.fleet import Fleet
     from muster.execution import Recorder, Report
 
@@ -196,8 +197,15 @@ def carried_out(
     return report
 
 
-def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.Event, left: str) -> int:
-    """Print what came of it; returns the exit code.
+def reported(
+    mission: Mission,
+    report: Report,
+    wishes: Wishes,
+    halt: threading.Event,
+    left: str,
+    final_states: Sequence[FinalState],
+) -> int:
+    """Print what came of it, and where each robot is; returns the exit code.
 
     Parameters
     ----------
@@ -211,5 +219,15 @@ def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.E
         print_report(figures, mission, with_tasks=wishes.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
+    show_final_states(final_states)
+    if halt.is_set():
         return INTERRUPTED
+    if any(state.moving for state in final_states):
+        return STILL_MOVING
     return INCOMPLETE if wishes.require_complete and report.tasks_lost else DONE
+
+
+def show_final_states(states: Sequence[FinalState]) -> None:
+    """A line for each robot; it concerns safety, so `--quiet` does not silence it."""
+    for state in states:
+        click.echo(str(state), err=True)

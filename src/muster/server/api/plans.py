@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Response
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from muster.exchange.mission_control import Job, PlanEntry
-from muster.planning.options import HELP
+from muster.mission.model import OBJECTIVES
+from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import Asker, TheDesk
 from muster.server.api.parameter_types import (
@@ -31,7 +32,8 @@ from muster.server.api.responses import a_file, errors, file_answer, parcel_answ
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
-Objective = Literal["total+max", "total", "max", "average", "makespan"]
+Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
+Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
 ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
 PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
@@ -50,7 +52,7 @@ class Wanted(Body):
     iterations: Count | None = Field(default=None, description=HELP["iterations"])
     seed: Seed = Field(default=0, description=HELP["seed"])
     ignore: Ignored = Field(default=[])
-    bound: Literal["quick", "exact"] | None = Field(default=None, description=HELP["bound"])
+    bound: Bound | None = Field(default=None, description=HELP["bound"])
     rewire: bool = Field(default=False, description=HELP["rewire"])
     start: PlanNumber | None = Field(default=None, description="The id of a plan to go on from.")
     fixed: PlanNumber | None = Field(

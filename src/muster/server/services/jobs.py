@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -105,12 +105,19 @@ class Jobs:
                 raise BusyError(f"{len(self._queued)} jobs wait, the most that may; expected to be asked again later")
             wanted = self._missions.get(mission, version) if version else self._missions.stored(mission)
             found = await wanted
+            await self._require_known(wishes)
             for name in PLANS:
                 if wishes.get(name) is not None:
                     await asyncio.to_thread(self._store.plans.get, wishes[name])
             job = await asyncio.to_thread(self._store.jobs.add, "plan", mission, found.version, wishes, who.name)
             self._enqueue(job.id)
             return job
+
+    async def _require_known(self, wishes: Mapping[str, Any]) -> None:
+        """Refuse an unknown allocator, or parameters that it does not take; a worker knows which there are."""
+        if wishes.get("allocator") is not None or wishes.get("parameters"):
+            options = {name: value for name, value in wishes.items() if name not in PLANS}
+            await self._pool.run("check_request", options)
 
     async def cancel(self, who: Who, job: int) -> Job:
         """End a job that is not over; its process is gone at once.
