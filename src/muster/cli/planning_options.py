@@ -15,7 +15,8 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
-from muster.planning.options import DEFAULT_ALLOCATOR, HELP, PlanningOptions
+from muster.mission.value_types import shown
+from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
@@ -95,9 +96,9 @@ def planning_options(verb: Verb) -> Verb:
 
 def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
     """`quick` may be left out, and then what stands next is taken for it: `--bound MISSION` deserves a hint."""
-    if value not in (None, "quick", "exact"):
+    if value not in (None, *BOUNDS):
         hint = "--bound alone stands after the mission, or as --bound=quick"
-        raise click.BadParameter(f"{value!r} is not one of 'quick', 'exact'; {hint}", param_hint="'--bound'")
+        raise ParameterError(f"bound: {shown(value)}; expected {' or '.join(BOUNDS)}; {hint}")
     return value
 
 

@@ -36,15 +36,15 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     return judge(mission, plan, ignore, objective)
 
 
-def judged(mission: Mission, plan: Plan, ignore: Collection[str], objective: str | None) -> Verdict:
-    """The verdict on a plan that was made for this objective, some rules ignored.
+def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
+    """The verdict on a plan that an allocator has made for an objective, some rules ignored.
 
     Raises
     ------
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
-    verdict = verify(mission, plan, ignore, objective)
+    verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cache
@@ -120,6 +120,12 @@ def searches(effort: Effort, worlds: Sequence[str] = WORLDS) -> list[Search]:
     iterations = market_case(effort).iterations or 0
     seeds = range(repetitions(effort))
     return [Search(world=world, iterations=iterations, seed=seed) for world in worlds for seed in seeds]
+
+
+def found_by_world(effort: Effort, results: Mapping[Any, Any]) -> Iterator[tuple[str, list[Searched]]]:
+    """Each world, and what its searches found."""
+    for world in WORLDS:
+        yield world, [results[job] for job in searches(effort, [world])]
 
 
 def _states(eyes: Sequence[Eyes]) -> list[list[Floats]]:

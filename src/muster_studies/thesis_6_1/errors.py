@@ -8,7 +8,6 @@ from statistics import fmean
 from typing import Any
 
 from muster.running.simulation import WORLDS
-from muster_studies.comparison_marks import EQUAL
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
 from muster_studies.thesis_6_1.flights import Flight, Flown
@@ -90,8 +89,9 @@ class TagErrors:
             least = min(len(table.matches) for table in tables)
             mean, worst = max(table.mean_error_m for table in tables), max(table.greatest_error_m for table in tables)
             holds = least == len(tags(self.number)) and mean < below and not any(table.extra for table in tables)
+            word = "holds" if holds else "does not hold"
             yield (
-                f"{EQUAL if holds else 'not so'}: physics, {name}: {least} of {len(tags(self.number))} tags found, "
+                f"{word}: physics, {name}: {least} of {len(tags(self.number))} tags found, "
                 f"mean error {mean:.4f} m, to be below {below:g} m; greatest {worst:.3f} m"
                 f"{' (the worst flight)' if len(tables) > 1 else ''}."
             )

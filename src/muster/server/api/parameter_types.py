@@ -74,7 +74,11 @@ Count = Annotated[int, Field(ge=0, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Ignored = Annotated[
     list[Annotated[str, WithJsonSchema({"enum": [*IGNORABLE]})]],
-    Field(max_length=len(IGNORABLE), description="Rules that do not hold."),
+    Field(max_length=2 * len(IGNORABLE), description="Rules that do not hold."),
+]
+IgnoredQuery = Annotated[
+    Ignored | None,
+    Query(description="Rules that do not hold. Default: those that were ignored when the server made the plan."),
 ]
 """Words that the planning request checks, with the command's texts; their schema names them all the same."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
