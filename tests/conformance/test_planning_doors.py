@@ -61,7 +61,7 @@ VALID = [
     Case("genetic", options=searching(allocator="genetic", seed=7), parameters={"population_size": 10}),
     Case("hill climbing", options=searching(allocator="hill-climbing")),
     Case("greedy and genetic", options=searching(allocator="greedy+genetic", seed=5)),
-    Case("auction", options={"allocator": "auction"}, parameters={"bid": "travel", "placement": "append"}),
+    Case("auction", options={"allocator": "auction"}, parameters={"bid": "max", "placement": "append"}),
     Case("market", options={"allocator": "market", "iterations": 5}),
     Case("consensus-based bundles", options={"allocator": "consensus-bundle"}),
     Case("rules ignored", options=searching(ignore=["capacity", "prerequisite"])),

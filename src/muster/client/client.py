@@ -119,7 +119,7 @@ class Client:
         for name, plan in (("start", start), ("fixed", fixed)):
             if plan is not None:
                 plain[name] = plan if isinstance(plan, int) else self._number(address, plan)
-        job = self._connection.post(f"/missions/{path_part(address)}/plans", plain)
+        job = self._connection.post_once(f"/missions/{path_part(address)}/plans", plain)
         return RunningJob(self._connection, read(Job, job))
 
     def _mission(self, mission: Mission | MissionText | str | Path) -> MissionText | str:
@@ -158,7 +158,7 @@ class Client:
             `seed`, `dt_s`, `avoidance`, `noise`; of a bridge what it needs.
         """
         body = {"plan": number_of(plan), "world": world, "speed": speed, "settings": settings}
-        return RunningRun(self._connection, read(Run, self._connection.post("/runs", body)))
+        return RunningRun(self._connection, read(Run, self._connection.post_once("/runs", body)))
 
     def run(self, run: int) -> RunningRun:
         """A run that was started before."""
