@@ -13,8 +13,8 @@ import numpy as np
 
 from muster.motion.grid import Floats
 from muster.perception.clusters import by_density
-from muster.perception.interest import PointOfInterest, points_of_interest
 from muster.perception.matching import ErrorTable, error_table
+from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 from muster.running.simulation import WORLDS, Simulation
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import SURVIVORS
