@@ -109,7 +109,9 @@ class Client:
             how |= {"version": mission.version or None}
             mission = mission.mission
         given = {name: value for name, value in how.items() if value is not None}
-        return RunningJob(self._connection, read(Job, self._connection.post(f"/missions/{_in(mission)}/plans", given)))
+        return RunningJob(
+            self._connection, read(Job, self._connection.post_once(f"/missions/{_in(mission)}/plans", given))
+        )
 
     def job(self, job: int) -> RunningJob:
         """A job that was asked for before."""
@@ -136,7 +138,7 @@ class Client:
         """
         number = plan.id if isinstance(plan, PlanEntry) else plan
         body = {"plan": number, "world": world, "speed": speed, "settings": settings}
-        return RunningRun(self._connection, read(Run, self._connection.post("/runs", body)))
+        return RunningRun(self._connection, read(Run, self._connection.post_once("/runs", body)))
 
     def run(self, run: int) -> RunningRun:
         """A run that was started before."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_of
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
@@ -16,11 +16,18 @@ if TYPE_CHECKING:
 _MOST_SHOWN = 3
 
 
-def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+def verify(
+    mission: Mission,
+    plan: Plan | Mapping[str, Any],
+    ignore: str | Collection[str] = (),
+    objective: str | None = None,
+) -> Verdict:
     """Judge a plan from scratch, by code that no allocator uses.
 
     Parameters
     ----------
+    plan
+        a plan; or a mapping from robots to their tasks in order, or the content of a plan file.
     ignore
         rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
     objective
@@ -29,11 +36,13 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     Raises
     ------
     ParameterError, NotSupportedError
+    PlanError
+        if a mapping is no plan.
     """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan, ignore, objective)
+    return judge(mission, plan_of(plan), ignore, objective)
 
 
 def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
@@ -49,10 +58,3 @@ def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: st
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
     return verdict
-
-
-def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
-    """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
-    from muster.report import plot_routes
-
-    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

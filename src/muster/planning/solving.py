@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
+from muster.allocation.parameter_types import AllocatorParameters
+from muster.mission.keywords import require_known
 from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
 from muster.planning.judging import judged
 from muster.planning.options import DEFAULT_ALLOCATOR
@@ -140,7 +144,8 @@ def solve(
     fixed: Plan | None = None,
     bound: str | None = None,
     rewire: bool = False,
-    **parameters: Any,
+    parameters: Mapping[str, Any] | None = None,
+    **own: Unpack[AllocatorParameters],
 ) -> Plan:
     """Plan a mission; the plan is judged by code that no allocator uses.
 
@@ -164,16 +169,20 @@ def solve(
     rewire
         fill waiting time with later tasks of the same robot: the mission ends sooner, for some usage.
     parameters
-        of the allocator, such as `population_size`.
+        of the allocator by name, for those of functions and of other packages.
+    own
+        parameters of an allocator that ships, such as `population_size`.
 
     Raises
     ------
     ParameterError, NotSupportedError
     """
+    given = {**(parameters or {}), **own}
+    _require_no_misspelt_argument(given)
     request = Request(
         mission=mission,
         allocator=allocator,
-        parameters=parameters,
+        parameters=given,
         objective=objective,
         time_limit=time_limit,
         iterations=iterations,
@@ -185,3 +194,13 @@ def solve(
         rewire=rewire,
     )
     return answer(request, on_progress=on_progress).plan
+
+
+def _require_no_misspelt_argument(parameters: Mapping[str, Any]) -> None:
+    """Refuse what looks like an argument of `solve`; what the allocator does not have is refused by the allocator."""
+    for name in parameters:
+        if name not in AllocatorParameters.__annotations__ and did_you_mean(name, _ARGUMENTS):
+            require_known([name], _ARGUMENTS)
+
+
+_ARGUMENTS = tuple(name for name in inspect.signature(solve).parameters if name != "own")

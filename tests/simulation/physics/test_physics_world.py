@@ -12,7 +12,8 @@ import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.motion.port import Waypoint
-from muster.running.simulation import carry_out, world_named
+from muster.running.simulation import carry_out
+from muster.running.worlds import world_named
 
 if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)

@@ -11,7 +11,7 @@ from muster.exchange.mission_control import Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import Asker, IdempotencyKey, TheDesk, key_of
 from muster.server.api.parameter_types import (
     LARGEST,
     Before,
@@ -67,10 +67,18 @@ class Wanted(Body):
     summary="Plan a mission",
     responses=with_location(202, "It is under way; the job says how far it is.") | errors(409),
 )
-async def ask(desk: TheDesk, who: Asker, mission: MissionId, response: Response, body: Wanted) -> Job:
+async def ask(
+    desk: TheDesk,
+    who: Asker,
+    mission: MissionId,
+    response: Response,
+    body: Wanted,
+    idempotency_key: IdempotencyKey = None,
+) -> Job:
     """Long work: the answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
     given = body.model_dump(exclude={"version"}, exclude_none=True, exclude_defaults=True)
-    job = await desk.jobs.ask_plan(who, mission, body.version, **given)
+    request = key_of(who, idempotency_key, f"/missions/{mission}/plans", body)
+    job = await desk.jobs.ask_plan(who, mission, body.version, request=request, **given)
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job
 
