@@ -19,6 +19,7 @@ from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
+    from muster.allocation.function_allocator import AllocatingFunction
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Progress, Stop
     from muster.verification import Verdict
@@ -68,12 +69,10 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.proofs import require_provable
-    from muster.allocation.registry import allocator_named
+    from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
 
-    allocator: Allocator = (
-        allocator_named(request.allocator) if isinstance(request.allocator, str) else request.allocator
-    )
+    allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
     problem = _compiled(request)
     if request.bound is not None:
@@ -132,14 +131,14 @@ def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> 
 
 def solve(
     mission: Mission,
-    allocator: str | Allocator = DEFAULT_ALLOCATOR,
+    allocator: str | Allocator | AllocatingFunction = DEFAULT_ALLOCATOR,
     time_limit: float | None = None,
     seed: int = 0,
     on_progress: OnProgress | None = None,
     *,
     iterations: int | None = None,
     objective: str | None = None,
-    ignore: Collection[str] = (),
+    ignore: str | Collection[str] = (),
     start: Plan | None = None,
     fixed: Plan | None = None,
     bound: str | None = None,
@@ -152,7 +151,7 @@ def solve(
     Parameters
     ----------
     allocator
-        one of `muster solve --list-allocators`.
+        one of `muster solve --list-allocators`, an allocator, or a function that makes routes.
     time_limit, iterations
         when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
         plan.

@@ -27,7 +27,7 @@ from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
-from muster.simulation.world import Contact, Observer, Passing
+from muster.simulation.world import Contact, Observer, WaypointPassed
 
 AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 NEIGHBOURS = 10
@@ -47,7 +47,7 @@ _SLICE = 10_000
 """Steps after which Ctrl-C is listened to."""
 
 
-class CrowdedWorld(ABC):
+class WorldBase(ABC):
     """Robots of a mission that move; deterministic by seed. What moves them, those that inherit say.
 
     Robots start where the mission says and stand until they are sent. Walls are there where travel is by the map.
@@ -152,11 +152,11 @@ class CrowdedWorld(ABC):
         """By the robots' ids, in order of the mission; those that joined come last."""
         return MappingProxyType(self._ports)
 
-    def step(self) -> tuple[Passing, ...]:
+    def step(self) -> tuple[WaypointPassed, ...]:
         """Let one step go by."""
         return self._advance(self.time_s + self._dt_s)
 
-    def advance(self, until_s: float) -> tuple[Passing, ...]:
+    def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """Let time go by until `until_s`, at most to the end of the first step in which something was passed.
 
         Returns
@@ -206,22 +206,22 @@ class CrowdedWorld(ABC):
         """It stops as soon as it can and takes no more way points; `silent`: it says nothing more either."""
         self._crowd.fail(self._number(robot))
         if silent:
-            self._ports[robot].fall_silent()
+            self._ports[robot].mute()
 
     def recover(self, robot: str) -> None:
         """It works and speaks again; it stands until it is sent."""
         self._crowd.recover(self._number(robot))
-        self._ports[robot].speak()
+        self._ports[robot].unmute()
 
     def silence(self, robot: str) -> None:
         """Its telemetry stays what it is; the robot goes on, and orders still reach it."""
         self._number(robot)
-        self._ports[robot].fall_silent()
+        self._ports[robot].mute()
 
     def unsilence(self, robot: str) -> None:
         """Its telemetry goes on."""
         self._number(robot)
-        self._ports[robot].speak()
+        self._ports[robot].unmute()
 
     def slow(self, robot: str, factor: float) -> None:
         """From now on its top speed is its own times `factor`, above 0 to 1."""
@@ -296,12 +296,12 @@ class CrowdedWorld(ABC):
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
 
-    def _advance(self, until_s: float) -> tuple[Passing, ...]:
+    def _advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         ids = list(self._numbers)
         passed = []
         for time, number, order, count, idle in self._go_on(until_s):
             label = self._ports[ids[number]].label(order, count)
-            passed.append(Passing(time, ids[number], order, count, label, idle))
+            passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
         if self._crowd.steps % self._observed_steps == 0:
             self._observe()
         return tuple(passed)

@@ -14,12 +14,12 @@ pytest.importorskip("shapely", reason="needs the extra `map`")
 
 from muster.mission.model import Map, Tag, Zone
 from muster.perception.camera import Intrinsics, View, mount_of
+from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
-from muster.perception.observer import Observer
-from muster.simulation.cameras import GeometricSight
+from muster.simulation.cameras import GeometricCameras
 from muster.simulation.physics import PhysicsWorld
 from muster.simulation.physics.optional_parts import BACKENDS, _is_there
-from muster.simulation.physics.rendered_cameras import DrawnSight
+from muster.simulation.physics.rendered_cameras import RenderedCameras
 
 if not any(map(_is_there, BACKENDS.values())):
     pytest.skip("neither EGL nor OSMesa is installed", allow_module_level=True)
@@ -42,14 +42,14 @@ def scene(*, tags=TAGS, zones=()):
 
 
 def look(sight, body=BODY):
-    eye = Observer(robot="d", intrinsics=VGA, mount=DOWN, detector=TagDetector())
+    eye = CameraObserver(robot="d", intrinsics=VGA, mount=DOWN, detector=TagDetector())
     return sight.look(eye, View.from_body(VGA, body, DOWN), body, 0.0)
 
 
 @pytest.fixture
 def sight():
     """Of the scene without a building."""
-    drawn = DrawnSight(PhysicsWorld(scene()))
+    drawn = RenderedCameras(PhysicsWorld(scene()))
     yield drawn
     drawn.close()
 
@@ -64,7 +64,7 @@ def test_tags_are_detected_where_they_lie(sight):
 
 def test_what_is_drawn_and_what_geometry_has_are_the_same(sight):
     drawn = look(sight).observation.sightings.all
-    exact = look(GeometricSight(TAGS, seed=0, corner_px=0.0)).observation.sightings.all
+    exact = look(GeometricCameras(TAGS, seed=0, corner_px=0.0)).observation.sightings.all
     for one, other in zip(drawn, exact, strict=True):
         assert one.tag == other.tag
         assert one.corners == pytest.approx(other.corners, abs=1.0)
@@ -72,14 +72,14 @@ def test_what_is_drawn_and_what_geometry_has_are_the_same(sight):
 
 @pytest.mark.parametrize("zone", [HOUSE, replace(HOUSE, floor_m=1.0, ceiling_m=None)])
 def test_buildings_hide_what_is_behind_them(zone):
-    drawn = DrawnSight(PhysicsWorld(scene(zones=(zone,))))
+    drawn = RenderedCameras(PhysicsWorld(scene(zones=(zone,))))
     assert look(drawn).observation.estimates.tags.tolist() == [3]
     drawn.close()
 
 
 @pytest.mark.parametrize("zone", [replace(HOUSE, forbidden_to=("air",)), replace(HOUSE, ceiling_m=0.1)])
 def test_zones_for_one_kind_and_low_ones_hide_nothing(zone):
-    drawn = DrawnSight(PhysicsWorld(scene(zones=(zone,))))
+    drawn = RenderedCameras(PhysicsWorld(scene(zones=(zone,))))
     assert look(drawn).observation.estimates.tags.tolist() == [3, 17, 586]
     drawn.close()
 
@@ -88,13 +88,13 @@ def test_a_roof_of_any_shape_covers_what_is_inside():
     """An L: the tag in its foot is covered, the one in its corner is not."""
     corner = ((2, -2), (5, -2), (5, -1), (3, -1), (3, 2), (2, 2))
     tags = (Tag(id=1, position=(4.5, -1.5)), Tag(id=2, position=(4.0, 0.0)))
-    drawn = DrawnSight(PhysicsWorld(scene(tags=tags, zones=(Zone(polygon=corner, ceiling_m=0.05),))))
+    drawn = RenderedCameras(PhysicsWorld(scene(tags=tags, zones=(Zone(polygon=corner, ceiling_m=0.05),))))
     assert look(drawn).observation.estimates.tags.tolist() == [2]
     drawn.close()
 
 
 def test_tags_of_one_id_twice_are_both_there():
-    drawn = DrawnSight(PhysicsWorld(scene(tags=(Tag(id=8, position=(3, 0.5)), Tag(id=8, position=(3, -0.7))))))
+    drawn = RenderedCameras(PhysicsWorld(scene(tags=(Tag(id=8, position=(3, 0.5)), Tag(id=8, position=(3, -0.7))))))
     seen = look(drawn).observation
     assert seen.sightings.repeated == (8,)
     assert seen.remarks == ("d at 0.00 s: tag 8 is twice in one image",)
@@ -102,8 +102,8 @@ def test_tags_of_one_id_twice_are_both_there():
 
 
 def test_tags_hinder_nobody():
-    model = PhysicsWorld(scene()).stage.model
-    plain = PhysicsWorld(scene(tags=())).stage.model
+    model = PhysicsWorld(scene()).simulated.model
+    plain = PhysicsWorld(scene(tags=())).simulated.model
     touching = [int(np.count_nonzero(m.geom_contype | m.geom_conaffinity)) for m in (model, plain)]
     assert touching[0] == touching[1]
     assert model.ngeom == plain.ngeom + len(TAGS)

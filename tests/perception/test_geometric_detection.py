@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from muster.perception.camera import Intrinsics, View, mount_of
+from muster.perception.geometric_detection import GroundTag, sightings_of
 from muster.perception.localisation import on_ground
-from muster.perception.seen_by_geometry import LyingTag, sightings_of
-from muster.perception.tags import lying
+from muster.perception.tags import tag_pose
 
 VGA = Intrinsics.of_view(640, 480, math.radians(60))
 DOWN = mount_of([0, 0, 0, 0, math.pi / 4, 0])
@@ -19,7 +19,7 @@ def above(x, y, z, yaw=0.0):
 
 
 def tag(x, y, heading=0.0, *, number=7, size_m=0.4):
-    return LyingTag(number, lying((x, y), heading), size_m)
+    return GroundTag(number, tag_pose((x, y), heading), size_m)
 
 
 def seen(tags, view, corner_px=0.0):

@@ -25,7 +25,7 @@ LEAST_PX = 16.0
 
 
 @dataclass(frozen=True, eq=False)
-class LyingTag:
+class GroundTag:
     """A tag where it truly is: its id, its pose (4, 4) in the map, and the side of its black square in metres."""
 
     id: int
@@ -34,7 +34,7 @@ class LyingTag:
 
 
 def sightings_of(
-    tags: Sequence[LyingTag], view: View, random: np.random.Generator, corner_px: float = 0.2
+    tags: Sequence[GroundTag], view: View, random: np.random.Generator, corner_px: float = 0.2
 ) -> Sightings:
     """The tags that a camera sees, with corners that are off by `corner_px` (standard deviation, each axis)."""
     in_picture = view.sees([tag.pose[:3, 3] for tag in tags])  # quick, as most are not
@@ -45,7 +45,7 @@ def sightings_of(
     return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
 
 
-def _sighting(tag: LyingTag, view: View, random: np.random.Generator, corner_px: float) -> Sighting | None:
+def _sighting(tag: GroundTag, view: View, random: np.random.Generator, corner_px: float) -> Sighting | None:
     places = moved(tag.pose, CORNERS * tag.size_m)
     if not view.sees(places).all() or not _faces(tag, view):
         return None
@@ -58,6 +58,6 @@ def _sighting(tag: LyingTag, view: View, random: np.random.Generator, corner_px:
     return Sighting(tag.id, centre + off[0], corners + off[1:], corrected=0, margin=100.0)
 
 
-def _faces(tag: LyingTag, view: View) -> bool:
+def _faces(tag: GroundTag, view: View) -> bool:
     """Whether the camera is on the side from which the tag is to be seen: its z points into it."""
     return float((tag.pose[:3, 3] - view.position) @ tag.pose[:3, 2]) > 0

@@ -9,23 +9,23 @@ pytest.importorskip("pupil_apriltags")
 pytest.importorskip("cv2")
 from muster.motion.frames import transform
 from muster.perception.camera import RB5_MOUNT, mount_of
+from muster.perception.camera_observer import CameraObserver
 from muster.perception.clusters import by_tag
 from muster.perception.detection import TagDetector
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import points_of_interest, remarks
 from muster.perception.localisation import Uncertainty
 from muster.perception.matching import error_table
-from muster.perception.observer import Observer
+from muster.perception.points_of_interest import points_of_interest, remarks
 
-from .scenes import VGA, drawn, lying, over
+from .scenes import VGA, drawn, over, tag_pose
 
 DETECTOR = TagDetector()
 TAGS = {"3": (0.5, 0.0), "11": (1.2, 0.7), "500": (0.9, -0.6)}
-SCENE = [(int(tag), lying(*place, turned=int(tag))) for tag, place in TAGS.items()]
+SCENE = [(int(tag), tag_pose(*place, turned=int(tag))) for tag, place in TAGS.items()]
 
 
 def observer(robot="r_0", **other):
-    return Observer(robot=robot, intrinsics=VGA, mount=RB5_MOUNT, detector=DETECTOR, **other)
+    return CameraObserver(robot=robot, intrinsics=VGA, mount=RB5_MOUNT, detector=DETECTOR, **other)
 
 
 def flight(robot, seed, angle_rad=0.0, position_m=0.0):
@@ -72,7 +72,7 @@ def test_a_pose_that_is_none_is_told():
 
 
 def test_a_tag_twice_is_told_and_both_count():
-    twice = [(7, lying(0.7, 0.7)), (7, lying(1.5, -0.7))]
+    twice = [(7, tag_pose(0.7, 0.7)), (7, tag_pose(1.5, -0.7))]
     look = observer().look(drawn(over(-1.5, 0, 3), twice), [-1.5, 0, 3, 0, 0, 0], 3.0)
     assert look.remarks == ("r_0 at 3.00 s: tag 7 is twice in one image",)
     points = points_of_interest(look.estimates, by_tag(look.estimates, 1.0))
@@ -95,7 +95,7 @@ def test_what_is_too_far_gives_no_estimate():
 
 def test_a_tag_above_the_horizon_gives_no_estimate():
     """The camera looks level, and the robot takes itself for pitched up: the tag seems to hang in the air."""
-    level = Observer(robot="r", intrinsics=VGA, mount=mount_of([0] * 6), detector=DETECTOR)
+    level = CameraObserver(robot="r", intrinsics=VGA, mount=mount_of([0] * 6), detector=DETECTOR)
     view = over(0, 0, 1.5, mount=level.mount)
     image = drawn(view, [(7, view.pose @ transform([0.0, 0.8, 4.0], np.eye(3)))])
     assert len(level.look(image, [0, 0, 1.5, 0, 0, 0], 0.0).estimates) == 1

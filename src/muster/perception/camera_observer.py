@@ -28,7 +28,7 @@ class Observation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Observer:
+class CameraObserver:
     """One robot's camera and what it knows of its errors.
 
     `mount` is (4, 4) from body to image; images need a `detector`. Of what is farther away than `farthest_m` no

@@ -9,7 +9,7 @@ import muster
 from muster.mission.errors import ParameterError
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.tracking import AirTracker, FusedPort, GroundTracker
+from muster.perception.pose_tracking import AirTracker, FusedPort, GroundTracker
 from muster.simulation import KinematicWorld
 from muster.simulation.noise import Noise
 

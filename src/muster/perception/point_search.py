@@ -14,11 +14,11 @@ import numpy as np
 from muster.mission.errors import ParameterError
 from muster.perception.clusters import Labels, linked
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import PointOfInterest, points_of_interest
+from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 
 
 @dataclass(frozen=True, kw_only=True)
-class Proof:
+class FoundCriteria:
     """When a point of interest counts as found.
 
     Parameters
@@ -56,7 +56,7 @@ class Proof:
 
 
 @dataclass(frozen=True, eq=False)
-class Find:
+class FoundPoint:
     """A point of interest that was found: the how-manieth with its tag, from 0; when first; what is known of it now."""
 
     tag: int
@@ -65,14 +65,14 @@ class Find:
     point: PointOfInterest
 
 
-class Search:
+class PointSearch:
     """What a team has seen so far, and found."""
 
-    def __init__(self, proof: Proof | None = None) -> None:
-        self._proof = proof or Proof()
+    def __init__(self, proof: FoundCriteria | None = None) -> None:
+        self._proof = proof or FoundCriteria()
         self._seen: dict[int, list[RawEstimates]] = defaultdict(list)
         self._labels: dict[int, Labels] = {}
-        self._finds: dict[int, list[Find]] = defaultdict(list)
+        self._finds: dict[int, list[FoundPoint]] = defaultdict(list)
         self._told: dict[tuple[int, int], PointOfInterest] = {}
 
     @property
@@ -86,11 +86,11 @@ class Search:
         return frozenset(self._seen)
 
     @property
-    def finds(self) -> tuple[Find, ...]:
+    def finds(self) -> tuple[FoundPoint, ...]:
         """All that was found, in order of time, with what is known of it now."""
         return tuple(sorted((find for of in self._finds.values() for find in of), key=lambda find: find.at_s))
 
-    def take(self, estimates: RawEstimates, now: float) -> tuple[Find, ...]:
+    def take(self, estimates: RawEstimates, now: float) -> tuple[FoundPoint, ...]:
         """Take new estimates in; returns what is found by that, or lies elsewhere than was told."""
         news = []
         for tag in np.unique(estimates.tags).tolist():
@@ -100,7 +100,7 @@ class Search:
             self._told[find.tag, find.number] = find.point
         return tuple(news)
 
-    def _known(self, tag: int, now: float) -> list[Find]:
+    def _known(self, tag: int, now: float) -> list[FoundPoint]:
         """What is known now of the points with a tag; those that were found before stay found."""
         proof, finds = self._proof, self._finds[tag]
         raw = RawEstimates.joined(self._seen[tag])
@@ -112,12 +112,12 @@ class Search:
             known = _nearest(free, point, proof.apart_m)
             if known is not None:
                 free.remove(known)
-                finds[known.number] = Find(tag, known.number, known.at_s, point)
+                finds[known.number] = FoundPoint(tag, known.number, known.at_s, point)
             elif proof.holds(point):
-                finds.append(Find(tag, len(finds), now, point))
+                finds.append(FoundPoint(tag, len(finds), now, point))
         return finds
 
-    def _is_news(self, find: Find) -> bool:
+    def _is_news(self, find: FoundPoint) -> bool:
         told = self._told.get((find.tag, find.number))
         return told is None or float(np.linalg.norm(find.point.position - told.position)) > self._proof.moved_m
 
@@ -129,7 +129,7 @@ def _of_tag(estimates: RawEstimates, tag: int) -> RawEstimates:
     return RawEstimates(estimates.positions[of], covariances, estimates.tags[of], robots, estimates.times_s[of])
 
 
-def _nearest(finds: list[Find], point: PointOfInterest, apart_m: float) -> Find | None:
+def _nearest(finds: list[FoundPoint], point: PointOfInterest, apart_m: float) -> FoundPoint | None:
     """The find that this point is, if any."""
     away = [float(np.linalg.norm(find.point.position - point.position)) for find in finds]
     nearest = int(np.argmin(away)) if away else 0

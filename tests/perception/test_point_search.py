@@ -5,7 +5,7 @@ import pytest
 
 from muster.mission.errors import ParameterError
 from muster.perception.estimates import RawEstimates
-from muster.perception.search import Proof, Search
+from muster.perception.point_search import FoundCriteria, PointSearch
 
 
 def seen(tag, *places, deviation=0.05, robot="d", at_s=0.0):
@@ -20,7 +20,7 @@ def seen(tag, *places, deviation=0.05, robot="d", at_s=0.0):
 
 
 def test_a_point_counts_when_it_was_seen_often_enough():
-    search = Search(Proof(sightings=3))
+    search = PointSearch(FoundCriteria(sightings=3))
     assert search.take(seen(4, (1, 1)), 0.0) == ()
     assert search.take(seen(4, (1, 1), at_s=6.0), 6.0) == ()
     (find,) = search.take(seen(4, (1, 1), at_s=12.0), 12.0)
@@ -31,20 +31,20 @@ def test_a_point_counts_when_it_was_seen_often_enough():
 
 
 def test_a_point_counts_when_it_is_known_well_enough():
-    search = Search(Proof(sightings=1, deviation_m=0.15))
+    search = PointSearch(FoundCriteria(sightings=1, deviation_m=0.15))
     views = [seen(4, (1, 1), deviation=0.29, at_s=10.0 * k) for k in range(5)]
     found = [len(search.take(view, 10.0 * k)) for k, view in enumerate(views)]
     assert found == [0, 0, 0, 1, 0]  # 0.29 / 2 is below 0.15, 0.29 / sqrt(3) is not
 
 
 def test_what_follows_fast_by_one_robot_is_no_more_certain():
-    search = Search(Proof(sightings=3, deviation_m=0.15))
+    search = PointSearch(FoundCriteria(sightings=3, deviation_m=0.15))
     for k in range(50):
         assert search.take(seen(4, (1, 1), deviation=0.29, at_s=0.05 * k), 0.05 * k) == ()
 
 
 def test_it_is_told_again_when_it_lies_elsewhere():
-    search = Search(Proof(sightings=1, moved_m=0.25, apart_m=1.0))
+    search = PointSearch(FoundCriteria(sightings=1, moved_m=0.25, apart_m=1.0))
     assert len(search.take(seen(4, (1.0, 1.0), deviation=0.14), 0.0)) == 1
     assert search.take(seen(4, (1.1, 1.0), deviation=0.05, at_s=9.0), 9.0) == ()
     (again,) = search.take(seen(4, (1.6, 1.0), deviation=0.02, at_s=20.0), 20.0)
@@ -54,7 +54,7 @@ def test_it_is_told_again_when_it_lies_elsewhere():
 
 
 def test_a_tag_at_two_places_is_two_points():
-    search = Search(Proof(sightings=1))
+    search = PointSearch(FoundCriteria(sightings=1))
     first, second = search.take(seen(4, (0, 0), (9, 0)), 0.0)
     assert (first.number, second.number) == (0, 1)
     assert [find.point.position.tolist() for find in search.finds] == [[0, 0], [9, 0]]
@@ -62,14 +62,14 @@ def test_a_tag_at_two_places_is_two_points():
 
 
 def test_a_stray_sighting_beside_a_find_does_not_take_its_place():
-    search = Search(Proof(sightings=2, apart_m=1.0))
+    search = PointSearch(FoundCriteria(sightings=2, apart_m=1.0))
     (find,) = search.take(seen(4, (0, 0.5), (0, -0.5)), 0.0)
     assert search.take(seen(4, (0.95, 0), at_s=9.0), 9.0) == ()  # farther than 1 m from each, not from their mean
     assert [found.point.position.tolist() for found in search.finds] == [find.point.position.tolist()]
 
 
 def test_places_between_make_one_point_of_two_that_were_not_found():
-    search = Search(Proof(sightings=3, deviation_m=1.0, apart_m=1.0))
+    search = PointSearch(FoundCriteria(sightings=3, deviation_m=1.0, apart_m=1.0))
     assert search.take(seen(4, (0, 0), (1.6, 0)), 0.0) == ()
     (find,) = search.take(seen(4, (0.8, 0), at_s=9.0), 9.0)
     assert find.point.position == pytest.approx([0.8, 0.0])
@@ -77,7 +77,7 @@ def test_places_between_make_one_point_of_two_that_were_not_found():
 
 
 def test_all_estimates_are_kept():
-    search = Search()
+    search = PointSearch()
     search.take(RawEstimates.joined([seen(4, (1, 1)), seen(2, (5, 5), (6, 6), robot="e")]), 0.0)
     assert search.raw.tags.tolist() == [2, 2, 4]
     assert search.raw.robots == ("e", "e", "d")
@@ -86,4 +86,4 @@ def test_all_estimates_are_kept():
 @pytest.mark.parametrize("name", ["sightings", "deviation_m", "moved_m", "apart_m", "independent_after_s"])
 def test_a_proof_needs_numbers_above_0(name):
     with pytest.raises(ParameterError, match=name):
-        Proof(**{name: 0})
+        FoundCriteria(**{name: 0})

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from muster.mission.errors import ParameterError
 from muster.perception.clusters import LONE
 from muster.perception.estimates import NO_TAG, RawEstimates
-from muster.perception.interest import points_of_interest, remarks
+from muster.perception.points_of_interest import points_of_interest, remarks
 
 
 def ellipses(count, seed, size=2):
