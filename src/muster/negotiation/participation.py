@@ -29,7 +29,7 @@ from muster.negotiation.valuation import AuctionValuer, Valuer
 
 def rules_of(problem: Problem) -> Rules:
     """The rules of a mission that the agreement has to respect."""
-    linked = problem.holds("prerequisites")
+    linked = problem.holds("prerequisite")
     return Rules(
         robots=problem.robot_index,
         tasks=problem.task_index,

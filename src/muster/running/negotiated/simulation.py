@@ -23,7 +23,8 @@ from muster.running.camera_search import OnLook, lookout_for, with_found
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
-from muster.running.simulation import OnWorld, recorded_world
+from muster.running.simulation import OnWorld
+from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise
 
 

@@ -41,7 +41,7 @@ class TeamLog:
         on_event: Callable[[ExecutionEvent], None],
         late: Collection[str] = (),
     ) -> None:
-        self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisites"))
+        self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisite"))
         self.events: list[ExecutionEvent] = []
         self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
@@ -146,7 +146,10 @@ class TeamLog:
         planned, usages = None, dict[str, float]()
         if self._plans:
             planned = self._plans[0].objective_value
-            usages = {route.robot: route.usage for route in verify(self._problem.mission, self._plans[0]).routes}
+            usages = {
+                route.robot: route.usage
+                for route in verify(self._problem.mission, self._plans[0], self._problem.ignored).routes
+            }
         return Account(
             objective=self._problem.objective,
             objective_planned=planned,
