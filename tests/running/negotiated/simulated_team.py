@@ -1,35 +1,35 @@
-"""Robots that decide for themselves, all in one process and in virtual time: pilots, bodies, a simulated network."""
+"""Robots that decide for themselves, all in one process and in virtual time: controls, bodies, a simulated network."""
 
 from collections import Counter
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.participation import negotiator_of
-from muster.running.negotiated.robot_control import Pilot
+from muster.running.negotiated.robot_control import RobotControl
 from muster.simulation import KinematicWorld
 
 LOOK_S = 0.2
 
 
-class Company:
+class SimulatedTeam:
     """The robots of a mission. Robots named in `later` join when they are started.
 
     Attributes
     ----------
-    net, world, pilots
-        of all robots; `pilots` by robot, of those that live.
+    net, world, controls
+        of all robots; `controls` by robot, of those that live.
     told, last_words
         (time, robot, kind, data) of what robots did; and of it what they did just before they crashed.
     """
 
-    def __init__(self, mission, *, seed=0, links=None, later=(), **weather):
+    def __init__(self, mission, *, seed=0, links=None, later=(), **conditions):
         self.problem = Problem.compile(mission).ready()
         self.world = KinematicWorld(mission, seed=seed)
         self.robots = [robot.id for robot in self.problem.robots]
-        self.net = MemoryNetwork(self._negotiator, self.robots, seed, Weather(**weather), links)
+        self.net = MemoryNetwork(self._negotiator, self.robots, seed, LinkConditions(**conditions), links)
         self.last_words = []
-        self.pilots, self.told, self._memories, self._later = {}, [], {}, frozenset(later)
+        self.controls, self.told, self._memories, self._later = {}, [], {}, frozenset(later)
         self._used = dict.fromkeys(self.robots, 0.0)
         for robot in self.robots:
             if robot not in later:
@@ -52,13 +52,13 @@ class Company:
             self._memories.pop(robot, None)
         self.net.start([robot])
         now, port = self.world.time_s, self.world.ports[robot]
-        self.pilots[robot] = Pilot(self.problem, port, self.net.nodes[robot], now, self._used[robot])
+        self.controls[robot] = RobotControl(self.problem, port, self.net.nodes[robot], now, self._used[robot])
 
     def crash(self, robot):
         """Its body stops, and its process is gone."""
         self.world.fail(robot)
         self.last_words += [word for word in self.told if word[1] == robot and word[0] > self.world.time_s - 0.5]
-        self._used[robot] = self.pilots.pop(robot).used
+        self._used[robot] = self.controls.pop(robot).used
         self._memories[robot] = self.net.crash(robot).memory
 
     def restart(self, robot, **more):
@@ -74,8 +74,8 @@ class Company:
             while self.world.advance(now):
                 pass
             self.net.run(now)
-            for robot, pilot in self.pilots.items():
-                self.told += [(h.time_s, robot, h.kind, h.data) for h in pilot.tick(now)]
+            for robot, control in self.controls.items():
+                self.told += [(h.time_s, robot, h.kind, h.data) for h in control.tick(now)]
         return until()
 
     @property
@@ -83,7 +83,7 @@ class Company:
         """Whether all that live agree, and have nothing to do."""
         nodes = self.net.nodes.values()
         alone = all(set(node.epoch.own.members) == set(self.net.nodes) for node in nodes)
-        return alone and all(node.settled for node in nodes) and all(pilot.idle for pilot in self.pilots.values())
+        return alone and all(node.settled for node in nodes) and all(control.idle for control in self.controls.values())
 
     def times(self, kind):
         """How often something was done to each task."""

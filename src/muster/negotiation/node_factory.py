@@ -1,4 +1,4 @@
-"""What a robot's process needs to take part, put together: its negotiator, its codec and seal, its memory."""
+"""Puts a robot's node together: its negotiator, codec, seal, transport and memory file."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ def node_of(
     transport: Transport,
     **how: Any,
 ) -> Node:
-    """A robot's part, not begun.
+    """The node of a robot, not started.
 
     Parameters
     ----------
     kept
-        which robot, in which auction, with which incarnation, and what it remembers.
+        the robot, the auction, the incarnation, and what the robot remembers.
     file
-        where it keeps what it knows; None: nowhere.
+        where the robot stores its memory; None: nowhere.
     key
-        of the team.
+        the team's key.
     how
-        as `taking_part.negotiator_of` takes the rest.
+        further arguments of `participation.negotiator_of`.
     """
     negotiator = method.negotiator(
         problem, params, kept.robot, incarnation=kept.incarnation, remembered=kept.memory, **how

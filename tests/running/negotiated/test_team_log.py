@@ -6,7 +6,7 @@ from muster import Event, Mission, Robot, Task
 from muster.allocation.problem import Problem
 from muster.execution import report_of
 from muster.execution.record import NoObserver
-from muster.running.negotiated.team_log import Log
+from muster.running.negotiated.team_log import TeamLog
 
 MISSION = Mission(
     robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(9, 0))), tasks=(Task(id="t", position=(0, 0)),)
@@ -15,7 +15,7 @@ MISSION = Mission(
 
 @pytest.fixture
 def log():
-    return Log(Problem.compile(MISSION), NoObserver(), lambda event: None)
+    return TeamLog(Problem.compile(MISSION), NoObserver(), lambda event: None)
 
 
 def take(log, robot, came=None, began=None, ended=None):
@@ -43,7 +43,7 @@ def test_a_task_counts_for_the_robot_that_has_ended_it_first(log):
 def test_work_of_two_ends_though_the_one_that_began_first_has_failed(log):
     take(log, "a", came=1.0, began=2.0)
     take(log, "b", came=4.0, began=5.0)
-    log.befalls(Event(at_s=6, robot_fails="a"), 6.0)
+    log.take_event(Event(at_s=6, robot_fails="a"), 6.0)
     take(log, "b", ended=9.0)
     assert report(log).starts_s == {"t": 5.0}
     assert report(log).waiting_s == 1.0
@@ -51,7 +51,7 @@ def test_work_of_two_ends_though_the_one_that_began_first_has_failed(log):
 
 def test_a_task_that_ends_before_its_robot_hears_that_it_is_cancelled_is_done(log):
     take(log, "a", came=1.0, began=2.0)
-    log.befalls(Event(at_s=3, cancel_task="t"), 3.0)
+    log.take_event(Event(at_s=3, cancel_task="t"), 3.0)
     take(log, "a", ended=3.1)
     assert (report(log).tasks_done, report(log).tasks_lost) == (("t",), ())
     assert report(log).starts_s == {"t": 2.0}

@@ -6,8 +6,8 @@ from muster import Mission, Robot, Task
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.participation import negotiator_of
-from muster.running.negotiated.pipe_messages import Sense, Steer
-from muster.running.negotiated.robot_process import Being
+from muster.running.negotiated.pipe_messages import BodyState, SteerCommand
+from muster.running.negotiated.robot_process import RobotWorker
 from muster.simulation import KinematicWorld
 
 
@@ -20,16 +20,16 @@ def test_what_a_robot_begins_is_kept_before_its_body_begins():
     negotiator, kept, begun = negotiator_of(problem, Parameters(), "a", incarnation=1), [], []
 
     def send(word):
-        if isinstance(word, Steer):
+        if isinstance(word, SteerCommand):
             world.ports["a"].send(word.waypoints)
             begun.append([{claim.task for claim in memory.claims if claim.begun} for memory in kept[-1:]])
 
     node = SimpleNamespace(negotiator=negotiator, keep=lambda: kept.append(negotiator.memory))
-    being = Being(SimpleNamespace(robot="a", problem=problem, pipe=SimpleNamespace(send=send)), node)
+    worker = RobotWorker(SimpleNamespace(robot="a", problem=problem, pipe=SimpleNamespace(send=send)), node)
     negotiator.start(0.0)
     while world.time_s < 60 and "t" not in {fact.task for fact in negotiator.facts if fact.done}:
         world.advance(round(world.time_s + 0.1, 9))
-        being.hear([Sense(world.time_s, world.ports["a"].telemetry(), 0, 0.0)])
+        worker.receive([BodyState(world.time_s, world.ports["a"].telemetry(), 0, 0.0)])
         negotiator.tick(world.time_s)
-        being.go_on()
+        worker.step()
     assert begun == [[set()], [{"t"}]]
