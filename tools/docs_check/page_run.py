@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import traceback
+import types
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -45,7 +46,9 @@ def check_page(path: Path) -> list[Outcome]:
 class _PageRun:
     def __init__(self, path: Path, name: str, folder: Path) -> None:
         self._path, self._name, self._folder = path, name, folder
-        self._names: dict[str, Any] = {"__name__": "__docs__"}
+        module = types.ModuleType("__docs__")  # whose name dataclasses look up
+        sys.modules[module.__name__] = module
+        self._names: dict[str, Any] = module.__dict__
         self._printed = ""
         self._servers: list[subprocess.Popen[str]] = []
 

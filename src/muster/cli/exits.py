@@ -4,6 +4,8 @@ DONE = 0
 REJECTED = 1
 BAD_INPUT = 2
 INCOMPLETE = 3
+STILL_MOVING = 4
+"""A real robot still flies or drives, or did when it was last heard."""
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 BROKEN_PIPE = 141

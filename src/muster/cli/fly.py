@@ -8,18 +8,25 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
-from muster.cli.real_robots import Wishes, carried_out, planned, read_wanted, real_options, reported, require_outputs
+from muster.cli.real_robots import (
+    Wishes,
+    carried_out,
+    planned,
+    read_wanted,
+    real_options,
+    reported,
+    require_outputs,
+    show_final_states,
+)
 from muster.mission.errors import ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
     from muster.bridges.mavlink import MavlinkFleet
-
-_AT_END = ("hold", "return", "land")
+    from muster.bridges.mavlink.autopilots import AtEnd
 
 
 @click.command()
@@ -37,7 +44,13 @@ _AT_END = ("hold", "return", "land")
 @click.option("--height", type=Finite(0.5, 500), metavar="M", help="Of flight above home, for a mission in the plane.")
 @click.option("--low-battery", type=Finite(1, 99), default=25, show_default=True, metavar="%", help="Return below it.")
 @click.option("--wait", type=Finite(0.1, 600), default=10, show_default=True, metavar="S", help="For drones to answer.")
-@click.option("--at-end", type=click.Choice(_AT_END), default="hold", show_default=True, help="When all is done.")
+@click.option(
+    "--at-end",
+    type=click.Choice(["hold", "return", "land"]),
+    default="hold",
+    show_default=True,
+    help="When all is done; return and land wait until drones have landed.",
+)
 @real_options
 def command(
     mission: MissionFile,
@@ -47,13 +60,13 @@ def command(
     height: float | None,
     low_battery: float,
     wait: float,
-    at_end: str,
+    at_end: AtEnd,
     **asked: Any,
 ) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 
     Without --arm nothing flies: the drones are listened to, and it is shown what they would be told. Ctrl-C
-    lets them hover. Read docs/mavlink.md before the first flight.
+    lets them hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
     """
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
@@ -128,17 +141,22 @@ def _degrees(value: float | None) -> str:
     return "-" if value is None else f"{value:.7f}"
 
 
-def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: str, wishes: Wishes) -> int:
+def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, wishes: Wishes) -> int:
     with ctrl_c_halts(TO_END) as halt:
-        report = carried_out(mission, plan, fleet, wishes, halt, at_end=lambda: _end(fleet, at_end, halt))
+        try:
+            report = carried_out(mission, plan, fleet, wishes, halt, at_end=lambda: _end(fleet, at_end, halt))
+        except BaseException:
+            show_final_states(fleet.final_states())
+            raise
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
-    return reported(mission, report, wishes, halt, "drones were told to hover")
+    return reported(mission, report, wishes, halt, "drones were told to hover", fleet.final_states())
 
 
-def _end(fleet: MavlinkFleet, at_end: str, halt: threading.Event) -> None:
+def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:
     """What drones do when all is done, other than to hover."""
     if at_end != "hold" and not halt.is_set():
-        {"return": fleet.go_back, "land": fleet.land}[at_end]()
+        fleet.end(at_end)
+        fleet.await_landing(halt.is_set)
         if halt.is_set():  # Ctrl-C meanwhile
             fleet.stop()

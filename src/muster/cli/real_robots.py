@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, STILL_MOVING
 from muster.cli.live_output import foxglove_option, require_free_port, shown_live, tell
 from muster.cli.options import (
     Finite,
     Verb,
     format_option,
+    ignore_option,
     load_plan,
     quiet_option,
     require_admissible,
@@ -30,6 +31,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
+    from muster.bridges.final_state import FinalState
     from muster.bridges.fleet import Fleet
     from muster.execution import Recorder, Report
 
@@ -41,6 +43,7 @@ class Wishes:
     """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
 
     plan: Path | None
+    ignore: tuple[str, ...]
     seed: int
     time_limit: float
     record: Path | None
@@ -58,6 +61,7 @@ def real_options(verb: Verb) -> Verb:
     """The options of which `Wishes` is made."""
     options = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
+        ignore_option,
         click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
         click.option(
             "--time-limit",
@@ -130,8 +134,8 @@ def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
     """
     if wishes.plan is None:
         return None
-    plan = load_plan(wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
-    require_admissible(mission, plan, wishes.plan)
+    plan = load_plan(wishes.plan, mission, wishes.ignore, quiet=wishes.quiet, verbose=wishes.verbose)
+    require_admissible(mission, plan, wishes.plan, wishes.ignore)
     return plan
 
 
@@ -139,7 +143,7 @@ def planned(wishes: Wishes, mission: Mission) -> Plan:
     """A plan made now."""
     from muster import solve
 
-    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
+    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit, ignore=wishes.ignore)
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
@@ -179,6 +183,7 @@ def carried_out(
                 plan,
                 fleet,
                 seed=wishes.seed,
+                ignore=wishes.ignore,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if wishes.quiet else tell,
@@ -192,8 +197,15 @@ def carried_out(
     return report
 
 
-def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.Event, left: str) -> int:
-    """Print what came of it; returns the exit code.
+def reported(
+    mission: Mission,
+    report: Report,
+    wishes: Wishes,
+    halt: threading.Event,
+    left: str,
+    final_states: Sequence[FinalState],
+) -> int:
+    """Print what came of it, and where each robot is; returns the exit code.
 
     Parameters
     ----------
@@ -207,5 +219,15 @@ def reported(mission: Mission, report: Report, wishes: Wishes, halt: threading.E
         print_report(figures, mission, with_tasks=wishes.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
+    show_final_states(final_states)
+    if halt.is_set():
         return INTERRUPTED
+    if any(state.moving for state in final_states):
+        return STILL_MOVING
     return INCOMPLETE if wishes.require_complete and report.tasks_lost else DONE
+
+
+def show_final_states(states: Sequence[FinalState]) -> None:
+    """A line for each robot; it concerns safety, so `--quiet` does not silence it."""
+    for state in states:
+        click.echo(str(state), err=True)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
 from muster.cli.real_robots import (
     Wishes,
@@ -23,11 +22,12 @@ from muster.cli.real_robots import (
     ros_options,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
+    from muster.bridges.final_state import FinalState
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node_processes import Children
@@ -72,7 +72,7 @@ def command(
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
     Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION it waits for command_interface/load and start. Ctrl-C
-    stops all robots.
+    stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
     from muster.bridges.ros1.extra import require_rospy
 
@@ -170,9 +170,10 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
     """
     mission, code, reason = controller.await_start(), DONE, ""
     try:
-        report = None if mission is None else _through(mission, controller, work, children)
-        if mission is not None and report is not None and not children.fault:
-            code = reported(mission, report, work.wishes, controller.halt, _LEFT)
+        outcome = None if mission is None else _through(mission, controller, work, children)
+        if mission is not None and outcome is not None and not children.fault:
+            report, states = outcome
+            code = reported(mission, report, work.wishes, controller.halt, _LEFT, states)
         elif not children.fault and controller.halt.is_set():
             click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
             code = INTERRUPTED
@@ -185,8 +186,11 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
     return code
 
 
-def _through(mission: Mission, controller: Controller, work: _Work, children: Children) -> Report | None:
+def _through(
+    mission: Mission, controller: Controller, work: _Work, children: Children
+) -> tuple[Report, list[FinalState]] | None:
     """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
+    from muster.bridges.final_state import final_states_by_telemetry
     from muster.running.live import wait_for_robots
 
     fleet, wishes = work.fleet_of(mission), work.wishes
@@ -199,7 +203,8 @@ def _through(mission: Mission, controller: Controller, work: _Work, children: Ch
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        return carried_out(there, plan, fleet, wishes, controller.halt, [controller.board])
+        report = carried_out(there, plan, fleet, wishes, controller.halt, [controller.board])
+        return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()
         if children.fault:

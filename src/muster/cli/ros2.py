@@ -7,7 +7,6 @@ from typing import Any, Literal
 import click
 
 from muster.cli.exits import INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
     Wishes,
@@ -20,7 +19,7 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 
 _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 
@@ -56,8 +55,10 @@ def command(
 ) -> int:
     """Carry out a MISSION with robots on ROS 2, in real time; robots that it does not name may join.
 
-    Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are.
+    Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are. The exit code is 4 if a robot
+    still flies or drives at the end.
     """
+    from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
     from muster.bridges.ros2.middleware import open_wire
     from muster.bridges.ros2.port import Arrival
@@ -84,6 +85,7 @@ def command(
                 click.echo("interrupted; nothing was sent", err=True)
                 return INTERRUPTED
             report = carried_out(there, plan, fleet, wishes, halt)
+            states = final_states_by_telemetry(fleet, there, fleet.not_told)
         finally:
             fleet.close()
-    return reported(there, report, wishes, halt, "the robots were told to stay where they are")
+    return reported(there, report, wishes, halt, "the robots were told to stay where they are", states)

@@ -137,7 +137,7 @@ def test_a_fault_is_told_only_what_the_table_says():
         fleet.advance(fleet.time_s + 1.0)
         before = len(sky.drones["r_0"].heard)
         fleet.stop()
-        fleet.go_back()
+        fleet.end("return")
         fleet.close()
         sky.close()
         assert {message.get_type() for message in sky.drones["r_0"].heard[before:]} == {"HEARTBEAT"}

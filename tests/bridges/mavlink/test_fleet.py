@@ -50,8 +50,8 @@ def test_nothing_is_sent_without_leave_to_arm(kind):
             port.send([Waypoint((5.0, 5.0, 5.0))])
         port.cancel()
     fleet.stop()
-    fleet.go_back()
-    fleet.land()
+    fleet.end("return")
+    fleet.end("land")
     fleet.close()
     sky.close()
     for robot, data in sky.bytes_in.items():

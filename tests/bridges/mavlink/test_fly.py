@@ -16,6 +16,7 @@ from muster.bridges.mavlink.simulated_autopilot import faults_of, serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.bridges.mavlink.simulated_faults import Faults
+from muster.cli.exits import DONE, STILL_MOVING
 from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster.mission.model import Origin
@@ -92,8 +93,10 @@ def test_without_arm_it_shows_and_sends_nothing(mission, port, drone, capsys):
 
 
 def test_with_arm_it_flies(mission, port, drone, capsys):
-    assert fly(mission, port, "--arm", "--require-complete") == 0
-    assert "mission" in capsys.readouterr().err
+    assert fly(mission, port, "--arm", "--require-complete") == STILL_MOVING  # it hovers
+    said = capsys.readouterr().err
+    assert "mission" in said
+    assert re.search(r"^r_0: hovers, armed; at \(1?\d\.\d\d, -?\d\.\d\d, \d\.\d\d\)$", said, re.MULTILINE)
     assert drone.armed
     assert drone.flight.place == pytest.approx((0.0, 10.0, -5.0), abs=0.05)
 
@@ -139,6 +142,7 @@ def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     assert process.returncode == 130
     assert re.search(r"interrupted at \d+\.\d s of the mission; drones were told to hover", err)
     assert "Traceback" not in err
+    assert [line.split(";")[0] for line in err.splitlines()[-2:]] == [f"r_{k}: hovers, armed" for k in range(2)]
     assert "0 of 2" in out
     time.sleep(0.5)
     assert [drone.flight.place for drone in drones] == places
@@ -164,10 +168,12 @@ def asked_to_arm(drone):
     ("end", "mode", "more"),
     [("hold", PX4.hold, ()), ("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
 )
-def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more):
+def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more, capsys):
     drone = sky(speed=1.0 if more else 8.0)
-    assert fly(mission, port, "--arm", "--quiet", "--at-end", end, *more) == 0
-    until(lambda: drone.mode == mode and (end == "hold" or not drone.armed))
+    assert fly(mission, port, "--arm", "--quiet", "--at-end", end, *more) == (STILL_MOVING if end == "hold" else DONE)
+    assert drone.mode == mode  # the command has waited for that
+    state = {"hold": "hovers, armed", "return": "returned, landed, not armed", "land": "landed, not armed"}[end]
+    assert capsys.readouterr().err.startswith(f"r_0: {state}; at (")
     _, east, down = drone.flight.place
     assert east == pytest.approx(0.0 if end == "return" else 10.0, abs=1.0)
     assert down == pytest.approx(-5.0 if end == "hold" else 0.0, abs=1.0)
@@ -178,7 +184,7 @@ def test_a_height_for_a_mission_in_the_plane(mission, port, drone, capsys):
     mission.write_text(MISSION.replace("[0, 0, 0]", "[0, 0]").replace("[10, 0, 5]", "[10, 0]"))
     assert fly(mission, port, "--arm") == 2
     assert capsys.readouterr().err.strip() == "no height; expected a height for a mission in the plane (--height)"
-    assert fly(mission, port, "--arm", "--height", "7") == 0
+    assert fly(mission, port, "--arm", "--height", "7") == STILL_MOVING
     assert drone.flight.place == pytest.approx((0.0, 10.0, -7.0), abs=0.05)
     mission.write_text(MISSION)
     assert fly(mission, port, "--arm", "--height", "7") == 2
@@ -193,7 +199,7 @@ def test_what_would_be_sent_as_json(mission, port, drone, capsys):
 
 
 def test_the_report_as_json(mission, port, drone, capsys):
-    assert fly(mission, port, "--arm", "--format", "json") == 0
+    assert fly(mission, port, "--arm", "--format", "json", "--at-end", "land") == DONE
     report = json.loads(capsys.readouterr().out)
     assert report["tasks_done"] == ["near"]
     assert report["tasks_lost"] == []

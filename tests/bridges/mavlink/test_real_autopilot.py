@@ -40,6 +40,6 @@ def test_without_leave_its_mode_and_its_arming_stay_as_they_are(fleet):
     seen = fleet.sessions["r_0"].craft.seen
     before = seen.mode, seen.armed
     fleet.stop()
-    fleet.go_back()
-    fleet.land()
+    fleet.end("return")
+    fleet.end("land")
     assert (seen.mode, seen.armed) == before

@@ -92,13 +92,13 @@ def test_items_reached_count_once_and_lost_ones_are_made_up_for():
 def test_hold_return_and_land_are_modes():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    for act, sub in ((talk.session.hold, 3), (talk.session.go_back, 5)):
-        act(talk.now)
+    for at_end, sub in (("hold", 3), ("return", 5)):
+        talk.session.end(at_end, talk.now)
         (said,) = talk.taken()
         assert (said.command, said.param1, said.param2, said.param3) == (176, 1.0, 4.0, float(sub))
     talk = Talk(ARDUPILOT)
     talk.flying((10.0, 0.0, 8.0))
-    talk.session.land(talk.now)
+    talk.session.end("land", talk.now)
     assert (talk.taken()[0].param2) == 9.0
 
 

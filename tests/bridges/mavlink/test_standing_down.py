@@ -77,8 +77,8 @@ def test_who_refuses_to_be_disarmed_flies_and_hovers():
 def test_in_the_air_nothing_is_disarmed():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    for end in (talk.session.hold, talk.session.go_back, talk.session.land):
-        end(talk.now)
+    for at_end in ("hold", "return", "land"):
+        talk.session.end(at_end, talk.now)
         assert {command for command, _ in commands(talk.after(0.1))} <= {HOLD}
 
 

@@ -7,9 +7,13 @@ holds in BRAKE, not in LOITER, which obeys the sticks of a remote control that m
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.mission.errors import ParameterError
+
+AtEnd = Literal["hold", "return", "land"]
+"""What a drone does at the end: it hovers, returns to where it was armed and lands there, or lands where it is."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,10 @@ class Autopilot:
     land: int
     home_first: bool
     streams: bool
+
+    def final_mode(self, at_end: AtEnd) -> int:
+        """The mode in which a drone ends its flight."""
+        return {"hold": self.hold, "return": self.back, "land": self.land}[at_end]
 
     @property
     def own_modes(self) -> tuple[int, ...]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from muster.bridges.final_state import FinalState
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message
 from muster.bridges.mavlink.follower import Follower
@@ -13,6 +15,9 @@ from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.telemetry import Seen
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
+
+_HOME_M = 3.0
+"""A drone that lands this near to its start has returned."""
 
 
 @dataclass
@@ -86,3 +91,25 @@ class Craft:
             return replace(waypoint, position=(x, y, max(z if flat is None else flat, lowest)))
 
         return [at_height(waypoint) for waypoint in waypoints]
+
+
+def final_state_of(drone: Craft, now: float) -> FinalState:
+    """Where a drone is at the end and what it does; one that is armed counts as flying."""
+    seen, does = drone.seen, _activity(drone)
+    silent_s = now - seen.heartbeat_s
+    state = does if silent_s <= drone.settings.link_lost_s else f"not answering for {silent_s:.0f} s; last seen: {does}"
+    return FinalState(drone.robot.id, state, seen.place, moving=seen.armed)
+
+
+def _activity(drone: Craft) -> str:
+    seen, kind = drone.seen, drone.kind
+    if not seen.armed:
+        if not seen.was_up:
+            return "did not fly, not armed"
+        home = seen.place is not None and math.dist(seen.place, seen.start) <= _HOME_M
+        return "returned, landed, not armed" if home else "landed, not armed"
+    if not seen.up:
+        return "on the ground, armed"
+    names = {kind.hold: "hovers", kind.back: "returns", kind.land: "lands"}
+    default = "flies" if seen.mode in kind.own_modes else "flies under a pilot or a failsafe"
+    return f"{names.get(seen.mode, default)}, armed"

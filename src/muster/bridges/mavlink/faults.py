@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+_TEXTS_WITHIN_S = 0.5
+
 
 class Reaction(Enum):
     """What Muster tells a drone that fails."""
@@ -33,6 +35,11 @@ class Kind(Enum):
         self.words = words
         self.reaction = reaction
 
+    @property
+    def is_refusal(self) -> bool:
+        """Whether the autopilot did not do what it was told; its status texts may say why."""
+        return self in (Kind.ITEM_REJECTED, Kind.ARM_REFUSED, Kind.COMMAND_REFUSED, Kind.NO_ANSWER)
+
 
 @dataclass(frozen=True)
 class Fault:
@@ -46,15 +53,28 @@ class Fault:
         who, and what.
     detail
         what was said or seen, in words.
+    texts
+        status texts of the autopilot that belong to a refusal.
     """
 
     at_s: float
     robot: str
     kind: Kind
     detail: str
+    texts: tuple[str, ...] = ()
+
+    def awaits_texts(self, now: float) -> bool:
+        """Whether a status text that is heard now may say why something was refused."""
+        return self.kind.is_refusal and now <= self.at_s + _TEXTS_WITHIN_S
+
+    @property
+    def reason(self) -> str:
+        """What has happened, in the autopilot's words too."""
+        texts = f" ({'; '.join(self.texts)})" if self.texts else ""
+        return f"{self.kind.words}: {self.detail}{texts}"
 
     def __str__(self) -> str:
-        return f"{self.robot}: {self.kind.words}: {self.detail}"
+        return f"{self.robot}: {self.reason}"
 
 
 class FaultError(Exception):

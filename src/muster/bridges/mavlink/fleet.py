@@ -6,12 +6,15 @@ executor plans: PX4 leaves its offboard mode below 2 Hz. What it shares with the
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
+from muster.bridges.final_state import FinalState
 from muster.bridges.fleet import Failure
-from muster.bridges.mavlink.drone import Craft
+from muster.bridges.mavlink.autopilots import AtEnd
+from muster.bridges.mavlink.drone import Craft, final_state_of
 from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
@@ -27,7 +30,9 @@ from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
-"""For how long it is spoken at the least, and at the most, to drones that are told how to end."""
+"""For how long it is spoken at the least, and at the most, to drones that are told how to end, or are not heard."""
+_STANDSTILL_S, _MOVED_M = 20.0, 3.0
+"""A drone that returns or lands and moves less in this time is waited for no longer."""
 
 
 class MavlinkFleet:
@@ -95,7 +100,7 @@ class MavlinkFleet:
     @property
     def faults(self) -> list[Fault]:
         """What went wrong so far, in order of time."""
-        found = [session.fault for session in self.sessions.values() if session.fault is not None]
+        found = [fault for session in self.sessions.values() for fault in session.faults]
         return sorted(found, key=lambda fault: fault.at_s)
 
     def connect(self, within_s: float = 10.0) -> None:
@@ -127,7 +132,7 @@ class MavlinkFleet:
             self._go_on()
             if self._failure is not None:
                 raise self._failure
-            events = [self._event(fault) for fault in self.faults if fault.robot not in self._told]
+            events = [self._event(fault) for fault in self._new_faults()]
             if events or self.time_s >= until_s:
                 return events
 
@@ -139,15 +144,30 @@ class MavlinkFleet:
             for session in self.sessions.values():
                 session.admit()
 
-    def go_back(self) -> None:
-        """Let every drone that flies return to where it was armed, and land there."""
-        self._tell_all(Session.go_back)
+    def end(self, at_end: AtEnd) -> None:
+        """Let every drone that flies, and answers, end its flight: also those that take no part any more."""
+
+        def tell(session: Session, now: float) -> None:
+            session.end(at_end, now)
+
+        self._tell_all(tell)
         self._speak_last_words()
 
-    def land(self) -> None:
-        """Let every drone that flies land where it is."""
-        self._tell_all(Session.land)
-        self._speak_last_words()
+    def await_landing(self, halted: Callable[[], bool]) -> None:
+        """Wait until drones that return or land are disarmed, until they move no more, or until `halted`."""
+        places: dict[str, Place | None] = {}
+        moved_s = self.time_s
+        while not halted() and self.time_s < moved_s + _STANDSTILL_S and (ending := self._ending_flights()):
+            for craft in ending:
+                place, before = craft.seen.place, places.get(craft.robot.id)
+                if before is None or (place is not None and math.dist(place, before) > _MOVED_M):
+                    places[craft.robot.id], moved_s = place, self.time_s
+            self._go_on()
+
+    def final_states(self) -> list[FinalState]:
+        """Where each drone is now, and what it does."""
+        with self._lock:
+            return [final_state_of(session.craft, self.time_s) for session in self.sessions.values()]
 
     def close(self) -> None:
         self._closed.set()
@@ -156,10 +176,26 @@ class MavlinkFleet:
         for link in self._links:
             link.close()
 
+    def _new_faults(self) -> list[Fault]:
+        """The first fault of each drone that was not reported yet, as soon as all is heard that belongs to it."""
+        first = [session.fault for session in self.sessions.values() if session.fault is not None]
+        ready = [fault for fault in first if fault.robot not in self._told and not fault.awaits_texts(self.time_s)]
+        return sorted(ready, key=lambda fault: fault.at_s)
+
     def _event(self, fault: Fault) -> Event:
         self._told.add(fault.robot)
-        reason = f"{fault.kind.words}: {fault.detail}"
-        return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=reason)
+        return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=fault.reason)
+
+    def _ending_flights(self) -> list[Craft]:
+        """The drones that return or land, and were heard lately."""
+        crafts = [session.craft for session in self.sessions.values() if session.craft.autopilot is not None]
+        return [
+            craft
+            for craft in crafts
+            if craft.seen.armed
+            and craft.seen.mode in (craft.kind.back, craft.kind.land)
+            and self.time_s < craft.seen.heartbeat_s + _STANDSTILL_S
+        ]
 
     def _tell_all(self, what: Callable[[Session, float], object]) -> None:
         with self._lock:
@@ -177,7 +213,9 @@ class MavlinkFleet:
 
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
-        while self.time_s < least or (self.time_s < most and any(session.busy for session in self.sessions.values())):
+        while self.time_s < least or (
+            self.time_s < most and any(session.busy or session.adrift for session in self.sessions.values())
+        ):
             self._go_on()
 
     def _speak_on(self) -> None:

@@ -67,7 +67,13 @@ def obeyed(
         if said.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
             break
         yield pause(1.0)
-    raise FaultError(kind, f"{name}: {name_of('MAV_RESULT', said.result)}")
+    raise FaultError(kind, f"{name}: {_result(said)}")
+
+
+def _result(acknowledgement: Message) -> str:
+    """What an acknowledgement says, with the number that details it if there is one."""
+    name, detail = name_of("MAV_RESULT", acknowledgement.result), acknowledgement.result_param2
+    return f"{name}, {detail}" if detail else name
 
 
 def mode(target: Message, autopilot: Autopilot, wanted: int, *, sightings: int = 1) -> Script:
@@ -167,4 +173,4 @@ def climb(target: Message, above_home_m: float) -> Script:
     climbing = command(target, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, above_home_m)
     said = yield Ask([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
     if said.get_type() == "COMMAND_ACK":
-        raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {name_of('MAV_RESULT', said.result)}")
+        raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {_result(said)}")

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from muster.bridges.mavlink import commands, procedures
-from muster.bridges.mavlink.autopilots import autopilot_of
+from muster.bridges.mavlink.autopilots import AtEnd, autopilot_of
 from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.drone import Craft
 from muster.bridges.mavlink.fault_detection import Watch
@@ -43,13 +43,19 @@ class Session:
 
     def __init__(self, craft: Craft, fence: Fence) -> None:
         self.craft, self.fence = craft, fence
-        self.fault: Fault | None = None
+        self.faults: list[Fault] = []  # after the first, refusals of what it was told because of that, or at the end
+        self._at_end: AtEnd = "hold"  # what a drone that is out is told when it answers
         self.adrift = False  # whether its link was lost, and it was not told to hold since
         self._order = 0
         self._outbox: list[Message] = []
         self._talk: Conversation | None = None
         self._watch = Watch(craft)
         self._said_s = self._asked_s = self._streamed_s = float("-inf")
+
+    @property
+    def fault(self) -> Fault | None:
+        """Why it takes no part any more; None while it does."""
+        return self.faults[0] if self.faults else None
 
     @property
     def busy(self) -> bool:
@@ -96,24 +102,29 @@ class Session:
     def hold(self, now: float) -> int:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
         self._take_order()
-        self._end_in(lambda: self.craft.kind.hold, now)
-        if self.fault is not None and self._talk is None and self._hears(now):
-            self._try(lambda: self._call_back(now), now)
+        self.end("hold", now)
         return self._order
+
+    def end(self, at_end: AtEnd, now: float) -> None:
+        """Let it hover, return to where it was armed, or land, if it flies, and is ours.
+
+        A drone that is out is told so as soon as it answers.
+        """
+        self._at_end = at_end
+        if self.craft.autopilot is None:
+            return
+        if self.fault is None:
+            self._talk = None
+            self._try(lambda: self._end_flight(self._final_mode, now), now)
+        elif self._hears(now) and self._may_interrupt(self.fault):
+            self._talk = None
+            self._try(lambda: self._call_back(now), now)
 
     def admit(self) -> None:
         """Let its fault say so if it was not told to hover: it may fly on."""
         if self.fault is not None and self.adrift and self._is_left_to_us:
-            self.fault = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
+            self.faults[0] = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
             self.adrift = False
-
-    def go_back(self, now: float) -> None:
-        """Let it return to where it was armed, and land there, as its autopilot does it."""
-        self._end_in(lambda: self.craft.kind.back, now)
-
-    def land(self, now: float) -> None:
-        """Let it land where it is."""
-        self._end_in(lambda: self.craft.kind.land, now)
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message.
@@ -128,6 +139,8 @@ class Session:
         if self.craft.autopilot is None:
             return
         self.craft.seen.hear(message, now)
+        if message.get_type() == "STATUSTEXT":
+            self._explain_refusal(now)
         self._try(lambda: self._answer(message, now), now)
 
     def tick(self, now: float) -> None:
@@ -145,16 +158,24 @@ class Session:
 
     def fail(self, kind: Kind, detail: str, now: float) -> None:
         """Take no part any more, for good, and react as the kind of fault says."""
+        texts = self.craft.seen.texts if kind.is_refusal else ()
+        fault = Fault(now, self.craft.robot.id, kind, detail, texts)
         if self.fault is not None:
             self.adrift = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
+            self.faults += [fault] if kind is Kind.COMMAND_REFUSED else []
             return
-        self.fault = Fault(now, self.craft.robot.id, kind, detail)
+        self.faults.append(fault)
         self.adrift = kind is Kind.LINK_LOST
         self.craft.forget_order()
         self._talk = self.craft.mode = None
         reactions = {Reaction.HOLD: self.craft.kind.hold, Reaction.RETURN: self.craft.kind.back}
         if kind.reaction in reactions:
             self._end_flight(reactions[kind.reaction], now)
+
+    def _explain_refusal(self, now: float) -> None:
+        """The status text that says why something was refused may come after the refusal."""
+        if self.faults and self.faults[-1].awaits_texts(now):
+            self.faults[-1] = replace(self.faults[-1], texts=self.craft.seen.texts)
 
     def _take_order(self) -> None:
         self._order += 1
@@ -174,11 +195,13 @@ class Session:
         way = commands.guided if self.craft.settings.offboard else commands.mission
         self._begin(way(self.craft, waypoints), now)
 
-    def _end_in(self, mode: Callable[[], int], now: float) -> None:
-        """As `_end_flight`, if it was heard and has not failed."""
-        if self.craft.autopilot is not None and self.fault is None:
-            self._talk = None
-            self._try(lambda: self._end_flight(mode(), now), now)
+    @property
+    def _final_mode(self) -> int:
+        return self.craft.kind.final_mode(self._at_end)
+
+    def _may_interrupt(self, fault: Fault) -> bool:
+        """Whether the reaction to a fault may be broken off: to hover in favour of an end, to return never."""
+        return self._talk is None or (self._at_end != "hold" and fault.kind.reaction is not Reaction.RETURN)
 
     def _end_flight(self, mode: int, now: float) -> None:
         """Into a mode if it flies under Muster; on the ground it stands down instead."""
@@ -197,13 +220,15 @@ class Session:
         return now - self.craft.seen.heartbeat_s <= self.craft.settings.link_lost_s
 
     def _call_back(self, now: float) -> None:
-        """Let one that has failed hold, or stand down: it may still fly what others fly now."""
+        """Let one that has failed end its flight, or stand down: it may still fly what others fly now."""
         self.adrift = False
         if self.fault is not None and self.fault.kind not in _LET_GO and self._is_left_to_us:
-            self._end_flight(self.craft.kind.hold, now)
+            self._end_flight(self._final_mode, now)
 
     def _begin(self, script: Script, now: float) -> None:
         self._watch.astray = 0
+        if not (self.faults and self.faults[-1].awaits_texts(now)):
+            self.craft.seen.texts = ()
         self._talk = Conversation(script, self._say, now)
 
     def _answer(self, message: Message, now: float) -> None:
@@ -255,10 +280,8 @@ class Session:
         try:
             what()
         except FaultError as error:
-            text = self.craft.seen.text
-            said = f" ({text})" if error.kind is Kind.ARM_REFUSED and text else ""
             self._talk = None
-            self.fail(error.kind, error.detail + said, now)
+            self.fail(error.kind, error.detail, now)
 
     def _ask_for_telemetry(self, now: float) -> None:
         self._asked_s = now

@@ -56,6 +56,7 @@ class SimulatedAutopilot:
     def __post_init__(self) -> None:
         self._codec, self._random = Codec(self.system, 1), random.Random(self.seed)
         self._out: list[Message] = []
+        self._late: list[Message] = []  # heartbeats that are held back
         self._arriving: list[Message | None] = []  # a mission that is uploaded
         self._setpoint: Place | None = None
         self._yaw: float | None = None  # that it was told, from north, clockwise; None: it looks where it flies
@@ -82,9 +83,19 @@ class SimulatedAutopilot:
             self._fly(by_s)
         self._let_faults_happen()
         self._report(now)
+        self._hold_heartbeats_back()
         out, self._out = self._out, []
         silent = self._due(self.faults.silent_at_s)
         return [self._codec.pack(m) for m in out if not silent and self._random.random() >= self.faults.loss]
+
+    def _hold_heartbeats_back(self) -> None:
+        """While heartbeats are to be late, keep them; then say all of them."""
+        begins_s = self.faults.late_heartbeats_s
+        if begins_s is not None and self._due(begins_s) and not self._due(begins_s + self.faults.late_by_s):
+            self._late += [message for message in self._out if message.get_type() == "HEARTBEAT"]
+            self._out = [message for message in self._out if message.get_type() != "HEARTBEAT"]
+        else:
+            self._out, self._late = [*self._late, *self._out], []
 
     def _is_for_me(self, message: Message) -> bool:
         return getattr(message, "target_system", self.system) in (0, self.system)
@@ -221,6 +232,7 @@ class SimulatedAutopilot:
 
     def _start(self, message: Message) -> int:
         if not self.armed or not self.items or self.faults.refuse_start:
+            self._say("statustext", mavlink.MAV_SEVERITY_CRITICAL, b"Mission start denied: no valid mission")
             return int(mavlink.MAV_RESULT_DENIED)
         self.mode = self.kind.mission
         return int(mavlink.MAV_RESULT_ACCEPTED)

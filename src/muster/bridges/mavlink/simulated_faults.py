@@ -22,6 +22,9 @@ class Faults:
     low_battery_at_s, silent_at_s, breach_at_s, breach_text_at_s, pilot_at_s, disarm_at_s
         when, in seconds after it was armed, its battery falls to 10 %, it is heard no more, it leaves its fence (and
         says so by FENCE_STATUS, or by STATUSTEXT alone), a pilot takes it over, its motors stop.
+    late_heartbeats_s, late_by_s
+        when, in seconds after it was armed, heartbeats begin to be late: those of the next `late_by_s` seconds come at
+        their end.
     """
 
     loss: float = 0.0
@@ -37,3 +40,5 @@ class Faults:
     breach_text_at_s: float | None = None
     pilot_at_s: float | None = None
     disarm_at_s: float | None = None
+    late_heartbeats_s: float | None = None
+    late_by_s: float = 7.0

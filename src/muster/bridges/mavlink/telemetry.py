@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from muster.bridges.final_state import UP_M
 from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
 from muster.motion.port import Place
 
 _STILL_MPS = 0.2  # slower is noise, and no way
-_UP_M = 0.5  # above home: higher is in the air
+_TEXTS = 3  # so many status texts are kept
 
 
 @dataclass
@@ -38,9 +39,14 @@ class Seen:
     was_up: bool = False  # whether it was seen in the air, armed
     battery: float | None = None  # share that remains
     breach: str = ""  # of the fence of the autopilot, in words
-    text: str = ""  # its last words
+    texts: tuple[str, ...] = ()  # its last status texts, the latest at the end
     local: LocalFrame | None = None
     _ned: Place | None = None
+
+    @property
+    def text(self) -> str:
+        """The last status text; empty if there is none."""
+        return self.texts[-1] if self.texts else ""
 
     @property
     def mode(self) -> int:
@@ -54,7 +60,7 @@ class Seen:
     @property
     def up(self) -> bool:
         """Whether it is in the air, armed."""
-        return self.armed and self.place is not None and self.place[2] > self.start[2] + _UP_M
+        return self.armed and self.place is not None and self.place[2] > self.start[2] + UP_M
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message."""
@@ -99,7 +105,11 @@ class Seen:
             self.breach = name_of("FENCE_BREACH", message.breach_type)
 
     def _hear_statustext(self, message: Message, now: float) -> None:
-        self.text = "".join(letter for letter in message.text if letter.isprintable())
+        text = "".join(letter for letter in message.text if letter.isprintable())
+        if message.chunk_seq and self.texts:  # a long text comes in pieces
+            self.texts = (*self.texts[:-1], self.text + text)
+        else:
+            self.texts = (*(known for known in self.texts if known != text), text)[-_TEXTS:]
         words = self.text.lower()
         if "fence" in words and "breach" in words:
             self.breach = "" if "clear" in words else self.text

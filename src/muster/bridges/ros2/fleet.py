@@ -142,6 +142,11 @@ class Ros2Fleet:
         if lines:
             raise NetworkError("; ".join(lines)) from next(iter(failed.values()))
 
+    @property
+    def not_told(self) -> list[str]:
+        """Robots that are to stay where they are and could not be told so."""
+        return [name for name, port in self._ports.items() if port.is_to_stay]
+
     def close(self) -> None:
         """See `Fleet`."""
         self._wire.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from muster.bridges.fleet import Fleet
@@ -87,8 +88,8 @@ def _mavlink(
     except BaseException:
         fleet.close()
         raise
-    ends: dict[str, Callable[[], None]] = {"hold": _nothing, "return": fleet.go_back, "land": fleet.land}
-    return fleet, ends[settings.get("at_end", "hold")]
+    at_end = settings.get("at_end", "hold")
+    return fleet, _nothing if at_end == "hold" else partial(fleet.end, at_end)
 
 
 def _heard(fleet: Any, settings: Mapping[str, Any], halt: threading.Event) -> Fleet:
