@@ -4,8 +4,11 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+DESIGN = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
 
 
@@ -18,15 +21,26 @@ def _drawn(text: str) -> list[set[str]]:
     return [set(re.split(r" \| ", re.split(r" {2,}", line)[0])) for line in picture.splitlines()]
 
 
-def test_the_picture_of_the_house_is_the_import_contract():
-    first, *rooms = _drawn(TEXT)
+def _rooms() -> set[str]:
+    return {path.name for path in (ROOT / "src" / "muster").iterdir() if (path / "__init__.py").is_file()}
+
+
+@pytest.mark.parametrize("text", [TEXT, DESIGN], ids=["contributing", "design"])
+def test_the_picture_of_the_house_is_the_import_contract(text):
+    first, *rooms = _drawn(text)
     assert first == {"muster_studies"}
     assert rooms == _layers()
+    assert set().union(*rooms) | {"core"} == _rooms()
 
 
-def test_every_room_is_drawn():
-    folders = {path.name for path in (ROOT / "src" / "muster").iterdir() if (path / "__init__.py").is_file()}
-    assert set().union(*_drawn(TEXT)) - {"muster_studies"} | {"core"} == folders
+def test_the_design_says_what_every_room_holds():
+    rooms = DESIGN.split("## Rooms", 1)[1].split("\n## ", 1)[0]
+    assert set(re.findall(r"^\| `([a-z]+)` \|", rooms, re.MULTILINE)) == _rooms()
+
+
+def test_the_design_has_its_titles():
+    titles = ["Words", "Rooms", "Numbers, units, frames", "Meaning", "Files", "The command", "Code"]
+    assert re.findall(r"^## (.+)$", DESIGN, re.MULTILINE) == titles
 
 
 def test_every_target_of_make_that_it_names_is_there():
