@@ -21,6 +21,7 @@ def show_plan(
     plan: Plan,
     ignored: tuple[str, ...],
     objective: str | None,
+    fixed: Plan | None = None,
     *,
     form: str,
     output: Path | None,
@@ -37,7 +38,7 @@ def show_plan(
     from muster.cli.plan_tables import print_plan
     from muster.verification import verify
 
-    verdict = verify(mission, plan, ignored, objective)
+    verdict = verify(mission, plan, ignored, objective, fixed)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")

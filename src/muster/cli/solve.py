@@ -145,7 +145,8 @@ def command(
     loaded = mission.load()
     first = None if start is None else read_plan(start)
     problem = Problem.compile(loaded, objective, ignore)
-    problem = (problem if fixed is None else keeping(problem, read_plan(fixed))).ready()
+    beginnings = None if fixed is None else read_plan(fixed)
+    problem = (problem if beginnings is None else keeping(problem, beginnings)).ready()
     if bound is not None:
         require_provable(problem, bound)
     limit = usual_time_limit(chosen.anytime, time_limit, iterations)
@@ -160,7 +161,7 @@ def command(
                 proof = prove(problem, plan, bound, stop, time_limit)
                 plan = proof.plan
     with _ctrl_c_interrupts(stop):
-        show_plan(loaded, plan, ignore, objective, form=form, output=output, plot=plot, gantt=gantt)
+        show_plan(loaded, plan, ignore, objective, beginnings, form=form, output=output, plot=plot, gantt=gantt)
     if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     if stop.interrupted:

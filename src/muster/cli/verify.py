@@ -17,7 +17,7 @@ from muster.cli.options import (
     quiet_option,
 )
 from muster.cli.remote.server_option import server_option
-from muster.mission.plan import json_text
+from muster.mission.plan import json_text, read_plan
 
 
 @click.command()
@@ -25,6 +25,9 @@ from muster.mission.plan import json_text
 @click.argument("plan", type=click.Path(path_type=Path))
 @objective_option
 @ignore_option
+@click.option(
+    "--fixed", type=click.Path(path_type=Path), metavar="PLAN", help="The routes begin with those of this plan."
+)
 @format_option
 @quiet_option
 @server_option
@@ -33,6 +36,7 @@ def command(
     plan: Path,
     objective: str | None,
     ignore: tuple[str, ...],
+    fixed: Path | None,
     form: str,
     quiet: bool,
     verbose: bool,
@@ -47,7 +51,8 @@ def command(
 
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    verdict = verify(loaded, given, ignore, objective)
+    beginnings = None if fixed is None else read_plan(fixed)
+    verdict = verify(loaded, given, ignore, objective, beginnings)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:

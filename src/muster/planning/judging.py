@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.planning.request import require_mission
+from muster.planning.request import Request, require_mission
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 _MOST_SHOWN = 3
 
 
-def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+def verify(
+    mission: Mission,
+    plan: Plan,
+    ignore: str | Collection[str] = (),
+    objective: str | None = None,
+    fixed: Plan | None = None,
+) -> Verdict:
     """Judge a plan from scratch, by code that no allocator uses.
 
     Parameters
@@ -25,6 +31,8 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
         rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
     objective
         the one that the plan was to minimise; the mission's by default.
+    fixed
+        a plan whose routes the routes were to begin with.
 
     Raises
     ------
@@ -33,18 +41,18 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan, ignore, objective)
+    return judge(mission, plan, ignore, objective, fixed)
 
 
-def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
-    """The verdict on a plan that an allocator has made for an objective, some rules ignored.
+def judged(request: Request, plan: Plan) -> Verdict:
+    """The verdict on the plan that an allocator has made for a request.
 
     Raises
     ------
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
-    verdict = verify(mission, plan, ignored, objective)
+    verdict = verify(request.mission, plan, request.ignore, request.objective, request.fixed)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")

@@ -79,7 +79,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
     plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
     plan, why = _improved(request, problem, plan, stop)
-    verdict = judged(request.mission, plan, request.ignore, request.objective)
+    verdict = judged(request, plan)
     return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
 
 

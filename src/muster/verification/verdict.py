@@ -20,10 +20,13 @@ KINDS = (
     "capacity",
     "prerequisite",
     "deadlock",
+    "fixed",
     "unassigned",
+    "reason",
     "book",
     "objective",
     "figure",
+    "history",
 )
 """The kinds of violation."""
 
