@@ -1,4 +1,8 @@
-"""Words that say how an own number stands to the published one."""
+"""Marks of own values beside published ones.
+
+Only a published value and an own value of the same measure are compared. An own criterion, such as "no contact", has
+words of its own, and never a check mark.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +10,18 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from muster_studies.runs import Sample
-from muster_studies.tables import Cell
+from muster_studies.tables import CHECK_MARK, Cell
 
 TOLERANCE = 0.011
 """Of a published figure: the document rounds or cuts off after two decimals."""
 
-EQUAL, REACHED, NOT_REACHED, INFORMATION, ERRATUM = "✓", "reached", "not reached", "for information", "erratum"
+EQUAL, OTHER_MEASURE = CHECK_MARK, "other measure"
+REACHED, NOT_REACHED, INFORMATION, ERRATUM = "reached", "not reached", "for information", "erratum"
+
+
+def equal_rule(what: str) -> str:
+    """The rule of a table in which these own figures are compared with those published."""
+    return f"{EQUAL}: {what} as published, within {TOLERANCE}."
 
 
 def equal(published: float, own: float) -> bool:

@@ -29,6 +29,9 @@ def _table(table: Table) -> Iterator[str]:
     yield ""
     yield f"{table.title}."
     yield ""
+    if table.mark_rule:
+        yield table.mark_rule
+        yield ""
     yield _row(table.columns)
     yield _row(["---"] + ["--:"] * (len(table.columns) - 1))
     for row in table.rows:

@@ -9,13 +9,13 @@ from typing import Protocol, runtime_checkable
 
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster_studies.allocators import Allocators
+from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
-from muster_studies.peers import Peers
+from muster_studies.peers import peers_study
 from muster_studies.repetition import OnDone
 from muster_studies.rescue import RESCUE
 from muster_studies.rvo import RVO
@@ -26,7 +26,10 @@ from muster_studies.thesis_6_1 import THESIS_6_1
 
 
 class Study(Protocol):
-    """A published experiment that can be repeated; `tables` are the numbers of its tables."""
+    """A published experiment that can be repeated.
+
+    `tables` are the numbers of its tables, `extras` the optional parts of Muster that it needs.
+    """
 
     @property
     def name(self) -> str: ...
@@ -36,6 +39,9 @@ class Study(Protocol):
 
     @property
     def tables(self) -> tuple[str, ...]: ...
+
+    @property
+    def extras(self) -> tuple[str, ...]: ...
 
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
 
@@ -53,8 +59,8 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     THESIS_6_1,
     AUCTION_5,
     MARKET_RESCUE,
-    Allocators(),
-    Peers(),
+    ALLOCATORS_STUDY,
+    peers_study(),
     RVO,
     RESCUE,
     MARKET_5,

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from muster_studies.effort import Effort
 from muster_studies.processes import run_cases
@@ -41,8 +41,16 @@ class Performed(Generic[Job, Found]):
     cpu_s: float
 
 
-Performer = Callable[[Iterable[Job], Effort, int, OnDone | None], Performed[Job, Found]]
-"""Does jobs, which may be equal, with an effort and on a number of processes."""
+Performer = Callable[[Iterable[Job], int | None, int, OnDone | None], Performed[Job, Found]]
+"""Does jobs, which may be equal: with so many seeds, if any, and on a number of processes."""
+
+
+def _accept(effort: Effort) -> None:
+    """Accept any effort."""
+
+
+def _no_remarks(effort: Effort, found: Mapping[Any, Any]) -> tuple[str, ...]:
+    return ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,15 +67,27 @@ class Repetition(Generic[Job, Found]):
         does the jobs.
     seeds
         how many seeds there are for an effort; None where nothing is random.
+    extras
+        the optional parts of Muster that it needs.
+    always
+        the numbers of tables that are made whatever tables are wanted.
+    check
+        raises what an effort, or a part that is not installed, does not allow.
+    remarks
+        lines of the legend that depend on the effort and on what was found.
     """
 
     name: str
     summary: str
     document: str
-    legend: tuple[str, ...]
     reproductions: tuple[Reproduction[Job, Found], ...]
     perform: Performer[Job, Found]
+    legend: tuple[str, ...] = ()
     seeds: Callable[[Effort], int | None] = lambda effort: effort.seed_count
+    extras: tuple[str, ...] = ()
+    always: tuple[str, ...] = ()
+    check: Callable[[Effort], None] = _accept
+    remarks: Callable[[Effort, Mapping[Job, Found]], tuple[str, ...]] = _no_remarks
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -79,18 +99,21 @@ class Repetition(Generic[Job, Found]):
         Raises
         ------
         ParameterError
-            if there is no such table.
+            if there is no such table, or the study cannot be repeated with this effort.
+        MissingExtraError
+            if a part that it needs is not installed.
         """
-        numbers = effort.wanted(self.tables)
+        self.check(effort)
+        numbers, seeds = (*effort.wanted(self.tables), *self.always), self.seeds(effort)
         wanted = [table for table in self.reproductions if table.number in numbers]
-        done = self.perform([job for table in wanted for job in table.jobs(effort)], effort, workers, on_done)
+        done = self.perform([job for table in wanted for job in table.jobs(effort)], seeds, workers, on_done)
         return Report(
             study=self.name,
             document=self.document,
-            seeds=self.seeds(effort),
+            seeds=seeds,
             runs=done.runs,
             cpu_s=done.cpu_s,
-            legend=self.legend,
+            legend=(*self.legend, *self.remarks(effort, done.found)),
             tables=tuple(table.table(effort, done.found) for table in wanted),
         )
 
@@ -116,7 +139,7 @@ def one_by_one(do: Callable[[Job], Found]) -> Performer[Job, Found]:
     """Each job is one run, in this process, whatever the number of processes."""
 
     def perform(
-        jobs: Iterable[Job], effort: Effort, workers: int, on_done: OnDone | None = None
+        jobs: Iterable[Job], seeds: int | None, workers: int, on_done: OnDone | None = None
     ) -> Performed[Job, Found]:
         different, begin = list(dict.fromkeys(jobs)), time.process_time()
         found: dict[Job, Found] = {}
@@ -130,9 +153,9 @@ def one_by_one(do: Callable[[Job], Found]) -> Performer[Job, Found]:
 
 
 def over_seeds(
-    cases: Iterable[Case], effort: Effort, workers: int, on_done: OnDone | None = None
+    cases: Iterable[Case], seeds: int | None, workers: int, on_done: OnDone | None = None
 ) -> Performed[Case, Sample]:
     """Each case is run with all seeds, spread over processes."""
-    samples = run_cases(cases, effort.seed_count, workers, on_done)
+    samples = run_cases(cases, seeds or 1, workers, on_done)
     outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
     return Performed(samples, len(outcomes), sum(outcome.cpu_s for outcome in outcomes))

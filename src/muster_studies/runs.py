@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean, stdev
@@ -95,10 +95,12 @@ def mission_named(name: str) -> Mission:
 def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
     """What the judge says of routes that state nothing else."""
     stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
-    return verify(mission_named(mission), Plan(routes=stated, ignored=ignored, objective="total+max"))
+    return verify(mission_named(mission), Plan(routes=stated), ignored, "total+max")
 
 
-def accepted(mission: Mission, plan: Plan, whose: str) -> Verdict:
+def accepted(
+    mission: Mission, plan: Plan, whose: str, ignored: Collection[str] = (), objective: str | None = None
+) -> Verdict:
     """What the judge says of a plan that is right; `whose` it is, is told where it is not.
 
     Raises
@@ -106,7 +108,7 @@ def accepted(mission: Mission, plan: Plan, whose: str) -> Verdict:
     MusterError
         if the judge rejects the plan.
     """
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
         raise MusterError(f"{whose}: the judge rejects the plan: {rejection(verdict)}")
     return verdict
@@ -138,5 +140,11 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
     begin = time.process_time()
     plan = allocator.solve(problem, stop, seed=seed)
     cpu_s = time.process_time() - begin
-    verdict = accepted(mission, plan, f"internal error: {case.allocator} for {case.mission} with seed {seed}")
+    verdict = accepted(
+        mission,
+        plan,
+        f"internal error: {case.allocator} for {case.mission} with seed {seed}",
+        case.ignored,
+        case.objective,
+    )
     return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])

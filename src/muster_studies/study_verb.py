@@ -95,10 +95,13 @@ def _list(form: str) -> None:
     from muster_studies.tables import span
 
     if form == "json":
-        click.echo(_json([{"name": s.name, "summary": s.summary, "tables": s.tables} for s in STUDIES.values()]))
+        studies = [
+            {"name": s.name, "summary": s.summary, "tables": s.tables, "extras": s.extras} for s in STUDIES.values()
+        ]
+        click.echo(_json(studies))
         return
-    rows = [(s.name, s.summary, span(s.tables)) for s in STUDIES.values()]
-    print_table(("study", "what it is", "tables"), rows)
+    rows = [(s.name, s.summary, span(s.tables), ", ".join(s.extras)) for s in STUDIES.values()]
+    print_table(("study", "what it is", "tables", "extras"), rows)
 
 
 def _show(report: Report, form: str, output: Path | None) -> None:
@@ -145,10 +148,15 @@ def _print_table(table: Table) -> None:
         [_text(column, cell, table.decimals) for column, cell in zip(table.columns, row, strict=True)]
         for row in table.rows
     ]
-    print_table(headers, _without_repetition(rows), title=table.heading, right=numeric)
+    print_table(headers, _without_repetition(rows), title=_head(table), right=numeric)
     for note in table.notes:
         _print_text(note)
     _print_text("")
+
+
+def _head(table: Table) -> str:
+    """The heading, and under it when a cell has a check mark."""
+    return _printable("\n".join(line for line in (table.heading, table.mark_rule) if line))
 
 
 def _without_repetition(rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:

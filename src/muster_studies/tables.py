@@ -6,13 +6,29 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+CHECK_MARK = "✓"
+"""The mark of an own value that equals a published one of the same measure."""
+
 Cell = str | int | float | tuple[str, ...] | tuple[float, float] | None
 """A word, a count, a figure, a sequence of ids, a range of figures, or nothing."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """One table; each row has a cell for each column. `decimals` are those of figures on a person's screen."""
+    """One table; each row has a cell for each column.
+
+    Parameters
+    ----------
+    decimals
+        of figures on a person's screen.
+    mark_rule
+        when a cell has a check mark; it is shown in the head of the table.
+
+    Raises
+    ------
+    ValueError
+        if a cell has a check mark, and the table no rule for it.
+    """
 
     number: str
     title: str
@@ -20,6 +36,12 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
     decimals: int = 2
+    mark_rule: str = ""
+
+    def __post_init__(self) -> None:
+        ticked = any(isinstance(cell, str) and CHECK_MARK in cell for row in self.rows for cell in row)
+        if ticked and not self.mark_rule.startswith(f"{CHECK_MARK}: "):
+            raise ValueError(f"{self.heading}: check marks without their rule; expected mark_rule, '{CHECK_MARK}: ...'")
 
     @property
     def heading(self) -> str:
@@ -34,6 +56,7 @@ class Table:
         return {
             "number": self.number,
             "title": self.title,
+            "mark_rule": self.mark_rule,
             "columns": list(self.columns),
             "rows": self.records(),
             "notes": list(self.notes),

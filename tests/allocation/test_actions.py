@@ -229,8 +229,8 @@ def test_the_smallest_change_is_never_at_a_robot_that_cannot():
 
     problem = Problem.compile(mission)
 
-    def judge(mission, plan):
-        return muster.verify(mission, plan).valid
+    def judge(mission, plan, ignored):
+        return muster.verify(mission, plan, ignored).valid
 
     found = remedies(problem, [[], []], 0, judge)
     assert [(r.robot, r.unable, r.enough) for r in found] == [("able", "", True), ("blind", "it has no camera", False)]

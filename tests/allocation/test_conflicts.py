@@ -17,8 +17,8 @@ from muster.mission.model import Mission, Robot, Rules, Task
 from muster.verification import verify
 
 
-def judge(mission, plan):
-    return verify(mission, plan).valid
+def judge(mission, plan, ignored):
+    return verify(mission, plan, ignored).valid
 
 
 def look(mission, *ignored, time_limit=0.3):

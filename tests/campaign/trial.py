@@ -148,7 +148,9 @@ def _exactly(report, problem, best):
 
 def _together(report, problem, plans):
     """No plan does all tasks of a conflict."""
-    conflict = together(problem, lambda mission, plan: verify(mission, plan).valid, time_limit=0.15).conflict
+    conflict = together(
+        problem, lambda mission, plan, ignored: verify(mission, plan, ignored).valid, time_limit=0.15
+    ).conflict
     if conflict is None:
         return
     report.counts["conflicts"] += 1

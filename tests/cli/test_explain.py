@@ -118,7 +118,7 @@ def test_the_smallest_change_for_each_task_left_out(shed, muster):
 
 def test_the_smallest_changes_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--format", "json")[1])
-    assert list(data) == ["unassigned", "smallest"]
+    assert list(data) == ["ignored", "unassigned", "smallest"]
     kinds = {item["task"]: (item["remedy"]["robot"], item["remedy"]["kinds"]) for item in data["smallest"]}
     assert kinds == {
         "c": ("r_0", ["capacity"]),
@@ -183,7 +183,7 @@ def test_lines_are_not_too_long(shed, muster):
 def test_remedies_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--task", "far", "--format", "json")[1])
     first, second = data["remedies"]
-    assert list(data) == ["task", "robot", "objective", "alternatives", "remedies"]
+    assert list(data) == ["task", "robot", "ignored", "objective", "alternatives", "remedies"]
     assert (first["suitability"]["score"], first["suitability"]["needed"]) == (0.5, 0.65)
     assert second["capacity"]["now"] == 20
     assert second["kinds"] == ["capacity"]

@@ -16,7 +16,7 @@ from muster.mission.clock import VirtualClock
 from muster.mission.plan import REASONS
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
-RULES = ("prerequisites", "suitability", "skills", "capacity")
+RULES = ("prerequisite", "suitability", "skill", "lock", "capacity")
 
 
 def without_times(plan):
@@ -28,7 +28,7 @@ def without_times(plan):
 def test_every_plan_is_admissible_and_its_figures_are_the_judges(allocator, seed, ignore, tasks):
     mission = random_mission(seed, tasks=tasks, robots=1 + seed % 4)
     plan = muster.solve(mission, allocator, seed=seed, iterations=30, ignore=ignore)
-    verdict = muster.verify(mission, plan)
+    verdict = muster.verify(mission, plan, ignore)
     assert verdict.violations == ()
     assert plan.objective_value == pytest.approx(verdict.value(), rel=1e-9)
     assert [route.robot for route in plan.routes] == [robot.id for robot in mission.robots]

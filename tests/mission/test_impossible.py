@@ -395,8 +395,8 @@ def in_some_admissible_plan(mission, ignored):
     for routes in all_routes(mission):
         tasks = {name for route in routes for name in route}
         if not tasks <= done:
-            plan = Plan(routes=tuple(map(Route, robots, routes)), ignored=ignored)
-            done |= tasks if verify(mission, plan).valid else set()
+            plan = Plan(routes=tuple(map(Route, robots, routes)))
+            done |= tasks if verify(mission, plan, ignored).valid else set()
     return done
 
 
@@ -437,8 +437,8 @@ def test_where_the_straight_way_is_the_shortest_every_other_task_can_be_done_alo
     plain = replace(asked, tasks=tuple(replace(one, entry=None, exit=None, prerequisites=()) for one in asked.tasks))
     impossible_ones = lost(plain, *ignored)
     for one in plain.tasks:
-        alone = [Plan(routes=(Route(r.id, (one.id,)),), ignored=ignored) for r in plain.robots]
-        assert any(verify(plain, plan).valid for plan in alone) == (one.id not in impossible_ones)
+        alone = [Plan(routes=(Route(r.id, (one.id,)),)) for r in plain.robots]
+        assert any(verify(plain, plan, ignored).valid for plan in alone) == (one.id not in impossible_ones)
 
 
 @examples(100)
@@ -461,12 +461,12 @@ def test_without_capacity_every_other_task_can_be_done_with_its_prerequisites(as
         routes = {r.id: [] for r in asked.robots}
         for name in sorted(needed, key=int):  # prerequisites are always among the earlier tasks
             routes[first_that_may(asked, name, ignored)].append(name)
-        plan = Plan(routes=tuple(Route(r, tuple(tasks)) for r, tasks in routes.items()), ignored=ignored)
-        assert verify(asked, plan).violations == ()
+        plan = Plan(routes=tuple(Route(r, tuple(tasks)) for r, tasks in routes.items()))
+        assert verify(asked, plan, ignored).violations == ()
 
 
 def first_that_may(asked, name, ignored):
     """A robot that may do the task, prerequisites aside."""
     rules = (*ignored, "prerequisites")
-    plans = {r.id: Plan(routes=(Route(r.id, (name,)),), ignored=rules) for r in asked.robots}
-    return next(r for r, plan in plans.items() if verify(asked, plan).valid)
+    plans = {r.id: Plan(routes=(Route(r.id, (name,)),)) for r in asked.robots}
+    return next(r for r, plan in plans.items() if verify(asked, plan, rules).valid)

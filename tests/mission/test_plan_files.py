@@ -10,10 +10,8 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples, words
 
 from muster.mission.errors import PlanError
-from muster.mission.model import (
-    IGNORABLE,
-    OBJECTIVES,
-)
+from muster.mission.ignorable_rules import IGNORABLE
+from muster.mission.model import OBJECTIVES
 from muster.mission.plan import REASONS, Plan, Reason, Route, Unassigned, read_plan
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -154,7 +152,7 @@ BAD_PLANS = {
         with_routes('"objective": {"name": ["max"]}'),
         f': objective.name: ["max"]; expected {" or ".join(OBJECTIVES)}',
     ),
-    "ignored unknown": (with_routes('"ignored": ["skill"]'), f': ignored: "skill"; expected {" or ".join(IGNORABLE)}'),
+    "ignored unknown": (with_routes('"ignored": ["locks"]'), f': ignored: "locks"; expected {" or ".join(IGNORABLE)}'),
     "ignored text": (
         with_routes('"ignored": "skills"'),
         f': ignored: "skills"; expected a list of {", ".join(IGNORABLE)}',

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import pytest
 
+from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster_studies.comparison_marks import differences, reached
 from muster_studies.effort import Effort
+from muster_studies.markdown import as_markdown
 from muster_studies.registry import study_named
 from muster_studies.runs import Case, Outcome, Sample, perform
-from muster_studies.tables import Notes, Table, span
+from muster_studies.tables import Notes, Report, Table, span
 from muster_studies.thesis_3_3.budgets import budgets
 from muster_studies.thesis_3_3.rules import step_kept
 
@@ -63,6 +65,25 @@ def test_differences():
     assert differences({"C": 1.0, "F": 7.0}, {"C": 1.02, "F": 5.0}, ("C", "F")) == "C +0.02, F -2.00"
 
 
+def test_a_check_mark_needs_its_rule_in_the_head_of_the_table():
+    ticked = ("3.2", "Tasks", ("F", "mark"), ((1.0, "✓ erratum (1)"),))
+    with pytest.raises(ValueError, match=r"Table 3\.2\. Tasks: check marks without their rule"):
+        Table(*ticked)
+    with pytest.raises(ValueError, match="expected mark_rule"):
+        Table(*ticked, mark_rule="what is equal")
+    table = Table(*ticked, mark_rule="✓: F as published.")
+    report = Report(study="a", document="b", seeds=None, runs=1, cpu_s=0.0, legend=(), tables=(table,))
+    assert "\nTasks.\n\n✓: F as published.\n\n| F | mark |" in as_markdown(report, "muster study a")
+    assert table.as_dict()["mark_rule"] == "✓: F as published."
+
+
+def test_the_rule_is_printed_under_the_heading(capsys):
+    assert run(["study", "auction-5", "--tables", "5.2"]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    heading = next(k for k, line in enumerate(lines) if line.startswith("Table 5.2. "))
+    assert lines[heading + 1] == "✓: all own bids as published, to the printed digit."
+
+
 def test_notes_are_numbered_once():
     notes = Notes()
     assert [notes.number(text) for text in ("a", "b", "a")] == ["(1)", "(2)", "(1)"]
@@ -78,7 +99,7 @@ def test_budgets():
 
 def test_a_step_of_a_chain():
     verdict = perform(Case(mission="24T-5R", allocator="greedy", ignored=("suitability", "capacity")), 0).verdict
-    assert step_kept("24T-5R", verdict, "r_2", ["10"], ["2", "11"]) == "✓"
+    assert step_kept("24T-5R", verdict, "r_2", ["10"], ["2", "11"]) == "kept"
     assert step_kept("24T-5R", verdict, "r_2", ["11", "10"], []) == "other robots"
     assert step_kept("24T-5R", verdict, "r_1", ["10"], []) == "other robots"
     assert step_kept("24T-5R", verdict, "r_2", ["10"], ["22"]) == "broken"  # 22 needs 1, which is done later

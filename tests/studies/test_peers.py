@@ -14,11 +14,13 @@ from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.mission.model import OBJECTIVES
 from muster_studies.effort import Effort
-from muster_studies.peers import Peers
-from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, perform_all, runs_of
+from muster_studies.peers import peers_study
+from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, runs_of, standings_of, undisturbed
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer
+from muster_studies.peers.study import Limits
 from muster_studies.peers.sweep import RUNS, Routed, swept
+from muster_studies.repetition import Repetition
 from muster_studies.tables import Report, Table
 from muster_studies.uniform import large_mission
 
@@ -250,14 +252,14 @@ def test_only_random_solvers_run_with_several_seeds():
     match = Match(mission="6T-2R", objective="total")
     runs = runs_of([match], (OWN, "OR-Tools", "PyVRP", "VROOM"), SECONDS, 3)
     assert [(run.solver, run.seed) for run in runs if run.seed] == [(OWN, 1), (OWN, 2), ("PyVRP", 1), ("PyVRP", 2)]
-    standings = perform_all([run for run in runs if run.solver == OWN])
+    standings = standings_of(undisturbed(run) for run in runs if run.solver == OWN)
     assert len(standings[match, OWN].results) == 3
     assert isinstance(standings[match, OWN].worst, Result)
 
 
 def test_the_report_has_every_mission_solver_and_the_machine():
     counted = []
-    report = Peers(seconds=0.1).run(
+    report = peers_study(Limits(0.1, 0.1, 0.5)).run(
         Effort(quick=True, tables=("total+max", "large")), 1, lambda done, runs: counted.append((done, runs))
     )
     table, large = report.tables
@@ -279,7 +281,7 @@ def test_the_bench_leads_to_the_study(monkeypatch, tmp_path, capsys):
         table = Table("total", "a title", ("mission",), (("6T-2R",),))
         return Report(study="peers", document="", seeds=2, runs=1, cpu_s=0.0, legend=(), tables=(table,))
 
-    monkeypatch.setattr(Peers, "run", run)
+    monkeypatch.setattr(Repetition, "run", run)
     file = tmp_path / "benchmarks.md"
     assert cli(["bench", "peers", "--tables", "total", "--seeds", "2", "-o", str(file)]) == 0
     assert cli(["study", "peers", "--tables", "total", "--seeds", "2"]) == 0
@@ -289,12 +291,12 @@ def test_the_bench_leads_to_the_study(monkeypatch, tmp_path, capsys):
 
 def test_iterations_are_refused():
     with pytest.raises(muster.ParameterError, match="all solvers have the same time"):
-        Peers().run(Effort(iterations=5))
+        peers_study().run(Effort(iterations=5))
 
 
 def test_time_limits_are_checked():
-    with pytest.raises(muster.ParameterError, match="seconds: 0"):
-        Peers(seconds=0)
+    with pytest.raises(muster.ParameterError, match="all: 0"):
+        Limits(0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("name", PEERS)
@@ -310,7 +312,7 @@ def test_without_the_package_one_line_says_what_to_install(monkeypatch, name):
     for module in [module for module in sys.modules if module.split(".")[0] == package]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setattr(builtins, "__import__", absent)
-    with pytest.raises(muster.MusterError, match=r"pip install 'muster-robotics\[bench\]'") as raised:
+    with pytest.raises(muster.MusterError, match=r"pip install 'muster-robotics\[studies\]'") as raised:
         answered(muster.load("6T-2R"), name, "total")
     assert "\n" not in str(raised.value)
 
@@ -322,5 +324,5 @@ def test_without_the_packages_the_study_says_so_at_once(monkeypatch):
         raise PackageNotFoundError(name)
 
     monkeypatch.setattr("muster_studies.peers.machine.version", absent)
-    with pytest.raises(muster.MusterError, match=r"needs an optional part: pip install 'muster-robotics\[bench\]'"):
-        Peers().run(Effort(quick=True))
+    with pytest.raises(muster.MusterError, match=r"needs an optional part: pip install 'muster-robotics\[studies\]'"):
+        peers_study().run(Effort(quick=True))

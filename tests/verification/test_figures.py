@@ -48,7 +48,9 @@ def test_each_objective(objective, value):
     verdict = judge(two_robots(objective=objective), r=["a", "b"], s=["c"])
     assert verdict.objective_name == objective
     assert verdict.value() == verdict.value(objective) == value
-    assert judge(two_robots(), objective=objective, r=["a", "b"], s=["c"]).value() == value
+    plan = Plan(objective=objective, routes=(Route("r", ("a", "b")), Route("s", ("c",))))
+    named = verify(two_robots(), plan, objective=objective)
+    assert (named.valid, named.objective_name, named.value()) == (True, objective, value)
 
 
 def test_an_unknown_objective_has_no_value():
@@ -236,5 +238,5 @@ def test_the_usable_capacity():
     robots = (Robot(id="r", position=(0, 0), work_capacity=50), Robot(id="s", position=(0, 0)))
     mission = Mission(rules=Rules(capacity_reserve=0.2), robots=robots, tasks=())
     assert [route.capacity for route in judge(mission).routes] == [40, None]
-    ignoring = verify(mission, Plan(routes=(), ignored=("capacity",)))
+    ignoring = verify(mission, Plan(routes=()), "capacity")
     assert [route.capacity for route in ignoring.routes] == [None, None]

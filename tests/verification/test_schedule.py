@@ -9,7 +9,7 @@ from muster.verification import Verdict, verify
 
 def judge(mission: Mission, ignored: tuple[str, ...] = (), **routes: list[str]) -> Verdict:
     stated = tuple(Route(robot, tuple(tasks)) for robot, tasks in routes.items())
-    return verify(mission, Plan(routes=stated, ignored=ignored))
+    return verify(mission, Plan(routes=stated), ignored)
 
 
 def line(tasks: dict[str, tuple[float, float, list[str]]], **robots: dict) -> Mission:

@@ -108,12 +108,14 @@ def test_lower_bound(bound, wrong):
     assert figures_wrong(replace(PLAN, lower_bound=bound)) == ([(None, "lower_bound")] if wrong else [])
 
 
-def test_the_objective_is_the_plans_own_or_else_the_missions():
+def test_the_objective_is_the_missions_unless_the_caller_names_another():
     mission = replace(MISSION, rules=Rules(objective="max"))
     assert verify(mission, replace(PLAN, objective=None, objective_value=11.0, lower_bound=None)).valid
     assert not verify(mission, replace(PLAN, objective=None, lower_bound=None)).valid
-    assert verify(mission, PLAN).valid
-    assert verify(mission, PLAN).objective_name == "total+max"
+    assert verify(mission, PLAN).objective_name == "max"
+    assert [v.kind for v in verify(mission, PLAN).violations] == ["objective"], "its value is right of total+max"
+    assert verify(mission, PLAN, objective="total+max").valid
+    assert verify(mission, PLAN, objective="total+max").objective_name == "total+max"
 
 
 def test_a_makespan_where_there_is_a_deadlock():
@@ -123,8 +125,9 @@ def test_a_makespan_where_there_is_a_deadlock():
     silent = replace(PLAN, makespan_s=None)
     assert [v.kind for v in verify(mission, silent).violations] == ["deadlock"]
     stated = replace(silent, objective="makespan", objective_value=11.0)
-    assert [v.kind for v in verify(mission, stated).violations] == ["deadlock", "figure"]
-    assert verify(mission, stated).as_dict()["objective"] is None
+    verdict = verify(mission, stated, objective="makespan")
+    assert [v.kind for v in verdict.violations] == ["deadlock", "figure"]
+    assert verdict.as_dict()["objective"] is None
 
 
 def test_a_plan_from_elsewhere_needs_only_routes(tmp_path):
@@ -134,6 +137,7 @@ def test_a_plan_from_elsewhere_needs_only_routes(tmp_path):
     assert verify(MISSION, read_plan(file)).as_dict() == {
         "valid": True,
         "violations": [],
+        "ignored": [],
         "objective_name": "total+max",
         "objective": 24,
         "usage_unit": "m",

@@ -46,7 +46,7 @@ def mission(capacities: tuple[float | None, ...] = (None,) * 6) -> Mission:
 
 def judge(capacities: tuple[float | None, ...], routes: list[str], *ignored: str) -> Verdict:
     stated = tuple(Route(f"r_{k}", tuple(route.split())) for k, route in enumerate(routes))
-    return verify(mission(capacities), Plan(routes=stated, ignored=ignored))
+    return verify(mission(capacities), Plan(routes=stated), ignored)
 
 
 UNLIMITED = (None,) * 6

@@ -4,15 +4,16 @@ import math
 
 import pytest
 
-from muster.mission.errors import PlanError
+from muster.mission.errors import ParameterError
 from muster.mission.model import Action, Map, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan, Route, Unassigned
 from muster.verification import Verdict, Violation, verify
 from muster.verification.verdict import KINDS
 
 
-def judge(mission: Mission, *routes: tuple[str, list[str]], **plan) -> Verdict:
-    return verify(mission, Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes), **plan))
+def judge(mission: Mission, *routes: tuple[str, list[str]], ignore=(), **plan) -> Verdict:
+    stated = Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes), **plan)
+    return verify(mission, stated, ignore)
 
 
 def found(verdict: Verdict) -> list[tuple[str, str | None, str | None]]:
@@ -72,7 +73,7 @@ def test_skill():
     )
     assert found(judge(mission, ("r", ["a", "b"]))) == [("skill", "r", "a")]
     assert found(judge(mission, ("s", ["a", "b"]))) == []
-    assert found(judge(mission, ("r", ["a", "b"]), ignored=("skills",))) == []
+    assert found(judge(mission, ("r", ["a", "b"]), ignore=("skills",))) == []
 
 
 def test_suitability():
@@ -85,7 +86,7 @@ def test_suitability():
     assert found(judge(mission, ("r", ["d", "e"]), ("s", ["f"]))) == [("suitability", "r", "d")]
     # a task type that is missing from a row scores 0
     assert found(judge(mission, ("s", ["d", "e"]))) == [("suitability", "s", "e")]
-    assert found(judge(mission, ("s", ["d", "e"]), ignored=("suitability",))) == []
+    assert found(judge(mission, ("s", ["d", "e"]), ignore=("suitability",))) == []
 
 
 def test_no_score_is_needed_where_the_least_is_zero():
@@ -102,8 +103,9 @@ def test_lock():
     mission = pair(Task(id="a", position=(1, 0), only_robots=("s",)))
     assert found(judge(mission, ("r", ["a"]))) == [("lock", "r", "a")]
     assert found(judge(mission, ("s", ["a"]))) == []
-    everything = ("prerequisites", "suitability", "skills", "capacity")
-    assert found(judge(mission, ("r", ["a"]), ignored=everything)) == [("lock", "r", "a")]
+    others = ("prerequisites", "suitability", "skills", "capacity")
+    assert found(judge(mission, ("r", ["a"]), ignore=others)) == [("lock", "r", "a")]
+    assert found(judge(mission, ("r", ["a"]), ignore=("lock",))) == []
 
 
 def island(**rules) -> Mission:
@@ -158,7 +160,7 @@ def test_capacity(capacity, reserve, holds):
     verdict = judge(loaded(capacity, reserve), ("r", ["a"]))
     assert found(verdict) == ([] if holds else [("capacity", "r", None)])
     assert found(judge(loaded(capacity, reserve), ("r", []))) == []
-    assert found(judge(loaded(capacity, reserve), ("r", ["a"]), ignored=("capacity",))) == []
+    assert found(judge(loaded(capacity, reserve), ("r", ["a"]), ignore=("capacity",))) == []
 
 
 def test_prerequisite():
@@ -169,7 +171,7 @@ def test_prerequisite():
     )
     assert found(judge(pair(*tasks), ("r", ["b", "a"]))) == [("prerequisite", "r", "a")]
     assert found(judge(pair(*tasks), ("r", ["a"]))) == [("prerequisite", "r", "a")] * 2
-    assert found(judge(pair(*tasks), ("r", ["a"]), ignored=("prerequisites",))) == []
+    assert found(judge(pair(*tasks), ("r", ["a"]), ignore=("prerequisites",))) == []
     assert found(judge(pair(*tasks), ("r", ["a"]), ("s", ["b", "c"]))) == []
     # a route that nobody drives does no prerequisites
     ghost = judge(pair(*tasks), ("r", ["b", "a"]), ("ghost", ["c"]))
@@ -253,8 +255,26 @@ def test_a_map_beside_euclidean_travel_and_plain_actions_are_judged():
     assert judge(mission, ("r", ["a"])).total_cost == 3
 
 
-def test_a_plan_built_with_unknown_words_is_refused():
-    with pytest.raises(PlanError, match="locks"):
-        judge(pair(), ignored=("locks",))
-    with pytest.raises(PlanError, match=r"objective\.name"):
-        judge(pair(), objective="shortest")
+def test_unknown_words_of_the_caller_are_refused():
+    with pytest.raises(ParameterError, match=r"locks.*did you mean 'lock'"):
+        judge(pair(), ignore=("locks",))
+    with pytest.raises(ParameterError, match="shortest"):
+        verify(pair(), Plan(routes=()), objective="shortest")
+
+
+def test_a_plan_cannot_excuse_itself():
+    """Rules are ignored by the caller alone, whatever the plan says of itself."""
+    mission = loaded(11)
+    assert found(judge(mission, ("r", ["a"]), ignored=("capacity",))) == [("capacity", "r", None)]
+    verdict = judge(mission, ("r", ["a"]), ignored=("capacity",), ignore=("capacity",))
+    assert (verdict.valid, verdict.ignored, verdict.as_dict()["ignored"]) == (True, ("capacity",), ["capacity"])
+    assert judge(loaded(12), ("r", ["a"]), ignored=("capacity",)).valid, "it does not need it"
+
+
+@pytest.mark.parametrize("name", ["total", "shortest"])
+def test_the_objective_is_the_missions_unless_the_caller_names_another(name):
+    assert found(judge(pair(), ("r", ["a"]), objective=name)) == [("objective", None, None)]
+    plan = Plan(objective="total", objective_value=3.0, routes=(Route("r", ("a",)), Route("s", ("b",))))
+    verdict = verify(pair(), plan, objective="total")
+    assert (verdict.valid, verdict.objective_name, verdict.value()) == (True, "total", 3)
+    assert found(verify(pair(), plan, objective="max")) == [("objective", None, None)]

@@ -18,7 +18,8 @@ from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import Doings
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES, Mission, Point, Robot, Task
+from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
@@ -68,18 +69,18 @@ class Problem:
     mapped: Roads | None = None  # over the mission's map, as far as they are known already
 
     @classmethod
-    def compile(cls, mission: Mission, objective: str | None = None, ignored: Collection[str] = ()) -> Problem:
+    def compile(cls, mission: Mission, objective: str | None = None, ignored: str | Collection[str] = ()) -> Problem:
         objective = mission.rules.objective if objective is None else objective
         if objective not in OBJECTIVES:
             raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
-        for rule in ignored:
-            if rule not in IGNORABLE:
-                raise ParameterError(f"ignore: {shown(rule)}; expected {' or '.join(IGNORABLE)}")
         require_supported(mission)
+        ignored = ignored_rules(ignored)
+        if "lock" in ignored:  # taken off the tasks, as planning makes locks of its own
+            mission = replace(mission, tasks=tuple(replace(task, only_robots=None) for task in mission.tasks))
         return cls(
             mission=mission,
             objective=objective,
-            ignored=tuple(rule for rule in IGNORABLE if rule in ignored),
+            ignored=ignored,
             robots=tuple(mission.robots[k] for k in tie_order([r.id for r in mission.robots])),
             tasks=tuple(mission.tasks[k] for k in tie_order([t.id for t in mission.tasks])),
         )
@@ -148,7 +149,7 @@ class Problem:
     @cached_property
     def prerequisites(self) -> list[list[int]]:
         """For each task the indices of its prerequisites."""
-        if not self.holds("prerequisites"):
+        if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
 
@@ -173,7 +174,7 @@ class Problem:
         """Why robot i may not do task j whatever its route (reason, detail); None if it may."""
         robot, task = self.robots[i], self.tasks[j]
         lacking = [skill for skill in task.requires if skill not in robot.skills]
-        if self.holds("skills") and lacking:
+        if self.holds("skill") and lacking:
             return "skill", f"lacks {', '.join(lacking)}"
         unable = self.why_impossible(i, j)
         if unable is not None:

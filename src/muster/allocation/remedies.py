@@ -100,7 +100,7 @@ def _work_capacity(problem: Problem, usage: float) -> float:
 def _barriers(problem: Problem, robot: Robot, task: Task, remedy: Remedy) -> Remedy:
     """The remedy with the skills, the score and the lock that stand between robot and task."""
     mission = problem.mission
-    skills = tuple(skill for skill in task.requires if skill not in robot.skills) if problem.holds("skills") else ()
+    skills = tuple(skill for skill in task.requires if skill not in robot.skills) if problem.holds("skill") else ()
     lock = task.only_robots if task.only_robots is not None and robot.id not in task.only_robots else None
     low = None
     if mission.suitability is not None and problem.holds("suitability"):
@@ -153,7 +153,7 @@ def _fitted(problem: Problem, rest: Routes, i: int, j: int, remedy: Remedy, judg
 
 def _judged(problem: Problem, routes: Routes, remedy: Remedy, judge: Judge) -> Remedy:
     plan = bare_plan(problem, routes)
-    if judge(problem.mission, plan):
+    if judge(problem.mission, plan, problem.ignored):
         return replace(remedy, enough=True, routes=plan.routes)
     return _not_found(remedy)
 

@@ -13,8 +13,8 @@ from muster.mission.clock import Clock
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 
-Judge = Callable[[Mission, Plan], bool]
-"""Whether a plan is admissible: `verification` says so, which allocators may not ask themselves."""
+Judge = Callable[[Mission, Plan, tuple[str, ...]], bool]
+"""Whether a plan is admissible, some rules ignored: `verification` says so, which allocators may not ask themselves."""
 
 _ITERATIONS, _EFFORT = 5000, 800_000  # most steps of a short search; most steps times tasks and robots
 _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways
@@ -90,7 +90,7 @@ def bare_plan(problem: Problem, routes: Routes) -> Plan:
 
 def does_all(problem: Problem, routes: Routes, tasks: Sequence[int], judge: Judge) -> bool:
     """Whether routes hold all the tasks and the judge admits them."""
-    return not set(tasks).difference(*routes) and judge(problem.mission, bare_plan(problem, routes))
+    return not set(tasks).difference(*routes) and judge(problem.mission, bare_plan(problem, routes), problem.ignored)
 
 
 def can_do(

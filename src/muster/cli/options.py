@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import click
 
 from muster.mission.errors import Finding, ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
-from muster.mission.near_matches import did_you_mean
+from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan, read_plan
 from muster.mission.value_types import shown
 
@@ -108,28 +108,35 @@ def require_none_without_mission(**of_mission: object) -> None:
             raise ParameterError(f"--{name} given without a MISSION; expected both")
 
 
-def load_plan(file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> Plan:
+def load_plan(file: Path, mission: Mission, ignore: tuple[str, ...] = (), *, quiet: bool, verbose: bool) -> Plan:
     """The plan of a file, and what `say_of_plan` says of it."""
     plan = read_plan(file)
-    say_of_plan(plan, file, mission, quiet=quiet, verbose=verbose)
+    say_of_plan(plan, file, mission, ignore, quiet=quiet, verbose=verbose)
     return plan
 
 
-def say_of_plan(plan: Plan, file: Path, mission: Mission, *, quiet: bool, verbose: bool) -> None:
-    """With -v which plan was read and how much is in it; without -q a warning if it names another mission.
+def say_of_plan(
+    plan: Plan, file: Path, mission: Mission, ignore: tuple[str, ...] = (), *, quiet: bool, verbose: bool
+) -> None:
+    """Print with -v which plan was read; without -q warnings about what it says of itself.
 
-    Not more than a warning: a mission may be renamed, and its plans hold as before.
+    A plan of another mission is not refused: a mission may be renamed, and its plans hold as before. Rules that the
+    plan was made without hold here unless they are to `ignore`.
     """
     if verbose:
         amount = f"{len(plan.routes)} routes, {sum(len(route.tasks) for route in plan.routes)} tasks"
         click.echo(f"read {file}: plan, {amount}", err=True)
+    held = [rule for rule in plan.ignored if rule not in ignore]
+    if held and not quiet:
+        expected = f"--ignore {','.join((*ignore, *held))}, or these rules hold"
+        click.echo(f"warning: {Finding(str(file), None, 'ignored', ', '.join(held), expected)}", err=True)
     if not quiet and plan.mission not in (None, mission.name):
         expected = f"{shown(mission.name)}; the plan may be of another mission"
         click.echo(f"warning: {Finding(str(file), None, 'mission', shown(plan.mission), expected)}", err=True)
 
 
-def require_admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
-    """What the judge says; a plan that breaks a rule is not handed on to robots.
+def require_admissible(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...] = ()) -> Verdict:
+    """What the judge says; a plan that breaks a rule is not handed on to robots, those to `ignore` aside.
 
     Raises
     ------
@@ -138,7 +145,7 @@ def require_admissible(mission: Mission, plan: Plan, file: Path) -> Verdict:
     """
     from muster.verification.required import require_admissible as required
 
-    return required(mission, plan, str(file))
+    return required(mission, plan, str(file), ignore)
 
 
 def format_option(verb: Verb) -> Verb:
@@ -173,7 +180,7 @@ def ignore_option(verb: Verb) -> Verb:
 
 def objective_option(verb: Verb) -> Verb:
     """--objective."""
-    return click.option("--objective", type=click.Choice(OBJECTIVES), help="Instead of the mission's own.")(verb)
+    return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:
@@ -184,12 +191,7 @@ def require_complete_option(verb: Verb) -> Verb:
 
 
 def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
-    names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
-    for name in names:
-        if name not in IGNORABLE:
-            hint = did_you_mean(name, IGNORABLE)
-            raise click.BadParameter(f"{name!r} is not one of {', '.join(IGNORABLE)}{hint}", param_hint="'--ignore'")
-    return names
+    return ignored_rules([name.strip() for name in (value or "").split(",") if name.strip()])
 
 
 def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[str, Any]:

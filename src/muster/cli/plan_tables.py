@@ -31,8 +31,7 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     if plan.unassigned:
         left_out = [item.task for item in plan.unassigned]
         click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")
-    if plan.ignored:
-        click.echo(f"ignored           {', '.join(plan.ignored)}")
+    _print_ignored(verdict)
 
 
 def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
@@ -45,6 +44,11 @@ def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
     if off <= -OPTIMAL:
         said = "above the objective"
     click.echo(f"lower bound       {number(bound, unit)}  ({said}{note})")
+
+
+def _print_ignored(verdict: Verdict) -> None:
+    if verdict.ignored:
+        click.echo(f"ignored           {', '.join(verdict.ignored)}")
 
 
 def print_figures(verdict: Verdict) -> None:
@@ -63,6 +67,8 @@ def print_figures(verdict: Verdict) -> None:
 def print_verdict(plan: Plan, verdict: Verdict) -> None:
     """Whether a plan holds, and all that is wrong with it. A bound that it states is compared, not proven again."""
     print_figures(verdict)
+    click.echo(f"weight completed  {verdict.weight_completed:g}")
+    _print_ignored(verdict)
     _print_bound(plan.lower_bound, verdict, "; stated in the plan")
     if verdict.valid:
         click.echo("valid             yes")

@@ -17,6 +17,7 @@ from muster.cli.options import (
     Finite,
     Verb,
     format_option,
+    ignore_option,
     load_plan,
     quiet_option,
     require_admissible,
@@ -42,6 +43,7 @@ class Wishes:
     """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
 
     plan: Path | None
+    ignore: tuple[str, ...]
     seed: int
     time_limit: float
     record: Path | None
@@ -59,6 +61,7 @@ def real_options(verb: Verb) -> Verb:
     """The options of which `Wishes` is made."""
     options = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
+        ignore_option,
         click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
         click.option(
             "--time-limit",
@@ -131,8 +134,8 @@ def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
     """
     if wishes.plan is None:
         return None
-    plan = load_plan(wishes.plan, mission, quiet=wishes.quiet, verbose=wishes.verbose)
-    require_admissible(mission, plan, wishes.plan)
+    plan = load_plan(wishes.plan, mission, wishes.ignore, quiet=wishes.quiet, verbose=wishes.verbose)
+    require_admissible(mission, plan, wishes.plan, wishes.ignore)
     return plan
 
 
@@ -140,7 +143,7 @@ def planned(wishes: Wishes, mission: Mission) -> Plan:
     """A plan made now."""
     from muster import solve
 
-    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit)
+    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit, ignore=wishes.ignore)
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
@@ -180,6 +183,7 @@ def carried_out(
                 plan,
                 fleet,
                 seed=wishes.seed,
+                ignore=wishes.ignore,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if wishes.quiet else tell,

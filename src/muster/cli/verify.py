@@ -6,35 +6,48 @@ from pathlib import Path
 
 import click
 
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import MissionFile, format_option, load_plan, mission_argument, quiet_option
-from muster.cli.remote.server_option import server_option
+from muster.cli.options import (
+    MissionFile,
+    format_option,
+    ignore_option,
+    load_plan,
+    mission_argument,
+    objective_option,
+    quiet_option,
+)
 from muster.mission.plan import json_text
 
 
 @click.command()
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
+@objective_option
+@ignore_option
 @format_option
 @quiet_option
-@server_option
+@server_option()
 def command(
+    backend: Backend,
     mission: MissionFile,
     plan: Path,
+    objective: str | None,
+    ignore: tuple[str, ...],
     form: str,
     quiet: bool,
     verbose: bool,
 ) -> int:
     """Recompute a PLAN of a MISSION from scratch, by code that no allocator uses.
 
-    Exits with 1 if the plan is not admissible or a figure in it is wrong.
+    Exits with 1 if the plan is not admissible or a figure in it is wrong. All rules hold but those to --ignore,
+    whatever the plan says of itself.
     """
     from muster.cli.plan_tables import print_verdict
-    from muster.verification import verify
 
     loaded = mission.load(verbose=verbose)
-    given = load_plan(plan, loaded, quiet=quiet, verbose=verbose)
-    verdict = verify(loaded, given)
+    given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
+    verdict = backend.verify(loaded, given, ignore, objective)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:

@@ -109,6 +109,16 @@ class PlanEntry:
     at: datetime
     plan: Mapping[str, Any]
 
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """The rules that were ignored when the server made it; none of an uploaded plan, whatever it says."""
+        return tuple(self.plan.get("ignored", ())) if self.origin == "planned" else ()
+
+    @property
+    def objective(self) -> str | None:
+        """The objective for which the server made it; of an uploaded plan None: the mission's."""
+        return (self.plan.get("objective") or {}).get("name") if self.origin == "planned" else None
+
 
 @dataclass(frozen=True, kw_only=True)
 class Job:

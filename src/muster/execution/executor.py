@@ -93,7 +93,7 @@ class Executor:
         peers: Peers | None = None,
     ) -> None:
         self.mission = mission
-        self.ledger = Ledger.of(mission.tasks, "prerequisites" not in plan.ignored)
+        self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored)
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
         self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in own}
         self.ended_s: float | None = None

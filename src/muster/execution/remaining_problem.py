@@ -101,7 +101,8 @@ def posed(rest: Rest, travel: Travel) -> Posed:
     tasks, hopeless = _tasks_with_hope(rest, travel)
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
-    problem = Problem.compile(mission, ignored=rest.ignored)
+    others = tuple(rule for rule in rest.ignored if rule != "lock")  # the tasks are without it already
+    problem = Problem.compile(mission, ignored=others)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
@@ -139,7 +140,7 @@ def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, 
     """The tasks that can be planned, as they are now; and why the others cannot."""
     hopeless: dict[str, str] = {}
     hopeful: dict[str, Task] = {}
-    needs_order = "prerequisites" not in rest.ignored
+    needs_order = "prerequisite" not in rest.ignored
     for task in rest.tasks:
         robots, why = _robots_for(rest, task)
         if not travel.knows(task.id):
@@ -164,13 +165,14 @@ def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, 
 def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
-    if task.only_robots is None and not refused:
+    lock = None if "lock" in rest.ignored else task.only_robots
+    if lock is None and not refused:
         return None, ""
     crew = [standing.robot.id for standing in rest.crew]
-    meant = crew if task.only_robots is None else [name for name in task.only_robots if name in crew]
+    meant = crew if lock is None else [name for name in lock if name in crew]
     robots = tuple(name for name in meant if name not in refused)
-    if task.only_robots is not None and not meant:
-        return robots, f"lock: only {', '.join(task.only_robots)} may do it, and takes no part any more"
+    if lock is not None and not meant:
+        return robots, f"lock: only {', '.join(lock)} may do it, and takes no part any more"
     return robots, in_one_line(refused.items())
 
 

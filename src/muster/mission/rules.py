@@ -6,7 +6,6 @@ from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Choice, Flag, Number, Whole
 
 OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
-IGNORABLE = ("prerequisites", "suitability", "skills", "capacity")
 
 
 @record

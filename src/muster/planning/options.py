@@ -12,12 +12,14 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import IGNORABLE, OBJECTIVES
+from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.model import OBJECTIVES
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
+    from muster.allocation.function_allocator import AllocatingFunction
 
 DEFAULT_ALLOCATOR = "search"
 BOUNDS = ("quick", "exact")
@@ -36,7 +38,8 @@ class PlanningOptions:
     Parameters
     ----------
     allocator
-        the name of an algorithm (`muster solve --list-allocators`), or an allocator.
+        the name of an algorithm (`muster solve --list-allocators`), an allocator, or a function that makes
+        routes.
     parameters
         of the allocator, by name.
     objective
@@ -59,7 +62,7 @@ class PlanningOptions:
         for a value that no mission and no allocator can have.
     """
 
-    allocator: str | Allocator = _option(DEFAULT_ALLOCATOR, "The algorithm.")
+    allocator: str | Allocator | AllocatingFunction = _option(DEFAULT_ALLOCATOR, "The algorithm.")
     parameters: Mapping[str, Any] = field(
         default_factory=dict, metadata={"help": "Parameters of the allocator, by name."}
     )
@@ -97,24 +100,10 @@ def options_from(data: Mapping[str, Any]) -> PlanningOptions:
     return PlanningOptions(**{name: value for name, value in data.items() if value is not None})
 
 
-def require_rules(names: Collection[str]) -> None:
-    """Refuse rules that do not exist, or cannot be ignored.
-
-    Raises
-    ------
-    ParameterError
-    """
-    for name in names:
-        if name not in IGNORABLE:
-            near = did_you_mean(str(name), IGNORABLE)
-            raise ParameterError(f"ignore: {shown(name)}; expected {' or '.join(IGNORABLE)}{near}")
-
-
 def _rules(given: object) -> tuple[str, ...]:
     if isinstance(given, str) or not isinstance(given, Collection):
         raise ParameterError(f"ignore: {shown(given)}; expected a list of {', '.join(IGNORABLE)}")
-    require_rules(given)
-    return tuple(given)
+    return ignored_rules(given)
 
 
 def _is_allocator(value: object) -> bool:
@@ -134,7 +123,7 @@ def _are_parameters(value: object) -> bool:
 
 
 _KINDS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "allocator": (_is_allocator, "the name of an allocator, or an allocator"),
+    "allocator": (_is_allocator, "a name, an Allocator or a function"),
     "parameters": (_are_parameters, "names and values of the allocator's parameters"),
     "objective": (lambda value: value is None or value in OBJECTIVES, " or ".join(OBJECTIVES)),
     "time_limit": (_is_time, "seconds, at least 0"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -24,6 +24,7 @@ from muster.execution import (
     way_of,
 )
 from muster.mission.errors import NetworkError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
@@ -45,6 +46,7 @@ def carry_out_live(
     fleet: Fleet,
     *,
     seed: int = 0,
+    ignore: str | Collection[str] = (),
     recorder: Recorder | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
@@ -59,6 +61,8 @@ def carry_out_live(
         has a port for each robot of the mission, and stays open.
     seed
         of planning anew.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     recorder
         is told all that happens, and where robots say that they are.
     on_event
@@ -98,6 +102,8 @@ class Live:
         has a port for each robot of the mission, and stays open.
     seed
         of planning anew.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     recorder
         is told all that happens, and where robots say that they are.
     past, begin_s
@@ -116,6 +122,7 @@ class Live:
         fleet: Fleet,
         *,
         seed: int = 0,
+        ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         past: Past | None = None,
         begin_s: float = 0.0,
@@ -125,7 +132,7 @@ class Live:
         travel = travel_of(mission, roads)
         self.executor = Executor(
             mission,
-            plan,
+            replace(plan, ignored=ignored_rules(ignore)),
             self._fleet.ports,
             way=way_of(mission, roads),
             travel=travel,

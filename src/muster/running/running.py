@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from muster.mission.errors import ParameterError
+from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.planning.request import require_mission
+from muster.running.simulation_options import SimulationOptions
 
 if TYPE_CHECKING:
     import threading
@@ -32,7 +34,7 @@ def simulate(
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
     observers: Sequence[Recorder] = (),
-    **how: Any,
+    **how: Unpack[SimulationOptions],
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
 
@@ -51,7 +53,9 @@ def simulate(
     observers
         who else is told, such as `muster.report.live.FoxgloveServer`.
     how
-        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; and `speed`, times real time.
+        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`, `on_look`, `on_world`; `ignore`, rules that do
+        not hold, whatever the plan says of itself; and `speed`, times real time, `on_event`, which is called with each
+        event, and `halt`, which ends it when it is set.
 
     Raises
     ------
@@ -62,6 +66,7 @@ def simulate(
     MissingExtraError
         where an extra is not installed that is needed; a negotiation needs `net`, the physics world `physics`.
     """
+    require_known(how, (*SimulationOptions.__annotations__, "seed", "record", "film", "observers"))
     require_mission(mission)
     carry_out = _carrying_out(mission, plan)
     if film is not None:
@@ -83,6 +88,7 @@ def carry_out(
     fleet: Fleet,
     *,
     seed: int = 0,
+    ignore: str | Collection[str] = (),
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
     on_event: Callable[[ExecutionEvent], None] | None = None,
@@ -96,6 +102,8 @@ def carry_out(
         the robots, behind a bridge of `muster.bridges`; stays open.
     seed
         of planning anew.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     record
         a file (.mcap) that is to hold what happened; needs the extra `record`.
     observers
@@ -119,7 +127,9 @@ def carry_out(
     require_mission(mission)
     remarks: list[str] = []
     with _recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
-        report = carry_out_live(mission, plan, fleet, seed=seed, recorder=recorder, on_event=on_event, halt=halt)
+        report = carry_out_live(
+            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_event=on_event, halt=halt
+        )
     return replace(report, remarks=(*report.remarks, *remarks))
 
 

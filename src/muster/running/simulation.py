@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from muster.execution import (
     Executor,
@@ -21,22 +21,24 @@ from muster.execution import (
     travel_of,
     way_of,
 )
-from muster.mission.errors import ParameterError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import Roads
 from muster.running.camera_search import Lookout, OnLook, lookout_for, with_found
 from muster.running.state_estimation import heard
-from muster.simulation import NO_NOISE, KinematicWorld, Noise, SimulatedWorld
+from muster.running.worlds import recorded_world
+from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 from muster.verification import verify
 
 if TYPE_CHECKING:
+    from typing import Unpack
+
     from muster.execution.record import ExecutionEvent
     from muster.execution.report import Report
+    from muster.running.simulation_options import RecordedWorldOptions
 
 OnWorld = Callable[[SimulatedWorld], None]
-WORLDS = ("kinematic", "physics")
 LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
 
@@ -56,6 +58,8 @@ class Simulation:
         how robots pass each other: orca, rvo, hrvo or none.
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
     recorder
         is told all that happens.
     on_look
@@ -81,6 +85,7 @@ class Simulation:
         dt_s: float = 0.1,
         avoidance: str = "orca",
         noise: Noise = NO_NOISE,
+        ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
@@ -93,7 +98,7 @@ class Simulation:
         self._hearing = heard(self._world)
         self._executor = Executor(
             mission,
-            _with_objective(mission, plan),
+            _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
             self._hearing.ports,
             way=way_of(mission, roads),
             travel=travel,
@@ -147,7 +152,7 @@ class Simulation:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
-                self._befalls(self._ahead.pop(0))
+                self._take_event(self._ahead.pop(0))
             self._look()
             self._tick()
         return self._executor.events[first:]
@@ -165,11 +170,11 @@ class Simulation:
         """
         if event.robot_joins is not None:
             self._executor.require_newcomer(event.robot_joins)
-            self._befalls(event)  # the executor asks for its port
+            self._take_event(event)  # the executor asks for its port
             self._executor.report(event)
         else:
             self._executor.report(event)
-            self._befalls(event)
+            self._take_event(event)
         if replan:
             self.replan()
 
@@ -229,7 +234,7 @@ class Simulation:
     def _is_open(self, event: Event) -> bool:
         return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
 
-    def _befalls(self, event: Event) -> None:
+    def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""
         if event.robot_fails is not None:
             self._world.fail(event.robot_fails)
@@ -243,37 +248,11 @@ class Simulation:
                 self._lookout.join(event.robot_joins)
 
 
-def world_named(name: str) -> Callable[..., SimulatedWorld]:
-    """What makes a world of that name for a mission.
-
-    Raises
-    ------
-    ParameterError
-        if there is none.
-    MissingExtraError
-        if it needs an extra that is not installed.
-    """
-    if name == "kinematic":
-        return KinematicWorld
-    if name != "physics":
-        raise ParameterError(f"world: {name}; expected {', '.join(WORLDS)}{did_you_mean(name, WORLDS)}")
-    from muster.simulation.physics import PhysicsWorld
-
-    return PhysicsWorld
-
-
-def recorded_world(name: str, mission: Mission, recorder: Recorder | None, **how: Any) -> SimulatedWorld:
-    """The world of that name for a mission, which tells a recorder where bodies are."""
-    if recorder is not None:
-        how |= {"observer": recorder.on_step, "observe_s": 0.1}
-    return world_named(name)(mission, **how)
-
-
 def _with_objective(mission: Mission, plan: Plan) -> Plan:
     """A plan from elsewhere may not tell its objective: then as the judge has it."""
     if plan.objective_value is not None:
         return plan
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, plan.ignored, plan.objective)
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 
@@ -284,7 +263,7 @@ def carry_out(
     speed: float | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
-    **how: Any,
+    **how: Unpack[RecordedWorldOptions],
 ) -> Report:
     """Carry a plan out to its end; see `Simulation`.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan
@@ -45,7 +45,7 @@ def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], l
 
 
 def broken_rules(
-    mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], unit: str, tolerance: float
+    mission: Mission, ignored: Collection[str], routes: Sequence[MeasuredRoute], unit: str, tolerance: float
 ) -> Iterator[Violation]:
     """Find every broken rule, robot by robot in the order of the routes; deadlocks are for the schedule to find.
 
@@ -54,30 +54,30 @@ def broken_rules(
     done = {step.task.id for route in routes for step in route.steps}
     for route in routes:
         for step in route.steps:
-            yield from _pair(mission, plan, route.robot, step.task)
-            if "prerequisites" not in plan.ignored:
+            yield from _pair(mission, ignored, route.robot, step.task)
+            if "prerequisite" not in ignored:
                 yield from _missing_prerequisites(route.robot, step.task, done)
         yield from _unreachable(route)
-        yield from _above_capacity(mission, plan, route, unit, max(CAPACITY_TOLERANCE, tolerance))
+        yield from _above_capacity(mission, ignored, route, unit, max(CAPACITY_TOLERANCE, tolerance))
 
 
-def _pair(mission: Mission, plan: Plan, robot: Robot, task: Task) -> Iterator[Violation]:
+def _pair(mission: Mission, ignored: Collection[str], robot: Robot, task: Task) -> Iterator[Violation]:
     """Check the rules on who may do what; suitability is [tcf-thesis] (3.15)."""
-    if "skills" not in plan.ignored:
+    if "skill" not in ignored:
         lacking = [skill for skill in task.requires if skill not in robot.skills]
         if lacking:
             yield Violation("skill", robot.id, task.id, f"the robot lacks {', '.join(lacking)}")
     doing = doing_at(robot, task)
     if isinstance(doing, Impossible):  # whatever is ignored: there is nothing that it could do
         yield Violation("skill", robot.id, task.id, doing.reason)
-    if mission.suitability is not None and "suitability" not in plan.ignored:
+    if mission.suitability is not None and "suitability" not in ignored:
         assert robot.type is not None  # where there is a table, every robot and task has a type
         assert task.type is not None
         score, least = mission.suitability[robot.type].get(task.type, 0.0), mission.rules.min_suitability
         if score < least:
             detail = f"{robot.type} scores {score:g} for {task.type}, at least {least:g} is needed"
             yield Violation("suitability", robot.id, task.id, detail)
-    if task.only_robots is not None and robot.id not in task.only_robots:
+    if "lock" not in ignored and task.only_robots is not None and robot.id not in task.only_robots:
         yield Violation("lock", robot.id, task.id, f"only for {', '.join(task.only_robots)}")
 
 
@@ -102,18 +102,18 @@ def _unreachable(route: MeasuredRoute) -> Iterator[Violation]:
         yield Violation("unreachable", route.robot.id, None, f"no way from {here} to where the route must end")
 
 
-def capacity_of(mission: Mission, plan: Plan, robot: Robot) -> float | None:
+def capacity_of(mission: Mission, ignored: Collection[str], robot: Robot) -> float | None:
     """Return what the robot may use, in the unit of usage; None where it is unlimited or the rule is ignored."""
-    if robot.work_capacity is None or "capacity" in plan.ignored:
+    if robot.work_capacity is None or "capacity" in ignored:
         return None
     return (1 - mission.rules.capacity_reserve) * robot.work_capacity
 
 
 def _above_capacity(
-    mission: Mission, plan: Plan, route: MeasuredRoute, unit: str, tolerance: float
+    mission: Mission, ignored: Collection[str], route: MeasuredRoute, unit: str, tolerance: float
 ) -> Iterator[Violation]:
     """Check [tcf-thesis] (3.14)."""
-    capacity = capacity_of(mission, plan, route.robot)
+    capacity = capacity_of(mission, ignored, route.robot)
     if capacity is not None and route.usage > capacity * (1 + tolerance):
         detail = f"usage {route.usage:.10g} {unit}, at most {capacity:.10g} {unit}"
         yield Violation("capacity", route.robot.id, None, detail)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from muster.mission.errors import Finding, PlanError
-from muster.mission.model import IGNORABLE, OBJECTIVES, Mission
+from muster.mission.errors import ParameterError
+from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
@@ -18,10 +19,18 @@ from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
 
 
-def verify(mission: Mission, plan: Plan) -> Verdict:
-    """Judge a plan: recompute its figures and find everything that is wrong with it (DESIGN section 4).
+def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
+    """Judge a plan: recompute its figures and find everything that is wrong with it (docs/design.md, Meaning).
 
-    What does not exist or repeats is left out, and the rest is judged. A leg without a way counts nothing.
+    A task or robot that does not exist, or stands twice, is left out, and the rest is judged. A leg without a way
+    counts nothing.
+
+    Parameters
+    ----------
+    ignore
+        rules that do not hold, of IGNORABLE. What the plan says of itself in `ignored` has no effect.
+    objective
+        the one that the plan was to minimise; the mission's by default.
 
     Raises
     ------
@@ -29,32 +38,41 @@ def verify(mission: Mission, plan: Plan) -> Verdict:
         if the mission asks for what is not supported yet (see `require_supported`).
     MissionError, MissingExtraError
         for travel over a map: if the map is wrong, or the extra that reads maps is absent.
-    PlanError
-        if the plan, built in Python, names an objective or an ignored rule that does not exist.
+    ParameterError
+        for an unknown objective or rule.
     """
     require_supported(mission)
-    _refuse_unknown_words(plan)
+    ignored = ignored_rules(ignore)
+    objective = mission.rules.objective if objective is None else objective
+    if objective not in OBJECTIVES:
+        raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
     tasks_of, violations = known_routes(mission, plan)
     travel = Travel(mission)
     routes = [measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots]
     unit = "s" if mission.rules.usage == "time" else "m"
-    violations += broken_rules(mission, plan, routes, unit, travel.tolerance)
-    times = schedule(routes, awaited_in(routes, ignored="prerequisites" in plan.ignored))
+    violations += broken_rules(mission, ignored, routes, unit, travel.tolerance)
+    times = schedule(routes, awaited_in(routes, ignored="prerequisite" in ignored))
     if isinstance(times, Deadlock):
         violations.append(Violation("deadlock", None, None, times.detail))
-    verdict = _verdict(mission, plan, routes, None if isinstance(times, Deadlock) else times, unit)
+    verdict = _verdict(mission, ignored, objective, routes, None if isinstance(times, Deadlock) else times, unit)
     return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict, travel.tolerance)))
 
 
 def _verdict(
-    mission: Mission, plan: Plan, routes: Sequence[MeasuredRoute], times: Mapping[str, Times] | None, unit: str
+    mission: Mission,
+    ignored: Collection[str],
+    objective: str,
+    routes: Sequence[MeasuredRoute],
+    times: Mapping[str, Times] | None,
+    unit: str,
 ) -> Verdict:
     """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
     usages = [route.usage for route in routes]
     steps = [step for route in routes for step in route.steps]
     return Verdict(
         violations=(),
-        objective_name=plan.objective or mission.rules.objective,
+        objective_name=objective,
+        ignored=tuple(ignored),
         usage_unit=unit,
         total_cost=sum(usages),  # [tcf-thesis] (3.11)
         max_usage=max(usages),
@@ -64,7 +82,7 @@ def _verdict(
         tasks_completed=len(steps),
         tasks_total=len(mission.tasks),
         weight_completed=sum((step.task.priority for step in steps), start=0.0),
-        routes=tuple(_figures(route, capacity_of(mission, plan, route.robot), times) for route in routes),
+        routes=tuple(_figures(route, capacity_of(mission, ignored, route.robot), times) for route in routes),
     )
 
 
@@ -87,16 +105,3 @@ def _visits(route: MeasuredRoute, times: Mapping[str, Times]) -> Iterator[Visit]
     for step in route.steps:
         time = times[step.task.id]
         yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)
-
-
-def _refuse_unknown_words(plan: Plan) -> None:
-    """Refuse words that `read_plan` would have refused; a misspelt rule must not look as if it had been ignored."""
-    found = [
-        Finding("<plan>", None, "ignored", shown(name), " or ".join(IGNORABLE))
-        for name in plan.ignored
-        if name not in IGNORABLE
-    ]
-    if plan.objective is not None and plan.objective not in OBJECTIVES:
-        found.append(Finding("<plan>", None, "objective.name", shown(plan.objective), " or ".join(OBJECTIVES)))
-    if found:
-        raise PlanError(found)

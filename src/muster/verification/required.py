@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -9,15 +11,17 @@ from muster.verification.judge import verify
 from muster.verification.verdict import Verdict
 
 
-def require_admissible(mission: Mission, plan: Plan, file: str) -> Verdict:
-    """What the judge says of a plan that breaks no rule; `file` names it in the message.
+def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collection[str] = ()) -> Verdict:
+    """What the judge says of a plan that breaks no rule but those to `ignore`; `file` names it in the message.
+
+    Which objective the plan was to minimise makes no difference to that.
 
     Raises
     ------
     PlanError
         if it breaks one.
     """
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, ignore, plan.objective)
     if not verdict.valid:
         first, *others = verdict.violations
         more = f" and {len(others)} more" if others else ""

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from muster.mission.auction_book import Book
-from muster.mission.model import Mission
+from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.verification.verdict import Verdict, Violation
 
@@ -49,10 +49,14 @@ def _book(mission: Mission, plan: Plan, book: Book) -> Iterator[Violation]:
 
 
 def _figures(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
-    value = verdict.value()
+    objective = plan.objective or verdict.objective_name
+    if objective != verdict.objective_name:
+        detail = f"the plan's is {objective}, and {verdict.objective_name} was to be minimised"
+        yield Violation("objective", None, None, detail)
+    value = verdict.value(objective) if objective in OBJECTIVES else None
     relative = max(RELATIVE_TOLERANCE, tolerance)
     figures = (
-        (f"objective {verdict.objective_name}", plan.objective_value, value),
+        (f"objective {objective}", plan.objective_value, value),
         ("usage_unit", plan.usage_unit, verdict.usage_unit),
         ("total_cost", plan.total_cost, verdict.total_cost),
         ("max_usage", plan.max_usage, verdict.max_usage),

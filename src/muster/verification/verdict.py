@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any
 
+from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
+from muster.mission.html_tables import html_line, html_table
 from muster.mission.value_types import shown
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 KINDS = (
     "unknown-robot",
@@ -22,6 +27,7 @@ KINDS = (
     "deadlock",
     "unassigned",
     "book",
+    "objective",
     "figure",
 )
 """The kinds of violation."""
@@ -74,11 +80,13 @@ class Verdict:
     """The judgement of one plan.
 
     `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` is None where routes and prerequisites
-    deadlock. `routes` holds every robot, in mission order. All numbers are finite.
+    deadlock. `ignored` are the rules that the caller had ignored. `routes` holds every robot, in mission order. All
+    numbers are finite.
     """
 
     violations: tuple[Violation, ...]
     objective_name: str
+    ignored: tuple[str, ...]
     usage_unit: str
     total_cost: float
     max_usage: float
@@ -103,7 +111,7 @@ class Verdict:
         return sum(visit.starts_s - visit.arrives_s for route in self.routes for visit in route.visits)
 
     def value(self, name: str | None = None) -> float | None:
-        """Return the value of an objective, the plan's own by default; None for the makespan of a plan that deadlocks.
+        """Return the value of an objective, by default the one judged by; None for the makespan of a deadlocked plan.
 
         Raises
         ------
@@ -127,6 +135,7 @@ class Verdict:
         return {
             "valid": self.valid,
             "violations": [asdict(violation) for violation in self.violations],
+            "ignored": list(self.ignored),
             "objective_name": self.objective_name,
             "objective": self.value(),
             "usage_unit": self.usage_unit,
@@ -139,3 +148,29 @@ class Verdict:
             "tasks_total": self.tasks_total,
             "weight_completed": self.weight_completed,
         }
+
+    def __repr__(self) -> str:
+        return f"<Verdict: {self._summary}>"
+
+    def _repr_html_(self) -> str:
+        wrong = [(v.kind, v.robot, v.task, v.detail) for v in self.violations]
+        routes = [(route.robot, " ".join(route.tasks), route.usage, route.capacity) for route in self.routes]
+        columns = ("robot", "tasks", f"usage ({self.usage_unit})", "capacity")
+        return (
+            html_line(self._summary)
+            + (html_table("Violations", ("kind", "robot", "task", "detail"), wrong) if wrong else "")
+            + html_table("Routes", columns, routes)
+        )
+
+    @property
+    def _summary(self) -> str:
+        count = len(self.violations)
+        judgement = "valid" if self.valid else f"{count} violation{'' if count == 1 else 's'}"
+        value = self.value()
+        figure = "no schedule" if value is None else f"{self.objective_name} {value:.2f}"
+        return f"{judgement}, {self.tasks_completed} of {self.tasks_total} tasks, {figure}"
+
+    def to_frame(self) -> DataFrame:
+        """A DataFrame with a row for each visit of a task: robot, task and times; needs the extra `frames`."""
+        rows = ({"robot": route.robot, **asdict(visit)} for route in self.routes for visit in route.visits)
+        return data_frame(rows, ("robot", *(f.name for f in fields(Visit))))

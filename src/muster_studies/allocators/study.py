@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from statistics import fmean
 
 from muster.allocation.registry import ALLOCATORS
 from muster.library import mission_names, mission_path
 from muster.mission.model import OBJECTIVES
 from muster_studies.effort import Effort
-from muster_studies.processes import run_cases
+from muster_studies.repetition import Repetition, over_seeds
 from muster_studies.runs import Case, Outcome, Sample, mission_named
-from muster_studies.tables import Cell, Report, Table
+from muster_studies.tables import Cell, Table
 
 SECONDS, QUICK_SECONDS = 0.25, 0.05
 SUMMARY = "summary"
@@ -23,41 +24,42 @@ MISSIONS = tuple(name for name in mission_names() if str(mission_path(name)).end
 Samples = Mapping[Case, Sample]
 
 
-class Allocators:
-    """Every allocator against every other, on everything that ships."""
+def _missions(effort: Effort) -> tuple[str, ...]:
+    """Those whose tables are wanted; all where only the summary is."""
+    return tuple(name for name in effort.tables if name != SUMMARY) or MISSIONS
 
-    name = "allocators"
-    summary = "all allocators on all shipped missions and objectives"
-    tables = (SUMMARY, *MISSIONS)
 
-    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
-        """Run all, or those on the missions that `effort` names as tables; `summary` sums up what is run.
+@dataclass(frozen=True)
+class MissionTable:
+    """The value of each objective that each allocator comes to on a mission."""
 
-        Raises
-        ------
-        ParameterError
-            if there is no such table.
-        """
-        missions = tuple(name for name in effort.wanted(self.tables) if name != SUMMARY) or MISSIONS
-        seeds = effort.seeds or 1
-        cases = [case for name in missions for case in _cases(name, effort).values()]
-        samples = run_cases(cases, seeds, workers, on_done)
-        outcomes = [outcome for sample in samples.values() for outcome in sample.outcomes]
-        tables = [_summary(missions, effort, samples), *(_table(name, effort, samples) for name in missions)]
-        return Report(
-            study=self.name,
-            document="all shipped missions",
-            seeds=seeds,
-            runs=len(outcomes),
-            cpu_s=sum(outcome.cpu_s for outcome in outcomes),
-            legend=(
-                "Values of each objective by muster.verify, lower is better; (n): only n tasks are done, and more "
-                "tasks come before a lower value. Of several seeds the best counts.",
-                f"Anytime allocators have {_limit(effort)} for each plan. s: when the plan was found, the mean over "
-                "the objectives.",
-            ),
-            tables=tuple(tables),
-        )
+    number: str
+
+    def jobs(self, effort: Effort) -> Iterable[Case]:
+        return _cases(self.number, effort).values()
+
+    def table(self, effort: Effort, found: Samples) -> Table:
+        cases = _cases(self.number, effort)
+        rows = []
+        for allocator in ALLOCATORS:
+            best = [found[cases[allocator, objective]].best for objective in OBJECTIVES]
+            rows.append((allocator, *map(_cell, best), fmean(outcome.found_s for outcome in best)))
+        loaded = mission_named(self.number)
+        title = f"{len(loaded.tasks)} tasks, {len(loaded.robots)} robots; own objective {loaded.rules.objective}"
+        return Table(self.number, title, _COLUMNS, tuple(rows))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """How far each allocator is from the best value found, over all missions whose tables are wanted."""
+
+    number: str = SUMMARY
+
+    def jobs(self, effort: Effort) -> Iterable[Case]:
+        return [case for mission in _missions(effort) for case in _cases(mission, effort).values()]
+
+    def table(self, effort: Effort, found: Samples) -> Table:
+        return _summary(_missions(effort), effort, found)
 
 
 def _limit(effort: Effort) -> str:
@@ -80,17 +82,6 @@ def _cases(mission: str, effort: Effort) -> dict[tuple[str, str], Case]:
         for allocator in ALLOCATORS.values()
         for objective in OBJECTIVES
     }
-
-
-def _table(mission: str, effort: Effort, samples: Samples) -> Table:
-    cases = _cases(mission, effort)
-    rows = []
-    for allocator in ALLOCATORS:
-        best = [samples[cases[allocator, objective]].best for objective in OBJECTIVES]
-        rows.append((allocator, *map(_cell, best), fmean(outcome.found_s for outcome in best)))
-    loaded = mission_named(mission)
-    title = f"{len(loaded.tasks)} tasks, {len(loaded.robots)} robots; own objective {loaded.rules.objective}"
-    return Table(mission, title, _COLUMNS, tuple(rows))
 
 
 def _cell(outcome: Outcome) -> Cell:
@@ -125,3 +116,25 @@ def _summary(missions: tuple[str, ...], effort: Effort, samples: Samples) -> Tab
         f"{len(missions) * len(OBJECTIVES)} plans, those that do less than the best; they do not count in the means.",
     )
     return Table(SUMMARY, "Mean excess over the best plan found [%]", columns, tuple(rows), notes)
+
+
+def _remarks(effort: Effort, found: Samples) -> tuple[str, ...]:
+    return (
+        "Values of each objective by muster.verify, lower is better; (n): only n tasks are done, and more tasks come "
+        "before a lower value. Of several seeds the best counts.",
+        f"Anytime allocators have {_limit(effort)} for each plan. s: when the plan was found, the mean over the "
+        "objectives.",
+    )
+
+
+ALLOCATORS_STUDY = Repetition(
+    name="allocators",
+    summary="all allocators on all shipped missions and objectives",
+    document="all shipped missions",
+    reproductions=(Summary(), *map(MissionTable, MISSIONS)),
+    perform=over_seeds,
+    seeds=lambda effort: effort.seeds or 1,
+    always=(SUMMARY,),
+    remarks=_remarks,
+)
+"""Every allocator against every other, on everything that ships."""

@@ -45,7 +45,8 @@ class Paths:
                 mark = EQUAL if own.tasks == there.tasks else OTHER_TASKS + self._remark(auction, notes)
                 rows.append(row(self.columns, {**_cells(self._values(auction), own), "mark": mark}))
         title = f"{content(self.number)['title']}; own: {self._shared_terms()}"
-        return Table(self.number, title, self.columns, tuple(rows), notes.lines())
+        rule = f"{EQUAL}: the own path has the published tasks in their order."
+        return Table(self.number, title, self.columns, tuple(rows), notes.lines(), mark_rule=rule)
 
     def _values(self, auction: Auction) -> str:
         """Where an own row comes from: the terms that differ within the table."""
@@ -90,4 +91,5 @@ class Positions:
         remark = (
             f"Run as {mission}. The mission as printed is auction-2: with it none of Tables 5.18 to 5.20 comes out."
         )
-        return Table(self.number, published["title"], self.columns, tuple(rows), (*notes.lines(), remark))
+        rule, lines = f"{EQUAL}: the task of the mission is where the thesis puts it.", (*notes.lines(), remark)
+        return Table(self.number, published["title"], self.columns, tuple(rows), lines, mark_rule=rule)

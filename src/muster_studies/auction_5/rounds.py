@@ -42,7 +42,8 @@ class Bids:
             mark = ", ".join(_differences(there, here)) or EQUAL
             rows.append(row(columns, {"drone": drone, "values": "thesis", **there}))
             rows.append(row(columns, {"drone": drone, "values": "own", **here, "mark": mark}))
-        return Table(self.number, published["title"], columns, tuple(rows), decimals=DECIMALS)
+        rule = f"{EQUAL}: all own bids as published, to the printed digit."
+        return Table(self.number, published["title"], columns, tuple(rows), decimals=DECIMALS, mark_rule=rule)
 
 
 def _differences(there: Mapping[str, float], here: Mapping[str, float]) -> Iterator[str]:
@@ -74,7 +75,8 @@ class SubmittedBids:
             rows.append(row(self.columns, {"drone": drone, "values": "thesis", **there}))
             mark = EQUAL if _shown(there) == _shown(here) else "differs"
             rows.append(row(self.columns, {"drone": drone, "values": "own", **here, "mark": mark}))
-        return Table(self.number, published["title"], self.columns, tuple(rows), decimals=DECIMALS)
+        rule = f"{EQUAL}: own task, bid (to the printed digit) and winner as published."
+        return Table(self.number, published["title"], self.columns, tuple(rows), decimals=DECIMALS, mark_rule=rule)
 
 
 def _submitted(bids: Mapping[str, Bid]) -> dict[str, Cell]:

@@ -48,7 +48,7 @@ _LEGEND = (
     "MiniSum, MiniMax and MiniAve are the bids total, max and average. append: a task goes to the end of the path; "
     "insert: to where the path grows least. The lowest bid wins, unless a title says otherwise.",
     "Own bids are those of the auction's book; with the one decimal that the thesis prints here, in full in the data. "
-    "-: no bid (-1 in the thesis). ✓: equal, to the printed digit.",
+    "-: no bid (-1 in the thesis).",
     "Lengths in metres, those of published paths too, are recomputed by muster.verify. total: of all paths; max: of "
     "the longest; average: of the way to a task.",
     "done: tasks completed; most: tasks of the drone that has most; idle: drones without tasks; ms: processor time of "

@@ -108,7 +108,7 @@ def quality(case: Case, seeds: int, iterations: int | None = None) -> Quality:
 def _value(problem: Problem, case: Case, seed: int, iterations: int | None) -> float:
     stop = Stop(time_limit=case.seconds) if iterations is None else Stop(iterations=iterations)
     plan = ALLOCATORS["search"].solve(problem, stop, seed=seed)
-    verdict = accepted(problem.mission, plan, f"{case.name}, seed {seed}")
+    verdict = accepted(problem.mission, plan, f"{case.name}, seed {seed}", problem.ignored, problem.objective)
     value = verdict.value(case.objective)
     return float("inf") if value is None or verdict.tasks_completed < verdict.tasks_total else value
 

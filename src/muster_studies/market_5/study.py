@@ -19,12 +19,13 @@ _LEGEND = (
 
 MARKET_5 = IllustratedRepetition(
     name="market-5",
-    summary="search and tracking with lasers, market paper, section 5 (needs the extra physics)",
+    summary="search and tracking with lasers, market paper, section 5",
     document="market paper, sections 4.2, 4.3 and 5",
     legend=_LEGEND,
     reproductions=_TABLES,
     perform=one_by_one(performed),
     seeds=repetitions,
+    extras=("map", "physics"),
     pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
 )
 """Three robots track their ways and search with lasers: Figures 7 and 8, targets, localisation."""

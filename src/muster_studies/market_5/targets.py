@@ -9,10 +9,9 @@ from statistics import fmean
 from typing import Any
 
 from muster.perception.matching import ErrorTable
-from muster.running.simulation import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import CYLINDER_RADIUS_M, SCANNER, SURVIVORS
-from muster_studies.market_5.searches import FARTHEST_M, LEAST, SCAN_S, TRUE, Search, Searched, searches
+from muster_studies.market_5.searches import FARTHEST_M, LEAST, SCAN_S, TRUE, Search, Searched, found_by_world, searches
 from muster_studies.rescue.metrics import SHOWN_ROBOT
 from muster_studies.tables import Cell, Table, row
 
@@ -89,8 +88,7 @@ class Targets:
 
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         rows = []
-        for world in WORLDS:
-            found = [results[job] for job in searches(effort, [world])]
+        for world, found in found_by_world(effort, results):
             rows += [row(self.columns, {"world": world, "survivor": name, **_cells(found, name)}) for name in SURVIVORS]
             elsewhere = sum(len(one.found().extra) for one in found)
             rows.append(row(self.columns, {"world": world, "survivor": NOBODY, "found": str(elsewhere)}))

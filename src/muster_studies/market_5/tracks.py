@@ -1,7 +1,7 @@
 """Figure 8, errors and risk factor by where robots were and where they took themselves to be; and how far these differ.
 
-The paper's robots steer by odometry, and it measures by odometry: how well they follow what they believe. Ours steer by
-where they truly are; so what compares is the true error, and what odometry hides from the paper stands beside it.
+The paper's robots steer by odometry, and its errors are by odometry: how well robots follow their own estimates. Ours
+steer by their true places, so no own error is of the same measure. All are shown; none has a check mark.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from muster.running.simulation import WORLDS
+from muster_studies.comparison_marks import OTHER_MEASURE
 from muster_studies.effort import Effort
-from muster_studies.market_5.searches import LASER, ODOMETRY, PLACES, TRUE, Search, Searched, searches
+from muster_studies.market_5.searches import LASER, ODOMETRY, PLACES, TRUE, Search, Searched, found_by_world, searches
 from muster_studies.rescue.flights import NOISE, repetitions
 from muster_studies.rescue.metrics import METRICS, Metric, printed_goal_error_m
 from muster_studies.rescue.teams import ARENA, BODY_RADIUS_M, sent
@@ -57,8 +57,7 @@ class Figure8:
 
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         rows = []
-        for world in WORLDS:
-            found = [results[job] for job in searches(effort, [world])]
+        for world, found in found_by_world(effort, results):
             for metric in SHOWN:
                 for robot in team(effort):
                     cells = _cells(metric, {place: measured(found, metric, robot, place) for place in PLACES})
@@ -80,11 +79,11 @@ def _cells(metric: Metric, values: Mapping[str, Sequence[float]]) -> dict[str, C
 
 _NOTES = (
     "The paper's figure is a picture; in words it prints that no error at a goal was greater than 0.0065 m. ±: "
-    "standard deviation over the searches, as its bars over five. ✓: no true error at the goal greater than that; "
-    "nothing touched.",
-    "true: where robots were. odometry, laser: where they took themselves to be by odometry alone, and with landmarks. "
-    "The paper's robots steer by odometry and are measured by it; ours steer by true places. So its errors compare "
-    "with our true ones. By how much odometry is off, which it does not measure, shows in the columns beside them.",
+    "standard deviation over the searches, as its bars over five.",
+    "true: where robots were. odometry, laser: where they took themselves to be by odometry alone, and with landmarks.",
+    f"{OTHER_MEASURE}: the paper's robots steer by odometry, and its errors are by odometry; ours steer by true "
+    "places. Then the true error is that of steering, and the error by odometry adds what odometry is off: neither is "
+    "the paper's measure.",
     f"(7): at the same shares of the way, every {SAMPLE_M} m. (8) is summed over these points too. Section 5 calls "
     f"the least distance the risk factor: of centres; a body ({BODY_RADIUS_M} m) touches at {BODY_RADIUS_M} m.",
     f"Noise, ours, each step: a robot misses {NOISE.velocity} of its velocity (standard deviation), slips by up to "
@@ -114,8 +113,7 @@ class Localisation:
 
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         rows = []
-        for world in WORLDS:
-            found = [results[job] for job in searches(effort, [world])]
+        for world, found in found_by_world(effort, results):
             rows += [
                 row(self.columns, {"world": world, "robot": robot, **_off(found, robot)}) for robot in team(effort)
             ]

@@ -9,7 +9,7 @@ from typing import Any
 
 from muster.library import published
 from muster.verification import RouteFigures, Visit
-from muster_studies.comparison_marks import EQUAL, equal
+from muster_studies.comparison_marks import EQUAL, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.runs import Case, Sample
 from muster_studies.tables import Cell, Table, row
@@ -69,7 +69,8 @@ class Allocation:
             "many of them the robot does the same survivors as in the paper.",
         )
         title, _, remark = paper()["tables"][self.number]["title"].partition("; ")
-        return Table(self.number, title, self.columns, tuple(rows), (f"{remark.capitalize()}.", *notes))
+        rule, lines = f"{EQUAL}: the robot does the same survivors as published.", (f"{remark.capitalize()}.", *notes)
+        return Table(self.number, title, self.columns, tuple(rows), lines, mark_rule=rule)
 
 
 def _tasks(routes: tuple[RouteFigures, ...], robot: str) -> tuple[str, ...]:
@@ -112,7 +113,8 @@ class TimeChart:
             "straight and at full speed: the two times do not compare.",
             f"chart: a character is {CHARACTER_S} s; {TRAVEL} travel, {EXECUTION} execution, by the judge's schedule.",
         )
-        return Table(self.number, "Time chart of the allocation", self.columns, tuple(rows), notes)
+        title, rule = "Time chart of the allocation", equal_rule("B, the time of execution, is")
+        return Table(self.number, title, self.columns, tuple(rows), notes, mark_rule=rule)
 
 
 def execution_s(robot: str) -> float:

@@ -13,7 +13,7 @@ _LEGEND = (
     "A is travelled distance by velocity, B the sum of execution times by aging factor; a robot takes A + B, and the "
     "greatest A + B is what is minimised.",
     "All own numbers are recomputed by muster.verify. best, mean and worst are over all seeds; s is the processor time "
-    "of a run (the mean over all seeds). ✓: equal.",
+    "of a run (the mean over all seeds).",
 )
 
 MARKET_RESCUE = Repetition(

@@ -28,7 +28,7 @@ def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
     cost = Cost()
     if cost.number not in numbers:
         return []
-    found = _DO(cost.jobs(effort), effort, 1, None).found
+    found = _DO(cost.jobs(effort), None, 1, None).found
     path = folder / "negotiation.png"
     save_figure(_figure(cost.table(effort, found)), path)
     return [path]
@@ -67,9 +67,9 @@ NEGOTIATION = IllustratedRepetition[Talk, Said](
     name="negotiation",
     summary="what agreeing without a centre costs as the team grows, and how good the plans are",
     document="no publication: simulated network, 50 ms each way",
-    legend=(),
     reproductions=(Cost(),),
     perform=_DO,
+    extras=("net",),
     pictures=draw,
 )
 """The auction and bundles without a centre, beside search in one process, with and without loss."""

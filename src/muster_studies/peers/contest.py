@@ -1,9 +1,9 @@
-"""One run of one solver on one mission, judged; and the runs of all solvers on all missions, one after the other."""
+"""One run of one solver on one mission, judged; and the runs of all solvers on all missions."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean
@@ -150,7 +150,7 @@ def undisturbed(run: Run) -> Result:
 
 def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float, cpu: float) -> Result:
     took_s, cpu_s = time.perf_counter() - begin - answer.build_s, time.process_time() - cpu
-    verdict = verify(problem.mission, plan)
+    verdict = verify(problem.mission, plan, problem.ignored, problem.objective)
     value = verdict.value(run.match.objective) or 0.0  # none of a plan that deadlocks, which is invalid
     fault = None
     if not verdict.valid:
@@ -171,16 +171,16 @@ def _judged(run: Run, problem: Problem, plan: Plan, answer: Answer, begin: float
     )
 
 
-def perform_all(
-    runs: Sequence[Run], on_done: Callable[[int, int], None] | None = None
-) -> Mapping[tuple[Match, str], Standing]:
-    """All runs, one at a time, so that none takes the processor from another."""
-    results: dict[tuple[Match, str], list[Result]] = {}
-    for done, run in enumerate(runs, 1):
-        results.setdefault((run.match, run.solver), []).append(undisturbed(run))
-        if on_done is not None:
-            on_done(done, len(runs))
-    return {key: Standing(tuple(found)) for key, found in results.items()}
+Standings = Mapping[tuple[Match, str], Standing]
+"""By match and solver."""
+
+
+def standings_of(results: Iterable[Result]) -> Standings:
+    """The results of each solver on each match."""
+    found: dict[tuple[Match, str], list[Result]] = {}
+    for result in results:
+        found.setdefault((result.run.match, result.run.solver), []).append(result)
+    return {key: Standing(tuple(some)) for key, some in found.items()}
 
 
 def runs_of(matches: Iterable[Match], solvers: Sequence[str], seconds: float, seeds: int) -> list[Run]:

@@ -130,7 +130,8 @@ class _Run:
         return [[index[j] for j in route] for route in routes]
 
     def _admissible(self, routes: Routes) -> bool:
-        return verify(self._problem.mission, self._instance.plan(self.answer(routes), CpSat.name)).valid
+        problem, plan = self._problem, self._instance.plan(self.answer(routes), CpSat.name)
+        return verify(problem.mission, plan, problem.ignored, problem.objective).valid
 
     def _rank(self, routes: list[list[int]]) -> tuple[float, float]:
         weight, value = self._problem.value(routes)

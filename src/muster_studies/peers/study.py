@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass
 from statistics import fmean
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
 from muster_studies.effort import Effort
-from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, Standing, perform_all, runs_of
+from muster_studies.peers.contest import (
+    OWN,
+    PEERS,
+    Match,
+    Result,
+    Run,
+    Standing,
+    Standings,
+    runs_of,
+    standings_of,
+    undisturbed,
+)
 from muster_studies.peers.machine import machine, versions
-from muster_studies.tables import Cell, Notes, Report, Table
+from muster_studies.repetition import Repetition, one_by_one
+from muster_studies.tables import Cell, Notes, Table
 
 LARGE = "large"
 IGNORED = ("prerequisites", "suitability")
@@ -33,73 +44,86 @@ _SOLVERS: Mapping[str, tuple[str, ...]] = {
 }
 _LARGE_SOLVERS = ("OR-Tools", "PyVRP", "VROOM")
 
-Standings = Mapping[tuple[Match, str], Standing]
-
 
 @dataclass(frozen=True)
 class Limits:
-    """Seconds that solvers have: all of them on a shipped mission; `search`, and its peers, on a large one."""
+    """Seconds that solvers have: all of them on a shipped mission; `search`, and its peers, on a large one.
+
+    Raises
+    ------
+    ParameterError
+        if one is not above 0.
+    """
 
     all: float
     own_large: float
     peers_large: float
 
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if not value > 0:
+                raise ParameterError(f"{name}: {value}; expected a number above 0")
+
 
 _USUAL, _SHORT = Limits(2.0, 1.0, 60.0), Limits(0.3, 0.1, 0.5)
 
 
-class Peers:
-    """`search` against OR-Tools, PyVRP and VROOM at equal time; needs the extra `studies`."""
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """One table: an objective, or `large`. Where `limits` are given they take the place of the usual ones."""
 
-    name = "peers"
-    summary = "search against OR-Tools, PyVRP and VROOM at equal time (needs the extra studies)"
-    tables: tuple[str, ...] = (*OBJECTIVES, LARGE)
+    number: str
+    limits: Limits | None = None
 
-    def __init__(self, seconds: float | None = None, large_seconds: float | None = None) -> None:
-        """Take other time limits than usual: of each run, and of a peer's run on a large mission.
+    def jobs(self, effort: Effort) -> list[Run]:
+        limits, seeds = self.limits or _limits(effort), _seeds(effort)
+        matches = _matches(self.number, effort.quick)
+        if self.number != LARGE:
+            return runs_of(matches, _SOLVERS[self.number], limits.all, seeds)
+        own = runs_of(matches, (OWN,), limits.own_large, seeds)
+        return [*own, *runs_of(matches, _LARGE_SOLVERS, limits.peers_large, 1)]
 
-        Raises
-        ------
-        ParameterError
-            if one is not above 0.
-        """
-        for name, value in (("seconds", seconds), ("large_seconds", large_seconds)):
-            if value is not None and not value > 0:
-                raise ParameterError(f"{name}: {value}; expected a number above 0")
-        self._seconds, self._large_seconds = seconds, large_seconds
+    def table(self, effort: Effort, found: Mapping[Run, Result]) -> Table:
+        standings = standings_of(found[run] for run in self.jobs(effort))
+        if self.number == LARGE:
+            return _large_table(effort.quick, standings)
+        solvers, notes = _SOLVERS[self.number], Notes()
+        columns = _columns(solvers)
+        rows = [_row(match, solvers, standings, notes) for match in _matches(self.number, effort.quick)]
+        title = f"Objective {self.number}: each solver's values, and those by the mean of search"
+        return Table(self.number, title, columns, (*rows, _mean_row(columns, rows)), notes.lines(), decimals=3)
 
-    def run(self, effort: Effort, workers: int = 1, on_done: Callable[[int, int], None] | None = None) -> Report:
-        """Run the tables asked for; one run at a time whatever `workers` says, for equal conditions.
 
-        Raises
-        ------
-        ParameterError
-            if there is no such table, or for iterations, which no two solvers have in common.
-        MissingExtraError
-            if a peer is not installed.
-        """
-        if effort.iterations is not None:
-            raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
-        found = versions(PEERS.values())
-        wanted = effort.wanted(self.tables)
-        seeds = effort.seeds or (_QUICK_SEEDS if effort.quick else _SEEDS)
-        limits = self._limits(effort.quick)
-        runs = list(chain.from_iterable(_runs(number, effort.quick, limits, seeds) for number in wanted))
-        standings = perform_all(runs, on_done)
-        results = [result for standing in standings.values() for result in standing.results]
-        return Report(
-            study=self.name,
-            document="search against solvers from elsewhere",
-            seeds=seeds,
-            runs=len(results),
-            cpu_s=sum(result.cpu_s for result in results),
-            legend=(*_legend(found, limits, seeds), _shares(results)),
-            tables=tuple(_table(number, effort.quick, standings) for number in wanted),
-        )
+def peers_study(limits: Limits | None = None) -> Repetition[Run, Result]:
+    """`search` against OR-Tools, PyVRP and VROOM at equal time, one run at a time for equal conditions.
 
-    def _limits(self, quick: bool) -> Limits:
-        usual = _SHORT if quick else _USUAL
-        return Limits(self._seconds or usual.all, usual.own_large, self._large_seconds or usual.peers_large)
+    `limits` take the place of the usual ones.
+    """
+    return Repetition(
+        name="peers",
+        summary="search against OR-Tools, PyVRP and VROOM at equal time",
+        document="search against solvers from elsewhere",
+        reproductions=tuple(Comparison(number=number, limits=limits) for number in (*OBJECTIVES, LARGE)),
+        perform=one_by_one(undisturbed),
+        seeds=_seeds,
+        extras=("studies",),
+        check=_check,
+        remarks=lambda effort, found: (*_legend(limits or _limits(effort), _seeds(effort)), _shares(found.values())),
+    )
+
+
+def _check(effort: Effort) -> None:
+    if effort.iterations is not None:
+        raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
+    versions(PEERS.values())
+
+
+def _limits(effort: Effort) -> Limits:
+    return _SHORT if effort.quick else _USUAL
+
+
+def _seeds(effort: Effort) -> int:
+    return effort.seeds or (_QUICK_SEEDS if effort.quick else _SEEDS)
 
 
 def _matches(number: str, quick: bool) -> list[Match]:
@@ -111,15 +135,8 @@ def _matches(number: str, quick: bool) -> list[Match]:
     return [*teams, *(Match(mission=name, objective=number) for name in _OTHERS)]
 
 
-def _runs(number: str, quick: bool, limits: Limits, seeds: int) -> list[Run]:
-    matches = _matches(number, quick)
-    if number != LARGE:
-        return runs_of(matches, _SOLVERS[number], limits.all, seeds)
-    own = runs_of(matches, (OWN,), limits.own_large, seeds)
-    return [*own, *runs_of(matches, _LARGE_SOLVERS, limits.peers_large, 1)]
-
-
-def _legend(found: Mapping[str, str], limits: Limits, seeds: int) -> list[str]:
+def _legend(limits: Limits, seeds: int) -> list[str]:
+    found = versions(PEERS.values())
     return [
         f"Machine: {machine()}. Versions: {', '.join(f'{name} {number}' for name, number in found.items())}.",
         f"Every solver has {limits.all:g} s of wall time for each plan and one thread, and runs alone; handing over "
@@ -143,23 +160,13 @@ def _legend(found: Mapping[str, str], limits: Limits, seeds: int) -> list[str]:
     ]
 
 
-def _shares(results: Sequence[Result]) -> str:
+def _shares(results: Collection[Result]) -> str:
     shares = [result.share for result in results]
     return (
         "A run that had less than 0.9 of a processor, because others used the machine, is repeated, at most twice, and "
         f"the one with most counts: the runs that count had {fmean(shares):.2f} of one on average, {min(shares):.2f} "
         "at least."
     )
-
-
-def _table(number: str, quick: bool, standings: Standings) -> Table:
-    if number == LARGE:
-        return _large_table(quick, standings)
-    solvers, notes = _SOLVERS[number], Notes()
-    columns = _columns(solvers)
-    rows = [_row(match, solvers, standings, notes) for match in _matches(number, quick)]
-    title = f"Objective {number}: each solver's values, and those by the mean of search"
-    return Table(number, title, columns, (*rows, _mean_row(columns, rows)), notes.lines(), decimals=3)
 
 
 def _columns(solvers: tuple[str, ...]) -> tuple[str, ...]:

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.mission.model import Mission
-from muster_studies.comparison_marks import EQUAL
 from muster_studies.effort import Effort
 from muster_studies.rescue.flights import Flight, Flown, repetitions
 from muster_studies.rescue.scenario import undisturbed
 from muster_studies.rescue.teams import ARENA, PAIRS, POINTS, RICHER, mission_of, sent
 from muster_studies.tables import Cell, Notes, Table, row
 
+NONE_LOST = "none lost"
 TEAMS = (ARENA, PAIRS, POINTS, RICHER)
 
 
@@ -74,7 +74,7 @@ def _cells(team: str, robot: str, found: Sequence[Flown], reasons: Notes) -> dic
         "moved": sum(one.moved for one in found),
         "planning ms": max(1000 * one.planning_s for one in found),
         "mission s": max(report.mission_time_s for report in reports),
-        "mark": " ".join(numbers) or EQUAL,
+        "mark": " ".join(numbers) or NONE_LOST,
     }
 
 

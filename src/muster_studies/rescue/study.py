@@ -26,6 +26,7 @@ RESCUE = IllustratedRepetition(
     reproductions=_TABLES,
     perform=one_by_one(lambda job: job.perform()),
     seeds=repetitions,
+    extras=("map",),
     pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
 )
 """[market-paper]'s scenario, carried out without noise, with noise, and with robots that fail; Figures 7 and 8."""

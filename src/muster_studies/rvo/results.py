@@ -50,12 +50,15 @@ class Found:
         )
 
 
+NO_FAULT = "no fault"
+
+
 def verdict(found: Sequence[Found]) -> str:
-    """A check mark, or what went wrong in how many runs."""
+    """What went wrong in how many runs, if anything."""
     touched = sum(one.contacts > 0 for one in found)
     stuck = sum(one.arrived < one.robots for one in found)
     faults = [f"{count} of {len(found)} {what}" for count, what in ((touched, "touch"), (stuck, "stuck")) if count]
-    return ", ".join(faults) or "✓"
+    return ", ".join(faults) or NO_FAULT
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ _ROUNDING_M = 1e-9
 
 LEGEND = (
     "s: until the last robot of the slowest run is there, or time is up. least gap: least distance between two bodies "
-    "in any run, in metres. ✓: all robots of all runs arrive, none touches another.",
+    "in any run, in metres. no fault: all robots of all runs arrive, and none touches another.",
     "ORCA alone would wait for ever where robots meet head on, so its preferred velocities are shifted at random, anew "
     f"every {HOLD_S:.0f} s; on the circle so are those of all methods. RVO and HRVO find a side without that.",
 )

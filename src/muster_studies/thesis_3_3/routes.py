@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.verification import RouteFigures
-from muster_studies.comparison_marks import EQUAL, ERRATUM, equal
+from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import Case, Sample, rejection
@@ -26,6 +26,10 @@ _RANDOM_COLUMNS = (
     "tasks, own",
     "usage, own",
 )
+
+
+_GREEDY_RULE = equal_rule("the own route has the same tasks in the same order, and its usage is")
+_RANDOM_RULE = equal_rule("the usage recomputed of the published route is")
 
 
 def own_case(plan: PublishedPlan, number: str, effort: Effort) -> Case:
@@ -61,7 +65,9 @@ class Routes:
                 rows.append(row(columns, cells))
             remarks += [*_judgement(plan), _own_plan(plan, sample)]
         missions = as_run_notes(plan.mission for plan in plans)
-        return Table(self.number, published.title, columns, tuple(rows), (*notes.lines(), *remarks, *missions))
+        lines = (*notes.lines(), *remarks, *missions)
+        rule = _RANDOM_RULE if random else _GREEDY_RULE
+        return Table(self.number, published.title, columns, tuple(rows), lines, mark_rule=rule)
 
 
 def _cells(plan: PublishedPlan, own: RouteFigures) -> dict[str, Cell]:

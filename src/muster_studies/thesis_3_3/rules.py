@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.verification import Verdict
-from muster_studies.comparison_marks import EQUAL, ERRATUM, equal
+from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import Case, Sample, judged, mission_named, rejection
@@ -16,7 +16,7 @@ from muster_studies.thesis_3_3.plans import PublishedPlan, published_plans
 from muster_studies.thesis_3_3.published import as_run_notes, publication
 from muster_studies.thesis_3_3.routes import own_case
 
-KEPT, OTHER_ROBOTS, BROKEN, LEFT_OUT, REJECTED = EQUAL, "other robots", "broken", "left out", "rejected"
+KEPT, OTHER_ROBOTS, BROKEN, LEFT_OUT, REJECTED = "kept", "other robots", "broken", "left out", "rejected"
 _PLANS = {"greedy": "3.8", "greedy+genetic": "3.9"}  # with prerequisites
 
 
@@ -138,7 +138,9 @@ class Violations:
             "before: a prerequisite of the task. judged: with prerequisites in force.",
             "Only greedy has to come to the same plan, and so to the same violation.",
         )
-        return Table(self.number, published.content["title"], self.columns, tuple(rows), (*notes.lines(), *legend))
+        rule = f"{EQUAL}: the own plan breaks the same prerequisite as the published one."
+        lines = (*notes.lines(), *legend)
+        return Table(self.number, published.content["title"], self.columns, tuple(rows), lines, mark_rule=rule)
 
 
 def _violation_cells(plan: PublishedPlan, record: Mapping[str, Any], own: Verdict, notes: Notes) -> dict[str, Cell]:
@@ -198,7 +200,8 @@ class Capacities:
             same = all(here is not None and equal(there, here) for there, here in pairs)
             rows.append((robot, *(value for pair in pairs for value in pair), EQUAL if same else "differs"))
         notes = as_run_notes(plan.mission for plan in plans)
-        return Table(self.number, published.content["title"], columns, tuple(rows), notes)
+        rule = equal_rule("the work capacities that the judge holds a plan to are")
+        return Table(self.number, published.content["title"], columns, tuple(rows), notes, mark_rule=rule)
 
 
 def _capacities(sample: Sample) -> dict[str, float | None]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from muster_studies.comparison_marks import ERRATUM, INFORMATION, differences, reached
+from muster_studies.comparison_marks import ERRATUM, INFORMATION, differences, equal_rule, reached
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import Case, Sample, rejection
@@ -90,7 +90,8 @@ class Totals:
                 rows.append(row(columns, {**_labels(record), **own, "mark": mark}))
         missions = as_run_notes(record.get("run_as", "") for record in published.rows)
         remarks = [*_sources(published.rows), *([published.content["note"]] if "note" in published.content else ())]
-        return Table(self.number, published.title, columns, tuple(rows), (*notes.lines(), *remarks, *missions))
+        lines = (*notes.lines(), *remarks, *missions)
+        return Table(self.number, published.title, columns, tuple(rows), lines, mark_rule=_RULE)
 
     def _mark(self, record: Mapping[str, Any], sample: Sample, own: Mapping[str, Cell], notes: Notes) -> str:
         there = _thesis_cells(corrected(record))
@@ -111,6 +112,9 @@ class Totals:
         if verdict.valid:
             return None
         return f"for information: the published plan breaks the rule (Table {self.plans}; {rejection(verdict)})."
+
+
+_RULE = equal_rule("all of tasks, C, max u, F and E that are printed are")
 
 
 def _labels(record: Mapping[str, Any]) -> dict[str, Cell]:

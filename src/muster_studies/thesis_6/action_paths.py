@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from muster_studies.comparison_marks import EQUAL
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
 from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
 from muster_studies.thesis_6.published import MEASURED, PublishedPlan, excess, plans
 from muster_studies.thesis_6.totals import best_of, search_flights
 
+NEAR = "near"
 WITHIN = 2.0
 """Per cent of what is planned, where no robot is in another's way."""
 ALL = "all"
@@ -72,7 +72,7 @@ class Ways:
 _NOTES = (
     "places: planned as the thesis does, to the middle of a task and a typed cost there; planned: by the ways of the "
     "tasks, from entry to exit. alone: flown without avoidance, so that no robot is in another's way; flown: with it "
-    f"(ORCA). alone %, flown %: against planned. mark: {EQUAL} if alone is within {WITHIN:g} % of planned.",
+    f"(ORCA). alone %, flown %: against planned. mark: {NEAR} if alone is within {WITHIN:g} % of planned.",
     f"{ALLOCATOR}: the own plan of Tables 6.3, 6.7, 6.10 and 6.11 for the tasks of that figure.",
     "places %: flown against places, to be held against Gazebo % and real %, which are what the thesis measured "
     "against what it calculated.",
@@ -107,7 +107,7 @@ def _cells(
         "alone %": off,
         "flown": used,
         "flown %": excess(used, planned),
-        "mark": EQUAL if abs(off) <= WITHIN else "more",
+        "mark": NEAR if abs(off) <= WITHIN else "more",
     }
     if places is None or measured is None or plan is None:
         return cells

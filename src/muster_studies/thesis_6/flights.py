@@ -123,6 +123,7 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         "seed": flight.seed,
         "avoidance": flight.avoidance,
         "noise": flight.noise,
+        "ignore": flight.ignored,
     }
     return carry_out(mission, plan, recorder=recorder, **how)
 
@@ -148,7 +149,7 @@ def _planned(flight: Flight) -> tuple[Plan, Verdict, float]:
         routes = tuple(Route(robot, tasks) for robot, tasks in flight.routes)
         plan = Plan(routes=routes, ignored=flight.ignored, objective="total+max")
     planning_s = time.process_time() - begin
-    return plan, accepted(mission, plan, flight.mission), planning_s
+    return plan, accepted(mission, plan, flight.mission, flight.ignored, "total+max"), planning_s
 
 
 class _Changes(NoObserver):

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from muster.mission.errors import MissingExtraError
-from muster.simulation.physics.optional_parts import require_physics_extra
-from muster_studies.comparison_marks import EQUAL
+from muster.perception.optional_parts import require_physics
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
 from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
 from muster_studies.thesis_6.published import excess, plans
 from muster_studies.thesis_6.totals import search_iterations
 
+NEAR = "near"
 WITHIN = 3.0
 """Per cent of what is used in the kinematic world."""
 ALL = "all"
@@ -48,7 +48,7 @@ class BesidePhysics:
         notes = (
             "planned, flown (in the kinematic world), physics: usage; %: physics against flown. tasks: done there, of "
             "those planned; contacts, apart: there, apart the least distance of two centres. s: until all was over.",
-            f"mark: {EQUAL} if physics is within {WITHIN:g} % of flown; of a team, too, if all that was planned is "
+            f"mark: {NEAR} if physics is within {WITHIN:g} % of flown; of a team, too, if all that was planned is "
             "done, without contact.",
             f"{ALLOCATOR}: own plan with {search_iterations(effort)} iterations and seed 0, of all tasks; the "
             f"published one of {_WHOLE} leaves 8 out.",
@@ -70,7 +70,7 @@ def _in_physics(flight: Flight) -> Flight:
 def _lacking() -> str | None:
     """What is to be installed, if anything is."""
     try:
-        require_physics_extra()
+        require_physics("the physics world", "mujoco")
     except MissingExtraError as error:
         return str(error)
     return None
@@ -106,4 +106,4 @@ def _usages(planned: float, kinematic: float, physics: float) -> dict[str, float
 
 
 def _mark(cells: Mapping[str, float]) -> str:
-    return EQUAL if abs(cells["%"]) <= WITHIN else "more" if cells["%"] > 0 else "less"
+    return NEAR if abs(cells["%"]) <= WITHIN else "more" if cells["%"] > 0 else "less"

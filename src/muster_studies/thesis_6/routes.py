@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from muster_studies.comparison_marks import EQUAL, ERRATUM, equal
+from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import errata, printed
 from muster_studies.tables import Cell, Notes, Table, row
 from muster_studies.thesis_6.flights import Flight, Flown
 from muster_studies.thesis_6.published import MEASURED, PublishedPlan, excess, plans, tables
+
+USAGE_RULE = equal_rule("own, the calculated usage, is")
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class RobotUsages:
         flights = [found[plan.flight()] for plan in plans(self.number)]
         remarks = [_carried_out(plan, flown) for plan, flown in zip(plans(self.number), flights, strict=True)]
         title = f"{tables()[self.number]['title']}: usage of each robot{_rules(self.number)}"
-        return Table(self.number, title, columns, tuple(rows), (*notes.lines(), *remarks))
+        return Table(self.number, title, columns, tuple(rows), (*notes.lines(), *remarks), mark_rule=USAGE_RULE)
 
 
 def _cells(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[str, Cell]:

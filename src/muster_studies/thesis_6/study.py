@@ -32,8 +32,7 @@ _LEGEND = (
     "flown: by odometry in Muster's kinematic world (physics: in both), with the radii, speeds and kinematics of Table "
     "A.2, under ORCA, tasks being places with a cost, or (actions) ways that are driven. %: more than the calculation "
     "of the same plan.",
-    "✓: equal to what is published, within 0.011; of a measured total: to the sum of the printed usages. erratum: "
-    "misprinted; own numbers are compared with what is right.",
+    "erratum: misprinted; own numbers are compared with what is right.",
 )
 
 THESIS_6 = IllustratedRepetition(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster_studies.comparison_marks import ERRATUM, differences
+from muster_studies.comparison_marks import ERRATUM, differences, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.tables import Cell, Notes, Table, row
@@ -18,6 +18,9 @@ ITERATIONS, QUICK_ITERATIONS = 3000, 300
 
 CALCULATED, FLOWN, ACTIONS, ACTIONS_FLOWN = "own", "own, flown", "own, actions", "own, actions flown"
 _COLUMNS = ("plan", "values", "tasks", "C", "C %", "F", "F %", "s", "mark")
+
+
+TOTALS_RULE = equal_rule("C and F (recomputed of the plan; of measured ones the sums of the printed usages) are")
 
 
 def search_iterations(effort: Effort) -> int:
@@ -84,7 +87,8 @@ class SystemTotals:
             f"{ALLOCATOR}: own plans with {search_iterations(effort)} iterations, the best of {effort.seed_count} "
             f"seed{'s' if effort.seed_count > 1 else ''}; those of {self._missions[1]} know the ways within tasks."
         )
-        return Table(self.number, tables()[self.number]["title"], _COLUMNS, tuple(rows), (*notes.lines(), remark))
+        lines = (*notes.lines(), remark)
+        return Table(self.number, tables()[self.number]["title"], _COLUMNS, tuple(rows), lines, mark_rule=TOTALS_RULE)
 
     def _published(self, plan: PublishedPlan, found: Mapping[Flight, Flown], notes: Notes) -> Iterator[dict[str, Cell]]:
         flown = found[plan.flight()]

@@ -17,8 +17,8 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import PointOfInterest
 from muster.perception.matching import ErrorTable, error_table
+from muster.perception.points_of_interest import PointOfInterest
 from muster.running.simulation import Simulation
 from muster.simulation import NO_NOISE, Noise
 from muster.simulation.cameras import Look
@@ -109,9 +109,10 @@ def fly(flight: Flight) -> Flown:
     mission = _mission(flight)
     routes = tuple(Route(robot, tasks) for robot, tasks in flight.routes)
     plan = Plan(routes=routes, ignored=flight.ignored, objective="total+max")
-    planned = accepted(mission, plan, flight.mission)
+    planned = accepted(mission, plan, flight.mission, flight.ignored, "total+max")
     ways, witness = _Ways(), _Witness()
     how: dict[str, Any] = {"world": flight.world, "noise": flight.noise, "seed": flight.seed}
+    how["ignore"] = flight.ignored
     with closing(Simulation(mission, plan, recorder=ways, on_look=witness.take, **how)) as simulation:
         while not simulation.done:
             simulation.advance(math.inf)

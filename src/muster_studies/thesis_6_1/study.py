@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from muster.perception.optional_parts import require_physics
 from muster_studies.effort import Effort
-from muster_studies.repetition import IllustratedRepetition, OnDone, Performed, Performer, Reproduction, one_by_one
+from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
 from muster_studies.thesis_6_1.clusters import Clusterings
 from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
@@ -43,13 +41,9 @@ _LEGEND = (
 )
 
 
-def _fly_all(
-    jobs: Iterable[Flight], effort: Effort, workers: int, on_done: OnDone | None = None
-) -> Performed[Flight, Flown]:
-    """All flights, one by one; what they need is asked for before the first."""
+def _check(effort: Effort) -> None:
+    """Ask for what cameras need before the first flight."""
     require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
-    perform: Performer[Flight, Flown] = one_by_one(fly)
-    return perform(jobs, effort, workers, on_done)
 
 
 THESIS_6_1 = IllustratedRepetition(
@@ -58,7 +52,9 @@ THESIS_6_1 = IllustratedRepetition(
     document="TCF thesis, section 6.1",
     legend=_LEGEND,
     reproductions=_TABLES,
-    perform=_fly_all,
+    perform=one_by_one(fly),
+    check=_check,
+    extras=("physics",),
     seeds=seed_count,
     pictures=draw,
 )

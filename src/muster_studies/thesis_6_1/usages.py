@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from muster.running.simulation import WORLDS
+from muster.running.worlds import WORLDS
 from muster_studies.comparison_marks import EQUAL, ERRATUM, differences, equal
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import judged
 from muster_studies.tables import Cell, Notes, Table, row
 from muster_studies.thesis_6.published import PublishedPlan, excess, plans, tables
-from muster_studies.thesis_6.totals import total_and_greatest
+from muster_studies.thesis_6.routes import USAGE_RULE
+from muster_studies.thesis_6.totals import TOTALS_RULE, total_and_greatest
 from muster_studies.thesis_6_1.flights import Flight, Flown
 from muster_studies.thesis_6_1.published import flown_plan, thirty
 
 
 def _flights(effort: Effort, plan: PublishedPlan) -> dict[str, Flight]:
     """By world; a plan that the thesis did not carry out is not flown in physics where time is short."""
-    worlds = WORLDS if plan is flown_plan() or not effort.quick else WORLDS[:1]
+    worlds = WORLDS.shipped if plan is flown_plan() or not effort.quick else WORLDS.shipped[:1]
     return {world: thirty(plan, world=world) for world in worlds}
 
 
@@ -51,7 +52,8 @@ class DroneUsages:
                 rows.append(row(self.columns, cells))
             remarks += [_remark(plan, world, one) for world, one in flown.items()]
         title = f"{tables()['6.2']['title']}: usage of each robot, metres"
-        return Table(self.number, title, self.columns, tuple(rows), (*notes.lines(), *remarks, *_NOTES))
+        lines = (*notes.lines(), *remarks, *_NOTES)
+        return Table(self.number, title, self.columns, tuple(rows), lines, mark_rule=USAGE_RULE)
 
 
 _NOTES = (
@@ -114,7 +116,8 @@ class DroneTotals:
             label = f"{plan.figure} {plan.allocator}"
             rows += [row(self.columns, {"plan": label, **cells}) for cells in self._rows(plan, flown, notes)]
         remark = "%: more than own. in plane, physics: as the thesis measured it, heights not counted."
-        return Table(self.number, tables()["6.3"]["title"], self.columns, tuple(rows), (*notes.lines(), remark))
+        title, lines = tables()["6.3"]["title"], (*notes.lines(), remark)
+        return Table(self.number, title, self.columns, tuple(rows), lines, mark_rule=TOTALS_RULE)
 
     def _rows(self, plan: PublishedPlan, flown: Mapping[str, Flown], notes: Notes) -> Iterator[dict[str, Cell]]:
         own = _calculated(plan)

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import re
 
 import httpx
 import pytest
@@ -13,8 +14,12 @@ LONG = 17 * 2**20
 def require_problem(answer, status):
     assert answer.status_code == status, answer.text[:300]
     assert answer.headers["content-type"] == "application/problem+json"
-    assert set(answer.json()) == {"error", "findings"}
-    return answer.json()
+    found = answer.json()
+    assert set(found) == {"type", "title", "status", "error", "findings"}
+    assert found["status"] == status
+    assert re.fullmatch(r"urn:muster:problem:[a-z-]+", found["type"])
+    assert found["title"][0].isupper()
+    return found
 
 
 @pytest.mark.parametrize(
@@ -42,10 +47,28 @@ def require_problem(answer, status):
         ("GET", "/runs?limit=1001", 422),
         ("GET", "/actions?before=0", 422),
         ("GET", "/plans?mission=%00", 422),
+        ("GET", "/plans?mision=a", 422),
+        ("GET", "/me?a", 422),
+        ("DELETE", "/jobs/999?now=1", 422),
+        ("POST", "/missions/31T-6R50/plans?seed=1", 422),
     ],
 )
 def test_paths_and_parameters(http, method, path, status):
     require_problem(http.request(method, path), status)
+
+
+def test_an_unknown_parameter_names_the_known_ones(http):
+    found = require_problem(http.get("/jobs?misson=a&limit=1"), 422)
+    (finding,) = found["findings"]
+    assert (finding["file"], finding["field"], finding["value"]) == ("query", "misson", '"a"')
+    assert finding["expected"].startswith("one of state, mission, limit")
+    assert "did you mean 'mission'?" in finding["expected"]
+
+
+def test_an_unknown_field_of_an_upload_is_refused(http):
+    files = {"file": ("a.yaml", b"schema: muster/1"), "fiel": ("b.yaml", b"")}
+    found = require_problem(http.post("/missions/upload", files=files), 422)
+    assert [finding["field"] for finding in found["findings"]] == ["fiel"]
 
 
 def test_405_says_what_is_allowed(http):
@@ -122,15 +145,22 @@ def test_what_is_wrong_with_a_plan_says_where(http, yard):
     assert [finding["field"] for finding in found["findings"]] == ["routes"]
 
 
-def test_a_job_that_cannot_be_done_says_why(http, yard):
-    asked = http.post(f"/missions/{yard}/plans", json={"allocator": "serach"})
-    if asked.status_code == 202:
-        while (seen := http.get(f"/jobs/{asked.json()['id']}").json())["state"] in ("queued", "running"):
-            pass
-        assert seen["state"] == "failed"
-        assert "serach" in seen["error"]
-    else:
-        assert "serach" in require_problem(asked, 400)["error"]
+@pytest.mark.parametrize(
+    ("asked", "status", "said"),
+    [
+        ({"allocator": "serach"}, 400, "did you mean 'search'?"),
+        ({"parameters": {"treads": 2}}, 400, "did you mean 'threads'?"),
+        ({"objective": "totl"}, 400, "did you mean 'total'?"),
+        ({"bound": "exat"}, 400, "did you mean 'exact'?"),
+        ({"ignore": ["capacty"]}, 400, "did you mean 'capacity'?"),
+        ({"allocater": "search"}, 422, "allocater"),
+    ],
+)
+def test_a_request_that_nothing_can_meet_is_refused_at_once(http, yard, asked, status, said):
+    before = len(http.get("/jobs").json())
+    found = require_problem(http.post(f"/missions/{yard}/plans", json=asked), status)
+    assert said in found["error"]
+    assert len(http.get("/jobs").json()) == before
 
 
 def test_watchers_change_nothing(guarded, http):

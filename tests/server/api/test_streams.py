@@ -51,6 +51,14 @@ def test_what_is_not_there_is_refused_as_over_http(url, path):
     assert "999" in json.loads(refused.value.response.body)["error"]
 
 
+def test_an_unknown_parameter_is_refused_as_over_http(url, http, plan):
+    run = http.post("/runs", json={"plan": plan, "speed": None}).json()["id"]
+    with pytest.raises(InvalidStatus) as refused:
+        told(url, f"/runs/{run}/stream?afer=3")
+    assert refused.value.response.status_code == 422
+    assert "afer" in json.loads(refused.value.response.body)["error"]
+
+
 def test_nobody_listens_without_a_token(guarded):
     url, tokens = guarded
     with pytest.raises(InvalidStatus) as refused:

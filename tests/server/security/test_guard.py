@@ -355,7 +355,8 @@ def test_hostile_headers_never_get_in_and_never_crash(tmp_path_factory, headers,
     assert status in ({200, 307} if public else set()) | {303, 400, 401, 413, 421, 429, 403}
     assert b"x-content-type-options" in answer_headers
     if status >= 400:
-        assert set(json.loads(body)) == {"error", "findings"}
+        assert set(json.loads(body)) == {"type", "title", "status", "error", "findings"}
+        assert json.loads(body)["status"] == status
         assert json.loads(body)["error"].isprintable()
 
 

@@ -13,7 +13,7 @@ from sqlalchemy import delete
 from tests.server.services.opened import TINY, WATCHER, WHO, opened, over, told
 
 from muster.exchange.mission_control import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
-from muster.mission.errors import ParameterError
+from muster.mission.errors import MusterError, ParameterError
 from muster.server.store.schema import plans
 from muster.server.work import WorkerDied
 
@@ -314,7 +314,9 @@ def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(in_desk, monkey
             return ended
 
         monkeypatch.setattr(desk.store.jobs, "end", end_slowly)
-        job = await desk.jobs.ask_plan(WHO, "tiny", allocator="no such")
+        foreign = {"schema": "muster-plan/1", "routes": [{"robot": "ghost", "tasks": []}]}
+        start = desk.store.plans.add("tiny", 1, "uploaded", "ann", foreign)
+        job = await desk.jobs.ask_plan(WHO, "tiny", start=start.id)
         await asyncio.to_thread(written.wait, 60)
         with pytest.raises(ConflictError):
             await desk.jobs.cancel(WHO, job.id)
@@ -417,11 +419,25 @@ def test_a_mission_that_is_not_there(in_desk):
     in_desk(story)
 
 
-def test_an_allocator_that_is_not_there_fails_with_a_line(in_desk):
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"allocator": "serch"}, r"allocator: serch; expected .*; did you mean 'search'\?"),
+        ({"parameters": {"treads": 1}}, r"search has no parameter treads; did you mean 'threads'\?"),
+        ({"allocator": "greedy", "parameters": {"threads": 1}}, "greedy has no parameter threads"),
+        ({"parameters": {"threads": "many"}}, "threads: .*; expected a number"),
+        ({"parameters": {"threads": 10_000}}, "threads: 10000; expected at most"),
+        ({"objective": "totl"}, r"objective: .*; did you mean 'total'\?"),
+        ({"bound": "quik"}, r"bound: .*; did you mean 'quick'\?"),
+        ({"ignore": ["capacty"]}, r"ignore: .*; did you mean 'capacity'\?"),
+        ({"time_limt": 1}, r"time_limt.*did you mean 'time_limit'\?"),
+    ],
+)
+def test_a_request_that_nothing_can_meet_is_refused_at_once(in_desk, asked, said):
     async def story(desk):
-        last = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", allocator="magic")))[-1]
-        assert last.state == "failed"
-        assert last.error.startswith("allocator: magic; expected greedy")
+        with pytest.raises(MusterError, match=said):
+            await desk.jobs.ask_plan(WHO, "tiny", **asked)
+        assert await desk.jobs.list() == []
 
     in_desk(story)
 

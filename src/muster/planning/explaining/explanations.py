@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -33,7 +33,11 @@ class LeftOut:
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster explain --format json` prints."""
         smallest = [{"task": task, "remedy": _plain(remedy)} for task, remedy in self.changes.items()]
-        return {"unassigned": [asdict(item) for item in self.unassigned], "smallest": smallest}
+        return {
+            "ignored": list(self.problem.ignored),
+            "unassigned": [asdict(item) for item in self.unassigned],
+            "smallest": smallest,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +79,7 @@ class OneTask:
         data = {
             "task": self.task,
             "robot": self.robot,
+            "ignored": list(self.problem.ignored),
             "objective": self.objective,
             "alternatives": [asdict(other) for other in self.alternatives],
             "remedies": [_plain(remedy) for remedy in self.remedies],
@@ -82,7 +87,7 @@ class OneTask:
         return data if self.award is None else {**data, "award": self.award.as_dict()}
 
 
-def require_fit(mission: Mission, plan: Plan, file: str) -> None:
+def require_fit(mission: Mission, plan: Plan, file: str, ignore: Collection[str] = ()) -> None:
     """Explanations need a plan of this mission without knots; anything else is for `verify` to say.
 
     Raises
@@ -90,7 +95,7 @@ def require_fit(mission: Mission, plan: Plan, file: str) -> None:
     PlanError
         if it is none; `file` names it.
     """
-    wrong = [v for v in verify(mission, plan).violations if v.kind in _IN_KNOTS]
+    wrong = [v for v in verify(mission, plan, ignore).violations if v.kind in _IN_KNOTS]
     if wrong:
         expected = "a plan of this mission (`muster verify` says more)"
         raise PlanError(
@@ -101,9 +106,9 @@ def require_fit(mission: Mission, plan: Plan, file: str) -> None:
         )
 
 
-def left_out(mission: Mission, plan: Plan) -> LeftOut:
+def left_out(mission: Mission, plan: Plan, ignore: Collection[str] = ()) -> LeftOut:
     """Find out why tasks are left out of a plan that fits."""
-    problem = Problem.compile(mission, plan.objective, plan.ignored)
+    problem = Problem.compile(mission, plan.objective, ignore)
     routes = routes_of(problem, plan)
     missing = unassigned(problem, routes)
     changes = {
@@ -113,7 +118,7 @@ def left_out(mission: Mission, plan: Plan) -> LeftOut:
     return LeftOut(problem, missing, changes)
 
 
-def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
+def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str] = ()) -> OneTask:
     """Find out why a task is done by this robot and not by another, or left out, of a plan that fits.
 
     Raises
@@ -121,14 +126,14 @@ def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
     ParameterError
         if the mission has no such task.
     """
-    problem = Problem.compile(mission, plan.objective, plan.ignored)
+    problem = Problem.compile(mission, plan.objective, ignore)
     if task not in problem.task_index:
         hint = did_you_mean(task, problem.task_index)
         raise ParameterError(f"--task: {task}; expected the id of a task of this mission{hint}")
     routes, j = routes_of(problem, plan), problem.task_index[task]
     found = alternatives(problem, routes, j)
     changes = remedies(problem, routes, j, admits)
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, ignore, plan.objective)
     return OneTask(
         problem=problem,
         plan=plan,
@@ -141,9 +146,9 @@ def one_task(mission: Mission, plan: Plan, task: str) -> OneTask:
     )
 
 
-def admits(mission: Mission, plan: Plan) -> bool:
+def admits(mission: Mission, plan: Plan, ignored: tuple[str, ...]) -> bool:
     """Whether nothing is wrong with a plan: the `Judge` of searches."""
-    return verify(mission, plan).valid
+    return verify(mission, plan, ignored).valid
 
 
 def _plain(remedy: Remedy | None) -> dict[str, Any] | None:

@@ -64,6 +64,11 @@ def smallest_change(problem: Problem, changes: Sequence[Remedy]) -> str:
     return needs if best.kinds else f"no change is needed: {best.robot} can do it beside all else"
 
 
+def ignored(problem: Problem) -> list[str]:
+    """Which rules the caller had ignored."""
+    return [f"rules ignored: {', '.join(problem.ignored)}"] if problem.ignored else []
+
+
 def reserve(problem: Problem) -> str:
     """What capacities are, where that is not plain; else empty."""
     if problem.mission.rules.capacity_reserve and problem.holds("capacity"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from muster.allocation.explanations import Alternative
 from muster.planning.explaining.explanations import LeftOut, OneTask
-from muster.planning.explaining.phrases import award_text, place, reserve, short, smallest_change
+from muster.planning.explaining.phrases import award_text, ignored, place, reserve, short, smallest_change
 
 _MOST_NAMED = 5  # robots, or tasks, that are spoken of one by one
 
@@ -13,10 +13,11 @@ def words_on_left_out(found: LeftOut) -> list[str]:
     """Which tasks are left out, and the smallest change with which each could be done."""
     if not found.unassigned:
         return ["No task is left out."]
+    said = [_sentence(line) for line in ignored(found.problem)]
     tasks = [item.task for item in found.unassigned]
     more = f" and {len(tasks) - _MOST_NAMED} more" if len(tasks) > _MOST_NAMED else ""
     are = "task is" if len(tasks) == 1 else "tasks are"
-    said = [f"{len(tasks)} {are} left out: {', '.join(tasks[:_MOST_NAMED])}{more}."]
+    said += [f"{len(tasks)} {are} left out: {', '.join(tasks[:_MOST_NAMED])}{more}."]
     for task, remedy in list(found.changes.items())[:_MOST_NAMED]:
         if remedy is None:
             said.append(f"For {task} no change of one robot was found, the rest of the plan as it is.")
@@ -27,7 +28,7 @@ def words_on_left_out(found: LeftOut) -> list[str]:
 
 def words_on_task(found: OneTask) -> list[str]:
     """Why this robot: what the others would cost; why left out: what stands in the way, and the smallest change."""
-    said = [_sentence(line) for line in place(found)]
+    said = [_sentence(line) for line in (*place(found), *ignored(found.problem))]
     if found.plan.book is not None and found.award is not None:
         said.append(_sentence(award_text(found.problem, found.plan.book, found.award)))
     others = [other for other in found.alternatives if other.robot != found.robot]
@@ -68,5 +69,5 @@ def _those_who_could_not(others: list[Alternative]) -> list[str]:
 
 def _sentence(line: str) -> str:
     """A line with a capital and a full stop, unless it begins with a name."""
-    starts = line.startswith(("task ", "smallest ", "no ", "capacities "))
+    starts = line.startswith(("task ", "rules ", "smallest ", "no ", "capacities "))
     return (line[0].upper() + line[1:] if starts else line) + "."

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Remedy
-from muster.planning.explaining.explanations import LeftOut, OneTask
-from muster.planning.explaining.phrases import award_text, lines, place, reserve, short, smallest_change, what_then
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
+from muster.planning.explaining.phrases import (
+    award_text,
+    ignored,
+    lines,
+    place,
+    reserve,
+    short,
+    smallest_change,
+    what_then,
+)
 
 
 @dataclass(frozen=True)
@@ -23,6 +35,32 @@ class Table:
 Part = str | Table
 
 
+@dataclass(frozen=True)
+class Explanation:
+    """What `muster explain` prints: `data` for programs, lines and tables for people."""
+
+    data: Mapping[str, Any]
+    parts: Sequence[Part]
+
+
+def explained(mission: Mission, plan: Plan, task: str | None, ignore: Collection[str], file: str) -> Explanation:
+    """Why tasks are left out of a plan; of one task, why it is done by this robot, or left out.
+
+    Raises
+    ------
+    PlanError
+        if the plan does not fit the mission; `file` names it.
+    ParameterError
+        if the mission has no such task.
+    """
+    require_fit(mission, plan, file, ignore)
+    if task is None:
+        missing = left_out(mission, plan, ignore)
+        return Explanation(missing.as_dict(), tables_on_left_out(missing))
+    found = one_task(mission, plan, task, ignore)
+    return Explanation(found.as_dict(), tables_on_task(found))
+
+
 def tables_on_left_out(found: LeftOut) -> list[Part]:
     """Which tasks are left out and why, and the smallest changes with which they could be done."""
     left_out, changes = found.unassigned, found.changes
@@ -30,7 +68,11 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
         return ["no task is left out; --task T explains a task that is done"]
     title = "1 task left out" if len(left_out) == 1 else f"{len(left_out)} tasks left out"
     rows = tuple((item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons)
-    parts: list[Part] = [Table(title, ("task", "robot", "reason", "detail"), rows), _smallest(found.problem, changes)]
+    parts: list[Part] = [
+        *ignored(found.problem),
+        Table(title, ("task", "robot", "reason", "detail"), rows),
+        _smallest(found.problem, changes),
+    ]
     if len(left_out) > len(changes):
         parts.append(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
     return parts
@@ -38,7 +80,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
 
 def tables_on_task(found: OneTask) -> list[Part]:
     """Who does the task, what it would be with others, and what each of them would need."""
-    parts: list[Part] = [*place(found)]
+    parts: list[Part] = [*place(found), *ignored(found.problem)]
     if found.plan.book is not None and found.award is not None:
         parts.append(award_text(found.problem, found.plan.book, found.award))
     parts += [_alternatives(found), _remedies(found)]

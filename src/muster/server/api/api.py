@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
 from muster.exchange.mission_control import Who
 from muster.server.api import about, actions, jobs, missions, plans, records, runs
+from muster.server.api.dependencies import require_known_query
 from muster.server.api.description import describe, listing
 from muster.server.api.problems import add_handlers
 from muster.server.api.responses import ALWAYS, errors
@@ -29,7 +30,13 @@ def api(desk_of: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] = u
     who_of
         says who asks; raises where nobody may.
     """
-    app = FastAPI(openapi_url=None, docs_url=None, redoc_url=None, responses=errors(*ALWAYS))
+    app = FastAPI(
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
+        responses=errors(*ALWAYS),
+        dependencies=[Depends(require_known_query)],
+    )
     app.state.desk_of, app.state.who_of = desk_of, who_of
     add_handlers(app)
     for part in (missions, plans, jobs, runs, records, actions, about):

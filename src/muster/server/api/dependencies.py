@@ -1,14 +1,21 @@
-"""What every route needs: the desk, and who asks."""
+"""What every route needs: the desk, who asks, and that nothing unknown is asked."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import json
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from typing import Annotated, Any
 
-from fastapi import Depends
+from fastapi import Depends, Header, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
 from muster.exchange.mission_control import Who
+from muster.mission.near_matches import did_you_mean
 from muster.server.services.services import Desk
+from muster.server.store.request_keys import RequestKey
 
 
 def _desk(connection: HTTPConnection) -> Desk:
@@ -21,5 +28,52 @@ def _asker(connection: HTTPConnection) -> Who:
     return found
 
 
+def require_known_query(connection: HTTPConnection) -> None:
+    """Refuse a query with parameters that the route does not have: a mistyped one would do nothing.
+
+    Raises
+    ------
+    RequestValidationError
+        naming them, and what is known.
+    """
+    known = [field.alias for field in connection.scope["route"].dependant.query_params]
+    _require_known("query", connection.query_params, known)
+
+
+async def require_known_form(request: Request) -> None:
+    """Refuse a form with fields that the route does not have, as `require_known_query` does."""
+    known = [field.alias for field in request.scope["route"].dependant.body_params]
+    _require_known("body", await request.form(), known)
+
+
+def _require_known(where: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
+    expected = f"one of {', '.join(known)}" if known else "none"
+    unknown = [
+        {"type": "unknown", "loc": (where, name), "msg": f"{expected}{did_you_mean(name, known)}", "input": given[name]}
+        for name in given
+        if name not in known
+    ]
+    if unknown:
+        raise RequestValidationError(unknown)
+
+
+def key_of(who: Who, key: str | None, path: str, body: BaseModel) -> RequestKey | None:
+    """The key of a request, with a digest of what it asks for."""
+    if key is None:
+        return None
+    asked = json.dumps([path, body.model_dump(mode="json")], sort_keys=True)
+    return RequestKey(who.name, key, sha256(asked.encode()).hexdigest())
+
+
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=1,
+        max_length=200,
+        pattern=r"^[\x21-\x7e]+$",
+        description="The same request with the same key, within a day, makes nothing again: it is answered as before.",
+    ),
+]
 TheDesk = Annotated[Desk, Depends(_desk)]
 Asker = Annotated[Who, Depends(_asker)]

@@ -8,12 +8,12 @@ from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from typing import Annotated, Any
 
-from fastapi import APIRouter, File, Header, HTTPException, Query, Request, Response, UploadFile
+from fastapi import APIRouter, Depends, File, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
 from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import Asker, TheDesk, require_known_form
 from muster.server.api.parameter_types import (
     LARGEST,
     BeforeVersion,
@@ -124,7 +124,11 @@ async def check(desk: TheDesk, body: MissionToCheck) -> Checked:
 
 
 @router.post(
-    "/upload", status_code=201, summary="Upload a mission", responses=with_location(201, "It is kept.", etag=True)
+    "/upload",
+    status_code=201,
+    summary="Upload a mission",
+    responses=with_location(201, "It is kept.", etag=True),
+    dependencies=[Depends(require_known_form)],
 )
 async def upload(
     desk: TheDesk,

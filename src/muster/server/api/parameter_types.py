@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import binascii
 from base64 import b64decode
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.server.services import uploads
 
 LARGEST = 2**31 - 1
@@ -72,7 +73,12 @@ Files = Annotated[
 Count = Annotated[int, Field(ge=0, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Ignored = Annotated[
-    list[Literal["prerequisites", "suitability", "skills", "capacity"]],
-    Field(max_length=4, description="Rules that do not hold."),
+    list[Annotated[str, WithJsonSchema({"enum": [*IGNORABLE]})]],
+    Field(max_length=2 * len(IGNORABLE), description="Rules that do not hold."),
 ]
+IgnoredQuery = Annotated[
+    Ignored | None,
+    Query(description="Rules that do not hold. Default: those that were ignored when the server made the plan."),
+]
+"""Words that the planning request checks, with the command's texts; their schema names them all the same."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

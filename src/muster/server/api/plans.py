@@ -5,18 +5,20 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Response
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from muster.exchange.mission_control import Job, PlanEntry
-from muster.planning.options import HELP
+from muster.mission.model import OBJECTIVES
+from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import Asker, IdempotencyKey, TheDesk, key_of
 from muster.server.api.parameter_types import (
     LARGEST,
     Before,
     Body,
     Count,
     Ignored,
+    IgnoredQuery,
     Limit,
     MissionId,
     MissionQuery,
@@ -30,7 +32,8 @@ from muster.server.api.responses import a_file, errors, file_answer, parcel_answ
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
-Objective = Literal["total+max", "total", "max", "average", "makespan"]
+Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
+Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
 ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
 PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
@@ -49,7 +52,7 @@ class Wanted(Body):
     iterations: Count | None = Field(default=None, description=HELP["iterations"])
     seed: Seed = Field(default=0, description=HELP["seed"])
     ignore: Ignored = Field(default=[])
-    bound: Literal["quick", "exact"] | None = Field(default=None, description=HELP["bound"])
+    bound: Bound | None = Field(default=None, description=HELP["bound"])
     rewire: bool = Field(default=False, description=HELP["rewire"])
     start: PlanNumber | None = Field(default=None, description="The id of a plan to go on from.")
     fixed: PlanNumber | None = Field(
@@ -64,10 +67,18 @@ class Wanted(Body):
     summary="Plan a mission",
     responses=with_location(202, "It is under way; the job says how far it is.") | errors(409),
 )
-async def ask(desk: TheDesk, who: Asker, mission: MissionId, response: Response, body: Wanted) -> Job:
+async def ask(
+    desk: TheDesk,
+    who: Asker,
+    mission: MissionId,
+    response: Response,
+    body: Wanted,
+    idempotency_key: IdempotencyKey = None,
+) -> Job:
     """Long work: the answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
     given = body.model_dump(exclude={"version"}, exclude_none=True, exclude_defaults=True)
-    job = await desk.jobs.ask_plan(who, mission, body.version, **given)
+    request = key_of(who, idempotency_key, f"/missions/{mission}/plans", body)
+    job = await desk.jobs.ask_plan(who, mission, body.version, request=request, **given)
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job
 
@@ -106,15 +117,20 @@ async def plan(desk: TheDesk, plan: PlanId) -> PlanEntry:
 
 
 @router.get("/plans/{plan}/verdict", summary="Judge a plan")
-async def verdict(desk: TheDesk, plan: PlanId) -> dict[str, Any]:
+async def verdict(
+    desk: TheDesk,
+    plan: PlanId,
+    ignore: IgnoredQuery = None,
+    objective: Annotated[Objective | None, Query(description="That was to be minimised.")] = None,
+) -> dict[str, Any]:
     """Whether it is admissible, all figures, who is where when: from scratch, by code that no allocator uses."""
-    return dict(await desk.plans.verdict(plan))
+    return dict(await desk.plans.verdict(plan, ignore, objective))
 
 
 @router.get("/plans/{plan}/explain", summary="Say why")
-async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None) -> dict[str, Any]:
+async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None, ignore: IgnoredQuery = None) -> dict[str, Any]:
     """Why tasks are left out; of one task, why this robot does it and not another."""
-    return dict(await desk.plans.explain(plan, task))
+    return dict(await desk.plans.explain(plan, task, ignore))
 
 
 @router.get(
@@ -129,6 +145,7 @@ async def export(
     desk: TheDesk,
     plan: PlanId,
     to: ExportTo,
+    ignore: IgnoredQuery = None,
     altitude: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: at least so many metres up.")] = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: warn of bodies that near, in m.")] = None,
     tolerance: Annotated[float | None, Query(ge=0, le=1e3, description="qgc: bends thinned out, in m.")] = None,
@@ -136,7 +153,9 @@ async def export(
 ) -> Response:
     """As `muster export` writes it."""
     options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
-    files = await desk.plans.export(plan, to, {name: value for name, value in options.items() if value is not None})
+    files = await desk.plans.export(
+        plan, to, {name: value for name, value in options.items() if value is not None}, ignore
+    )
     return await parcel_answer(files, f"plan-{plan}")
 
 

@@ -1,4 +1,4 @@
-"""Every failure as problem JSON: `{"error": one line, "findings": [{file, line, field, value, expected}]}`."""
+"""Every failure as problem JSON."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from starlette.routing import compile_path
 from muster.exchange.mission_control import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import Finding, MissingExtraError, MusterError
 from muster.mission.value_types import shown
+from muster.server.problem import MEDIA_TYPE, problem_content
 
-MEDIA_TYPE = "application/problem+json"
 RETRY_S = 2
 _STATUS: tuple[tuple[type[MusterError], int], ...] = (
     (NotFoundError, 404),
@@ -49,8 +49,11 @@ class FoundWrong(BaseModel):
 
 
 class Problem(BaseModel):
-    """Why it was not done."""
+    """Why it was not done (RFC 9457)."""
 
+    type: str = Field(description="By which programs tell problems apart.", examples=["urn:muster:problem:conflict"])
+    title: str = Field(description="The type in words.")
+    status: int = Field(description="The status of HTTP.")
     error: str = Field(description="For a person; one line, or one for each finding.")
     findings: list[FoundWrong]
 
@@ -59,8 +62,7 @@ def problem(
     status: int, error: str, findings: Sequence[Finding] = (), headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
     """The answer that says it."""
-    content = {"error": error, "findings": [finding.as_dict() for finding in findings]}
-    return JSONResponse(content, status, dict(headers or {}), media_type=MEDIA_TYPE)
+    return JSONResponse(problem_content(status, error, findings), status, dict(headers or {}), media_type=MEDIA_TYPE)
 
 
 def status_of(error: MusterError) -> int:

@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from starlette.responses import Response
 
-from muster.server.api.problems import MEDIA_TYPE
+from muster.server.problem import MEDIA_TYPE
 from muster.server.services.archives import parcel
 
 Responses = dict[int | str, dict[str, Any]]

@@ -11,7 +11,7 @@ from pydantic import Field
 from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run, World
 from muster.mission.errors import ParameterError
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import Asker, IdempotencyKey, TheDesk, key_of
 from muster.server.api.parameter_types import LARGEST, After, Body, Limit, Name, RunId
 from muster.server.api.responses import errors, with_location
 from muster.server.api.sockets import message, tell
@@ -20,7 +20,7 @@ from muster.server.services.runs import Runs
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
 
-_NO_SETTINGS = frozenset({"self", "who", "plan", "world", "speed"})
+_NO_SETTINGS = frozenset({"self", "who", "plan", "world", "speed", "request"})
 Speed = Annotated[float, Field(gt=0, le=1e6)]
 
 
@@ -48,11 +48,14 @@ class Wish(Body):
 
 
 @router.post("", status_code=201, summary="Start a run", responses=with_location(201, "It has begun.") | errors(409))
-async def start(desk: TheDesk, who: Asker, response: Response, body: NewRun) -> Run:
+async def start(
+    desk: TheDesk, who: Asker, response: Response, body: NewRun, idempotency_key: IdempotencyKey = None
+) -> Run:
     """A process of its own carries the plan out, and goes on after a crash of the server."""
     if taken := sorted(body.settings.keys() & _NO_SETTINGS):
         raise ParameterError(f"settings: {taken[0]}; expected it beside settings, if at all")
-    run = await desk.runs.start(who, body.plan, world=body.world, speed=body.speed, **body.settings)
+    request = key_of(who, idempotency_key, "/runs", body)
+    run = await desk.runs.start(who, body.plan, world=body.world, speed=body.speed, request=request, **body.settings)
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run
 

@@ -76,8 +76,19 @@ def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) ->
     past = Past(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
     names = tuple(robot.id for robot in mission.robots)
     tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
-    whole = mission.at_once(tasks=tasks)
-    return Aftermath(whole, plan if routes is None else _of_those(routes, names), past)
+    current = plan if routes is None else _of_those(routes, names)
+    return _with_locks_of_barred(Aftermath(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
+
+
+def _with_locks_of_barred(found: Aftermath) -> Aftermath:
+    """Where locks are ignored, those of barred tasks are not: other tasks lose theirs, and the rule holds."""
+    if "lock" not in found.plan.ignored:
+        return found
+    tasks = tuple(
+        task if task.id in found.past.barred else replace(task, only_robots=None) for task in found.mission.tasks
+    )
+    others = tuple(rule for rule in found.plan.ignored if rule != "lock")
+    return replace(found, mission=replace(found.mission, tasks=tasks), plan=replace(found.plan, ignored=others))
 
 
 def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:

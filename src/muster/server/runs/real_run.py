@@ -56,6 +56,7 @@ class RealCourse:
             found.plan,
             fleet,
             seed=seed,
+            ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,
             begin_s=begin_s,

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from muster.mission.errors import ParameterError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
@@ -15,12 +16,13 @@ SIMULATED = ("kinematic", "physics")
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
-    "kinematic": {"seed": int, **_WORLD},
-    "physics": {"seed": int, **_WORLD},
-    "ros1": {"seed": int, "master": str, "drive": str, "frame": str, "rate_hz": float, **_ROS},
-    "ros2": {"seed": int, "domain": int, "give": str, "by": str, **_ROS},
+    "kinematic": {"seed": int, "ignore": list, **_WORLD},
+    "physics": {"seed": int, "ignore": list, **_WORLD},
+    "ros1": {"seed": int, "ignore": list, "master": str, "drive": str, "frame": str, "rate_hz": float, **_ROS},
+    "ros2": {"seed": int, "ignore": list, "domain": int, "give": str, "by": str, **_ROS},
     "mavlink": {
         "seed": int,
+        "ignore": list,
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
@@ -52,7 +54,14 @@ NOISE = (
     "accelerometer_mps2",
 )
 """The kinds of a simulation's noise."""
-_KINDS = {str: "a text", bool: "true or false", dict: "a mapping", int: "a whole number", float: "a number"}
+_KINDS = {
+    str: "a text",
+    list: "a list",
+    bool: "true or false",
+    dict: "a mapping",
+    int: "a whole number",
+    float: "a number",
+}
 VERBS = ("pause", "resume", "speed", "cancel", "event")
 _FASTEST = 1e6
 
@@ -67,6 +76,7 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
         _require_kind(name, value, SETTINGS[world][name])
         if name in CHOICES:
             _require_choice(name, value, CHOICES[name])
+    ignored_rules(settings.get("ignore", ()))
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
     if world in SIMULATED:
         _require_number(settings, "dt_s", 0.001, 1.0)

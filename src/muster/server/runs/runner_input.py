@@ -74,7 +74,9 @@ class Brief:
         run, store, memory = self._run, self._store, Memory()
         memory.add(store.log.entries(run.id))
         version = store.missions.get(run.mission, run.mission_version)
-        work = {"mission": _mission(version), "plan": dict(store.plans.get(run.plan).plan)}
+        entry = store.plans.get(run.plan)
+        plan = {**entry.plan, "ignored": list(run.settings.get("ignore", entry.ignored))}
+        work = {"mission": _mission(version), "plan": plan}
         return memory, store.log.tracked_s(run.id), work
 
 

@@ -29,6 +29,7 @@ class SimulatedCourse:
     ) -> None:
         how = dict(settings)
         noise = Noise(**how.pop("noise", {}))
+        how["ignore"] = plan.ignored
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
         self._quanta = 0
 

@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
 from muster.exchange.mission_control import Who
+from muster.server.problem import MEDIA_TYPE
 from muster.server.security.authentication import SCOPE_KEY, Asker, Asking, WrongTokenError
 from muster.server.security.headers import is_page, is_static, with_security
 from muster.server.security.limits import Body, Buckets, Places, network_of
@@ -317,7 +318,7 @@ class _Answer:
     async def _respond(self, status: int, headers: dict[str, str], content: Any) -> None:
         body = json.dumps(content).encode()
         raw = [(name.encode(), value.encode("latin-1")) for name, value in headers.items()]
-        raw += [(b"content-type", b"application/problem+json"), (b"content-length", str(len(body)).encode())]
+        raw += [(b"content-type", MEDIA_TYPE.encode()), (b"content-length", str(len(body)).encode())]
         kind = "websocket.http.response" if self._scope["type"] == "websocket" else "http.response"
         await self.send({"type": f"{kind}.start", "status": status, "headers": raw})
         await self.send({"type": f"{kind}.body", "body": body})

@@ -8,6 +8,8 @@ from typing import Any
 
 from starlette.exceptions import HTTPException
 
+from muster.server.problem import problem_content
+
 
 class RefusalError(HTTPException):
     """A request is refused; `detail` is one line for a person.
@@ -28,7 +30,7 @@ class RefusalError(HTTPException):
 
     def as_problem(self) -> Mapping[str, Any]:
         """As every error of the API."""
-        return {"error": self.detail, "findings": []}
+        return problem_content(self.status_code, self.detail)
 
 
 def printable(text: str, most: int = 200) -> str:

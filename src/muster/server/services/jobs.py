@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -23,9 +23,11 @@ from muster.mission.errors import MusterError
 from muster.server.services.actions import Actions, Refused, unheard
 from muster.server.services.missions import Missions
 from muster.server.services.plan_requests import PLANS, checked_request
+from muster.server.services.repeated_requests import made_once
 from muster.server.services.uploads import for_work
 from muster.server.settings import Settings
 from muster.server.store import Store
+from muster.server.store.request_keys import RequestKey
 from muster.server.work import Halt, Pool, WorkerDied, WorkError
 
 _AGAIN_S = 2.0  # until a database that refuses is asked again
@@ -82,35 +84,60 @@ class Jobs:
         newest = self._newest.get(job)
         return newest if newest is not None else await asyncio.to_thread(self._store.jobs.get, job)
 
-    async def ask_plan(self, who: Who, mission: str, version: int | None = None, **wishes: Any) -> Job:
+    async def ask_plan(
+        self,
+        who: Who,
+        mission: str,
+        version: int | None = None,
+        *,
+        request: RequestKey | None = None,
+        **options: Any,
+    ) -> Job:
         """Ask for a plan of a mission, of its newest version if none is named.
 
         Parameters
         ----------
-        wishes
+        request
+            one that came before gives the job that it made then.
+        options
             the options of a planning request, by the names of `PlanningOptions`; and `start` and `fixed`, the ids of
             plans.
 
         Raises
         ------
         ParameterError
-            if a wish is none, or out of its range.
+            if an option is unknown, or out of its range.
         BusyError
             if too many jobs wait.
+        ConflictError
+            if another request had the key.
         NotFoundError, ForbiddenError
         """
-        async with self._actions.of(who, "plan.ask", {"mission": mission, "version": version, **wishes}):
-            checked_request(wishes, self._settings.job_s)
+        ask = partial(self._ask_plan, who, mission, version, options, request)
+        return await made_once(self._store, request, ask, self.get)
+
+    async def _ask_plan(
+        self, who: Who, mission: str, version: int | None, options: Mapping[str, Any], request: RequestKey | None
+    ) -> Job:
+        async with self._actions.of(who, "plan.ask", {"mission": mission, "version": version, **options}):
+            checked_request(options, self._settings.job_s)
             if len(self._queued) >= self._settings.queue:
                 raise BusyError(f"{len(self._queued)} jobs wait, the most that may; expected to be asked again later")
-            wanted = self._missions.get(mission, version) if version else self._missions.stored(mission)
-            found = await wanted
+            found = await (self._missions.get(mission, version) if version else self._missions.stored(mission))
+            await self._require_known(options)
             for name in PLANS:
-                if wishes.get(name) is not None:
-                    await asyncio.to_thread(self._store.plans.get, wishes[name])
-            job = await asyncio.to_thread(self._store.jobs.add, "plan", mission, found.version, wishes, who.name)
+                if options.get(name) is not None:
+                    await asyncio.to_thread(self._store.plans.get, options[name])
+            add = partial(self._store.jobs.add, "plan", mission, found.version, options, who.name, request)
+            job = await asyncio.to_thread(add)
             self._enqueue(job.id)
             return job
+
+    async def _require_known(self, options: Mapping[str, Any]) -> None:
+        """Refuse an unknown allocator, or parameters that it does not take; a worker knows which there are."""
+        if options.get("allocator") is not None or options.get("parameters"):
+            checked = {name: value for name, value in options.items() if name not in PLANS}
+            await self._pool.run("check_request", checked)
 
     async def cancel(self, who: Who, job: int) -> Job:
         """End a job that is not over; its process is gone at once.

@@ -20,6 +20,7 @@ from muster.exchange.mission_control import (
     Who,
 )
 from muster.mission.errors import MissionError, ParameterError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.server.services.actions import Actions, Refused, unheard
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.services.uploads import as_text, check_sizes, findings_of, for_work, require_file_name
@@ -81,11 +82,12 @@ class Missions:
         Raises
         ------
         ParameterError
-            if it is too large, or a file may not be called so.
+            if it is too large, a file may not be called so, or a rule to ignore does not exist.
         WorkError
             if no worker can say: it takes too long, or too much memory.
         """
         check_sizes(text, files)
+        ignored_rules(ignore)
         asked = {"ignore": list(ignore), "time_limit": time_limit}
         return await self._pool.run("check", {"mission": for_work(text, files, "mission"), **asked})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import base64
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -30,7 +30,7 @@ class Plans:
         self._missions = Missions(store, pool)
         self._actions = Actions(store, refused)
         self._allocators: list[dict[str, Any]] = []
-        self._verdicts: OrderedDict[int, dict[str, Any]] = OrderedDict()
+        self._verdicts: OrderedDict[tuple[object, ...], dict[str, Any]] = OrderedDict()
 
     async def get(self, plan: int) -> PlanEntry:
         """One plan, whole.
@@ -65,30 +65,46 @@ class Plans:
                 self._store.plans.add, mission, version.version, "uploaded", who.name, adopted
             )
 
-    async def verdict(self, plan: int) -> dict[str, Any]:
+    async def verdict(
+        self, plan: int, ignore: Sequence[str] | None = None, objective: str | None = None
+    ) -> dict[str, Any]:
         """What the judge says: as the task `judge` gives it.
+
+        Parameters
+        ----------
+        ignore
+            rules that do not hold; by default those without which the server made the plan.
+        objective
+            the one that was to be minimised; by default the one for which the server made the plan, or the mission's.
 
         Raises
         ------
         NotFoundError, WorkError
         """
-        if plan not in self._verdicts:
-            self._verdicts[plan] = await self._asked("judge", plan)
+        key = (plan, None if ignore is None else tuple(sorted(ignore)), objective)
+        if key not in self._verdicts:
+            self._verdicts[key] = await self._asked("judge", plan, ignore=ignore, objective=objective)
             while len(self._verdicts) > _MOST_VERDICTS:
                 self._verdicts.popitem(last=False)
-        self._verdicts.move_to_end(plan)
-        return self._verdicts[plan]
+        self._verdicts.move_to_end(key)
+        return self._verdicts[key]
 
-    async def explain(self, plan: int, task: str | None = None) -> dict[str, Any]:
+    async def explain(self, plan: int, task: str | None = None, ignore: Sequence[str] | None = None) -> dict[str, Any]:
         """Why tasks are left out; of one task, why this robot does it and not another: data, and `words`.
 
         Raises
         ------
         NotFoundError, WorkError
         """
-        return await self._asked("explain", plan, task=task)
+        return await self._asked("explain", plan, task=task, ignore=ignore)
 
-    async def export(self, plan: int, to: str, options: Mapping[str, Any] | None = None) -> dict[str, str]:
+    async def export(
+        self,
+        plan: int,
+        to: str,
+        options: Mapping[str, Any] | None = None,
+        ignore: Sequence[str] | None = None,
+    ) -> dict[str, str]:
         """Files for other tools by their names, in base64; what a person has to know before it flies is in NOTES.txt.
 
         Raises
@@ -97,7 +113,7 @@ class Plans:
         WorkError
             also if the plan is not admissible.
         """
-        answer = await self._asked("export", plan, to=to, options=dict(options or {}))
+        answer = await self._asked("export", plan, to=to, options=dict(options or {}), ignore=ignore)
         files: dict[str, str] = answer["files"]
         if not answer["messages"]:
             return files
@@ -143,4 +159,11 @@ class Plans:
         """What the worker needs, from the database."""
         entry = self._store.plans.get(plan)
         mission = self._store.missions.get(entry.mission, entry.mission_version)
-        return {"mission": for_work(mission.text, mission.files, entry.mission), "plan": entry.plan, **arguments}
+        given = {name: value for name, value in arguments.items() if value is not None}
+        rules = {"ignore": entry.ignored, "objective": entry.objective}
+        return {
+            "mission": for_work(mission.text, mission.files, entry.mission),
+            "plan": dict(entry.plan),
+            **rules,
+            **given,
+        }

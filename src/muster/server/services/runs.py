@@ -20,7 +20,9 @@ from muster.server.runs.subscribers import Feed
 from muster.server.runs.unsaved_actions import unkept
 from muster.server.services.actions import Actions, Refused, outcome_of, unheard
 from muster.server.services.database_lock import lock_of_runs
+from muster.server.services.repeated_requests import made_once
 from muster.server.settings import Settings
+from muster.server.store.request_keys import RequestKey
 from muster.server.work.temporary_folders import OF_RUNS, sweep
 
 if TYPE_CHECKING:
@@ -63,9 +65,16 @@ class Runs:
         await asyncio.gather(*self._slow, return_exceptions=True)
 
     async def start(
-        self, who: Who, plan: int, world: str = "kinematic", speed: float | None = 1.0, **settings: Any
+        self,
+        who: Who,
+        plan: int,
+        world: str = "kinematic",
+        speed: float | None = 1.0,
+        *,
+        request: RequestKey | None = None,
+        **settings: Any,
     ) -> Run:
-        """Begin to carry a plan out.
+        """Begin to carry a plan out; a request that came before gives the run that it started then.
 
         Raises
         ------
@@ -76,6 +85,18 @@ class Runs:
         BusyError
             if as many runs are under way as may be.
         """
+        start = partial(self._start, who, plan, world, speed, settings, request)
+        return await made_once(self._store, request, start, self.get)
+
+    async def _start(
+        self,
+        who: Who,
+        plan: int,
+        world: str,
+        speed: float | None,
+        settings: Mapping[str, Any],
+        request: RequestKey | None,
+    ) -> Run:
         asked = {"plan": plan, "world": world, "speed": speed, "settings": settings}
         async with self._written_if_refused(who, "run.start", asked):
             require_world(world, self._settings.bridges, settings)
@@ -88,7 +109,7 @@ class Runs:
                 raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
             self._beginning.append(claims)
             try:
-                return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings)).run
+                return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings, request)).run
             finally:
                 self._beginning.remove(claims)
 
@@ -227,10 +248,26 @@ class Runs:
                 what = ", ".join(sorted(both))
                 raise ConflictError(f"{whose} commands robots on {what}; expected others, or that it is over")
 
-    def _add(self, who: Who, plan: int, world: str, speed: float | None, settings: Mapping[str, Any]) -> Run:
+    def _add(
+        self,
+        who: Who,
+        plan: int,
+        world: str,
+        speed: float | None,
+        settings: Mapping[str, Any],
+        request: RequestKey | None,
+    ) -> Run:
         entry = self._store.plans.get(plan)
         return self._store.runs.add(
-            entry.mission, entry.mission_version, plan, cast("World", world), settings, speed, who.name, by=who
+            entry.mission,
+            entry.mission_version,
+            plan,
+            cast("World", world),
+            settings,
+            speed,
+            who.name,
+            by=who,
+            request=request,
         )
 
     def _carry(self, run: Run) -> Carrying:

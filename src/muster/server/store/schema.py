@@ -23,7 +23,7 @@ from sqlalchemy import (
 
 from muster.server.store.columns import Instant, Number, Words
 
-HEAD = "0001"
+HEAD = "0002"
 
 metadata = MetaData(
     naming_convention={
@@ -177,6 +177,17 @@ actions = _numbered(
     Column("applied_s", Number),
     _always("outcome", Words),
 )
+
+request_keys = Table(
+    "request_keys",
+    metadata,
+    Column("user", Words, primary_key=True),
+    Column("key", Words, primary_key=True),
+    _always("digest", Words),
+    _always("made", Integer),
+    _always("at", Instant),
+)
+"""What each request made that came with a key: the id of a run or job."""
 
 pruning = Table(
     "pruning",

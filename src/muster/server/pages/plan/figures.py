@@ -28,6 +28,7 @@ _MEANINGS = {
     "Greatest usage": "what the robot uses that is used most",
     "Ends after": "when the last robot has done its last task",
     "Equality": "how evenly usage is shared: 1 where all robots are used alike, less where some do most",
+    "Rules ignored": "whoever had this planned wanted it without these rules of the mission",
     "The judge says": "the plan was checked against every rule of the mission by a part that had no hand in making it",
 }
 LESS_IS_BETTER = ("Objective", "Total cost", "Greatest usage", "Ends after")
@@ -52,6 +53,8 @@ def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None
     ]
     if verdict is not None:
         wrong = verdict["violations"]
+        if verdict["ignored"]:
+            rows.append(("Rules ignored", ", ".join(verdict["ignored"])))
         rows.append(("The judge says", "admissible" if verdict["valid"] else f"not admissible: {_wrong(wrong)}"))
     return [(name, text) for name, text in rows if text and text != " of "]
 

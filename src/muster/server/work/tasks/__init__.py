@@ -39,6 +39,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
     {
         "allocators": Task(f"{_HERE}.allocators"),
         "check": Task(f"{_HERE}.check", 20.0),
+        "check_request": Task(f"{_HERE}.check_request", 20.0),
         "convert": Task(f"{_HERE}.convert", 20.0),
         "edit": Task(f"{_HERE}.edit", 20.0),
         "explain": Task(f"{_HERE}.explain", 120.0),

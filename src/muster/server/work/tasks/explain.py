@@ -13,17 +13,17 @@ from muster.server.work.missions import mission_of, plan_of
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "plan", "task"}` -> what `muster explain --format json` prints, and `words` and `tables`.
+    """`{"mission", "plan", "task", "ignore"}` -> what `muster explain --format json` prints, and `words` and `tables`.
 
     Without `task`: why tasks are left out. `words` are sentences, `tables` are the lines and tables of the command.
     """
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
-    require_fit(mission, plan, "plan")
-    task = arguments.get("task")
+    task, ignore = arguments.get("task"), arguments.get("ignore", ())
+    require_fit(mission, plan, "plan", ignore)
     if task is None:
-        missing = left_out(mission, plan)
+        missing = left_out(mission, plan, ignore)
         return _said(missing.as_dict(), words_on_left_out(missing), tables_on_left_out(missing))
-    found = one_task(mission, plan, task)
+    found = one_task(mission, plan, task, ignore)
     return _said(found.as_dict(), words_on_task(found), tables_on_task(found))
 
 

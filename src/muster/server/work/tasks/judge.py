@@ -15,13 +15,15 @@ from muster.verification import Verdict, verify
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "plan"}` -> what `muster verify --format json` prints, `waiting_s`, `routes` and `lines`.
+    """`{"mission", "plan", "ignore", "objective"}` -> the verdict.
+
+    It is what `muster verify --format json` prints, with `waiting_s`, `routes` and `lines`.
 
     `routes` has for each robot, in mission order, its figures and `visits` with their times. `lines` has for each
     robot's id `travel`, `work` and `end`, each a list of polylines in metres of the map frame.
     """
     mission = mission_of(arguments["mission"])
-    verdict = verify(mission, plan_of(arguments["plan"]))
+    verdict = verify(mission, plan_of(arguments["plan"]), arguments.get("ignore", ()), arguments.get("objective"))
     routes = [asdict(route) for route in verdict.routes]
     return {**verdict.as_dict(), "waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
 

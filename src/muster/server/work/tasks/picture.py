@@ -17,13 +17,16 @@ _KINDS, _FORMATS = ("routes", "gantt"), ("png", "svg", "pdf")
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "plan", "what", "format"}` -> `{"data": base64}`; what: routes, gantt; format: png, svg, pdf."""
+    """`{"mission", "plan", "ignore", "objective", "what", "format"}` -> `{"data": base64}`.
+
+    what: routes, gantt; format: png, svg, pdf.
+    """
     what, form = arguments["what"], arguments["format"]
     for name, value, known in (("what", what, _KINDS), ("format", form, _FORMATS)):
         if value not in known:
             raise ParameterError(f"{name}: {shown(value)}; expected {' or '.join(known)}")
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, arguments.get("ignore", ()), arguments.get("objective"))
     axes = plot_routes(mission, plan, verdict) if what == "routes" else plot_gantt(mission, verdict)
     file = Path(f"picture.{form}")
     save_figure(axes, file)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from muster.allocation.stop import Progress, Stop
-from muster.mission.errors import ParameterError
-from muster.planning.options import options_from
 from muster.planning.request import Request
 from muster.planning.solving import answer
 from muster.server.work.missions import mission_of, plan_of
+from muster.server.work.tasks.check_request import checked_options
 
 _MOST_POINTS = 200  # of the history that progress shows
 _AT_MOST_EVERY_S = 0.1
@@ -40,18 +38,7 @@ def request_of(arguments: Mapping[str, Any]) -> Request:
     given = dict(arguments)
     mission = mission_of(given.pop("mission"))
     plans = {name: plan_of(plan, name) for name in ("start", "fixed") if (plan := given.pop(name, None)) is not None}
-    options = options_from(given)
-    _require_modest(options.parameters)
-    return Request.of(options, mission, **plans)
-
-
-def _require_modest(parameters: Mapping[str, Any]) -> None:
-    """Refuse what would take more than this machine has for one plan, or go on in other machines."""
-    if parameters.get("ray", "none") != "none":
-        raise ParameterError("ray: given; expected no cluster of a plan that a server makes")
-    threads, most = parameters.get("threads", 1), os.cpu_count() or 1
-    if isinstance(threads, int) and threads > most:
-        raise ParameterError(f"threads: {threads}; expected at most {most}, the processors of this server")
+    return Request.of(checked_options(given), mission, **plans)
 
 
 class _Reporter:

@@ -18,7 +18,7 @@ from muster.verification import Verdict, verify
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
     """`{"mission", "plan"}` -> `{"plan"}`: what a plan file may hold, with the judge's figures where it has none."""
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
-    verdict = verify(mission, plan)
+    verdict = verify(mission, plan, objective=plan.objective)
     figures = _figures(verdict)
     missing: dict[str, Any] = {name: value for name, value in figures.items() if getattr(plan, name) is None}
     if len(missing) == len(figures) and not plan.unassigned:  # it says nothing of what it leaves out
@@ -29,7 +29,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 def _left_out(mission: Mission, plan: Plan, verdict: Verdict) -> tuple[Unassigned, ...]:
     """The tasks in no route; with reasons, where the plan breaks no rule."""
     if verdict.valid:
-        problem = Problem.compile(mission, plan.objective, plan.ignored)
+        problem = Problem.compile(mission, plan.objective)
         return unassigned(problem, routes_of(problem, plan))
     done = {task for route in verdict.routes for task in route.tasks}
     return tuple(Unassigned(task.id, ()) for task in mission.tasks if task.id not in done)

@@ -1,0 +1,38 @@
+"""The rules that a caller may switch off, by the words of reasons: `--ignore` and the key `ignored` of plans."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
+
+IGNORABLE = ("prerequisite", "suitability", "skill", "lock", "capacity")
+_PLURALS = {"prerequisites": "prerequisite", "skills": "skill"}
+"""Words of earlier files and commands, read as before."""
+
+
+def ignorable_rule(word: object) -> str | None:
+    """The rule that a word names; None: it names none."""
+    rule = _PLURALS.get(word, word) if isinstance(word, str) else None
+    return rule if rule in IGNORABLE else None
+
+
+def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
+    """The rules that words name, each once, in the order of IGNORABLE.
+
+    Raises
+    ------
+    ParameterError
+        for a word that names none.
+    """
+    named = set()
+    for word in (words,) if isinstance(words, str) else words:
+        rule = ignorable_rule(word)
+        if rule is None:
+            raise ParameterError(
+                f"ignore: {shown(word)}; expected {' or '.join(IGNORABLE)}{did_you_mean(str(word), IGNORABLE)}"
+            )
+        named.add(rule)
+    return tuple(rule for rule in IGNORABLE if rule in named)

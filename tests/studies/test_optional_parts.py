@@ -1,0 +1,54 @@
+"""Each verb prints its help with the core install alone; each study makes its first table with its own extras alone."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from muster.cli.main import VERBS, other_verbs
+from muster_studies.registry import STUDIES
+
+PARTIAL_INSTALL = Path(__file__).parent.parent / "partial_install.py"
+FIRST_TABLE = {"allocators": "6T-2R"}  # its first is made of all others
+
+
+def with_extras(extras, *calls):
+    """Exit code, standard output and standard error of each call of the command, with these extras alone."""
+    command = [sys.executable, PARTIAL_INSTALL, ",".join(extras), *map(json.dumps, calls)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_every_verb_says_its_help_with_the_core_install_alone():
+    verbs = [*VERBS, *other_verbs()]
+    assert {"study", "bench"} <= set(verbs)
+    calls = [["--help"], *([verb, "--help"] for verb in verbs), ["bench", "peers", "--help"], ["study", "--list"]]
+    for call, (code, out, err) in zip(calls, with_extras((), *calls), strict=True):
+        assert (code, err) == (0, ""), call
+        assert "cannot be loaded" not in out
+    assert all(name in out for name in STUDIES)  # of the last call
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_the_first_table_needs_the_extras_of_its_study_alone(name):
+    study = STUDIES[name]
+    table = FIRST_TABLE.get(name, study.tables[0])
+    call = ["study", name, "--tables", table, "--quick", "--seeds", "1", "--workers", "1", "--format", "json", "-q"]
+    if name != "peers":  # in which all solvers have the same time
+        call += ["--iterations", "20"]
+    ((code, out, err),) = with_extras(study.extras, call)
+    assert (code, err) == (0, "")
+    assert table in [made["number"] for made in json.loads(out)["tables"]]
+
+
+def test_an_extra_is_absent_in_such_an_environment():
+    """Else these tests could not fail."""
+    (code, _, err), (missing, _, why) = with_extras(
+        (), ["study", "thesis-6.1"], ["solve", "6T-2R", "--plot", "plan.png", "-q"]
+    )
+    assert (code, missing) == (2, 2)
+    assert "muster-robotics[physics]" in err
+    assert "muster-robotics[plot]" in why
