@@ -137,7 +137,8 @@ def solve(
     on_progress: OnProgress | None = None,
     *,
     iterations: int | None = None,
-    objective: str | None = None,
+    objective: str | Callable[[Verdict], float] | None = None,
+    candidates: int = 10,
     ignore: str | Collection[str] = (),
     start: Plan | None = None,
     fixed: Plan | None = None,
@@ -156,7 +157,10 @@ def solve(
         when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
         plan.
     objective
-        instead of the mission's own.
+        instead of the mission's own; or a function of the judge's `Verdict`, the lower the better, by which several
+        plans are ranked. That is slower: no allocator searches by it (see docs/extending.md).
+    candidates
+        how many plans such a function ranks; they share the time or the iterations.
     ignore
         rules that do not hold: prerequisite, suitability, skill, lock, capacity.
     start
@@ -182,7 +186,7 @@ def solve(
         mission=mission,
         allocator=allocator,
         parameters=given,
-        objective=objective,
+        objective=None if callable(objective) else objective,
         time_limit=time_limit,
         iterations=iterations,
         seed=seed,
@@ -192,6 +196,10 @@ def solve(
         bound=bound,
         rewire=rewire,
     )
+    if callable(objective):
+        from muster.planning.custom_objective import best_by
+
+        return best_by(objective, request, candidates, on_progress)
     return answer(request, on_progress=on_progress).plan
 
 

@@ -157,10 +157,11 @@ class Simulation:
             self._tick()
         return self._executor.events[first:]
 
-    def report(self, event: Event) -> None:
+    def report(self, event: Event, *, replan: bool = True) -> None:
         """Let something happen now that the mission file did not foresee; its `at_s` does not count.
 
-        What follows for the plan follows at once, not only when time goes on.
+        The rest of the mission is planned again at once. With `replan=False` it is planned again by `replan`, or when
+        time goes on: once for all events that were reported until then.
 
         Raises
         ------
@@ -174,6 +175,11 @@ class Simulation:
         else:
             self._executor.report(event)
             self._take_event(event)
+        if replan:
+            self.replan()
+
+    def replan(self) -> None:
+        """Plan the rest again at once if events that were reported ask for that, and send robots on."""
         self._tick()
 
     def result(self) -> Report:
