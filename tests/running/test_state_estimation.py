@@ -15,7 +15,7 @@ from muster.mission.plan import Plan, Route
 from muster.motion.frames import wrapped
 from muster.motion.port import Waypoint
 from muster.perception import ground_fusion
-from muster.perception.tracking import AirTracker, GroundTracker
+from muster.perception.pose_tracking import AirTracker, GroundTracker
 from muster.running.simulation import carry_out
 from muster.running.state_estimation import FusedHearing, FusedPorts, air_errors, ground_errors, heard
 from muster.running.worlds import world_named

@@ -13,8 +13,8 @@ import numpy as np
 
 from muster.motion.grid import Floats
 from muster.perception.clusters import by_density
-from muster.perception.interest import PointOfInterest, points_of_interest
 from muster.perception.matching import ErrorTable, error_table
+from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 from muster.running.simulation import Simulation
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort

@@ -18,7 +18,7 @@ from muster.report.film.interpolation import Moments
 from muster.report.film.view import Frame, View, view_of
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.buildings import Heights
-from muster.simulation.physics.posed_scene import Tableau
+from muster.simulation.physics.posed_scene import PosedScene
 from muster.simulation.physics.rendering import Lens, Renderer
 
 OVERSAMPLED = 2
@@ -74,7 +74,7 @@ class FilmSet:
         return picture
 
 
-def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Tableau:
+def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> PosedScene:
     """The world of a run, its robots in their colours, those that joined included, between low walls.
 
     Parameters
@@ -82,9 +82,9 @@ def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Tab
     pixel_m
         how many metres a pixel of the picture is across.
     """
-    stage = footage.world.replica(Heights.low(min(WALL_PX * pixel_m, MOST_WALL_M)))
-    colors = [rgba(robot_style(k).color) for k in range(len(stage.robots))]
-    return Tableau(stage, colors, smooth=smooth)
+    simulated = footage.world.replica(Heights.low(min(WALL_PX * pixel_m, MOST_WALL_M)))
+    colors = [rgba(robot_style(k).color) for k in range(len(simulated.robots))]
+    return PosedScene(simulated, colors, smooth=smooth)
 
 
 def name_all(

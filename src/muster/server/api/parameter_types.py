@@ -10,7 +10,7 @@ from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from muster.mission.model import IGNORABLE
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.server.services import uploads
 
 LARGEST = 2**31 - 1
