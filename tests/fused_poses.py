@@ -10,7 +10,7 @@ import click
 import numpy as np
 
 from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.tracking import AirTracker, GroundTracker
+from muster.perception.pose_tracking import AirTracker, GroundTracker
 from tests.perception.test_tracking import flown, mission
 from tests.running.test_state_estimation import watched
 

@@ -7,49 +7,73 @@ plan = muster.solve(mission, time_limit=1.0)
 assert muster.verify(mission, plan).valid
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from muster.library import MissionSummary, missions
 from muster.mission.errors import (
     Finding,
     InputError,
     MissingExtraError,
     MissionError,
     MusterError,
+    NetworkError,
     NotSupportedError,
     ParameterError,
     PlanError,
+    PluginError,
 )
-from muster.mission.model import Event, Mission, Robot, Rules, Task
+from muster.mission.model import Action, Camera, Event, Found, Map, Mission, Origin, Robot, Rules, Tag, Task, Zone
 from muster.mission.plan import Plan, Route, read_plan
-from muster.planning.judging import plot, verify
+from muster.planning.judging import verify
 from muster.planning.loading import load
+from muster.planning.pictures import gantt, plot
+from muster.planning.questions import check, explain
 from muster.planning.solving import solve
 from muster.running.running import carry_out, simulate
 
 if TYPE_CHECKING:
+    from muster.execution import Report
     from muster.running.negotiated.simulation import Negotiation
     from muster.running.simulation import Simulation
+    from muster.verification import Verdict
 
 __all__ = [
+    "Action",
+    "Camera",
     "Event",
     "Finding",
+    "Found",
     "InputError",
+    "Map",
     "MissingExtraError",
     "Mission",
     "MissionError",
+    "MissionSummary",
     "MusterError",
     "Negotiation",
+    "NetworkError",
     "NotSupportedError",
+    "Origin",
     "ParameterError",
     "Plan",
     "PlanError",
+    "PluginError",
+    "Report",
     "Robot",
     "Route",
     "Rules",
     "Simulation",
+    "Tag",
     "Task",
+    "Verdict",
+    "Zone",
     "carry_out",
+    "check",
+    "explain",
+    "gantt",
     "load",
+    "missions",
     "plot",
     "read_plan",
     "simulate",
@@ -57,16 +81,21 @@ __all__ = [
     "verify",
 ]
 
+_LOADED_AT_FIRST_USE = {
+    "Negotiation": "muster.running.negotiated.simulation",
+    "Report": "muster.execution",
+    "Simulation": "muster.running.simulation",
+    "Verdict": "muster.verification",
+}
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])
+
 
 def __getattr__(name: str) -> Any:
-    if name == "Simulation":  # carrying out is imported when it is wanted
-        from muster.running.simulation import Simulation
-
-        return Simulation
-    if name == "Negotiation":
-        from muster.running.negotiated.simulation import Negotiation
-
-        return Negotiation
+    if name in _LOADED_AT_FIRST_USE:
+        return getattr(import_module(_LOADED_AT_FIRST_USE[name]), name)
     if name == "__version__":
         from importlib.metadata import version
 

@@ -9,10 +9,9 @@ from tests.running.test_live import WorldAsFleet, mission
 
 import muster
 from muster.cli import real_robots as real
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.main import run
 from muster.cli.real_robots import Wishes, carried_out, reported
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.running.live import wait_for_robots
 
 ASKED = {

@@ -13,7 +13,7 @@ ON_GROUND = pose_transform([0.0, 0.0, 0.0, np.pi, 0.0, 0.0])
 """Of a tag that lies on the ground, its picture's x to the east: y of the tag is south, z down."""
 
 
-def lying(x, y, turned=0.0, z=0.0):
+def tag_pose(x, y, turned=0.0, z=0.0):
     """The pose of a tag that lies face up at (x, y, z)."""
     return pose_transform([x, y, z, 0.0, 0.0, turned]) @ ON_GROUND
 

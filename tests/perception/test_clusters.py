@@ -13,8 +13,8 @@ from muster.mission.errors import MissingExtraError, ParameterError
 pytest.importorskip("scipy")
 from muster.perception.clusters import LONE, by_density, by_means, by_tag, inertia, linked
 from muster.perception.estimates import NO_TAG, RawEstimates
-from muster.perception.interest import points_of_interest
 from muster.perception.matching import error_table
+from muster.perception.points_of_interest import points_of_interest
 
 from .seen import seen
 

@@ -19,7 +19,7 @@ from muster.perception.detection import DetectorParameters, TagDetector
 from muster.perception.localisation import by_size, on_ground
 from muster.perception.tags import tag_image
 
-from .scenes import VGA, corners_in_map, drawn, lying, over
+from .scenes import VGA, corners_in_map, drawn, over, tag_pose
 
 DETECTOR = TagDetector()
 
@@ -35,7 +35,7 @@ DETECTOR = TagDetector()
     seed=st.integers(0, 99),
 )
 def test_a_tag_on_the_ground_is_found_where_it_is(tag, turned, away, aside, noise, blur, seed):
-    view, pose = over(0, 0, 3), lying(away, aside, turned)
+    view, pose = over(0, 0, 3), tag_pose(away, aside, turned)
     (seen,) = DETECTOR.detect(drawn(view, [(tag, pose)], noise=noise, blur=blur, seed=seed), VGA).all
     assert seen.tag == tag
     assert seen.corrected <= 1
@@ -46,14 +46,14 @@ def test_a_tag_on_the_ground_is_found_where_it_is(tag, turned, away, aside, nois
 
 
 def test_several_tags_by_id():
-    tags = [(9, lying(2.2, 0.5)), (2, lying(3.5, -0.9, 1.0)), (41, lying(4.2, 1.0, 2.0))]
+    tags = [(9, tag_pose(2.2, 0.5)), (2, tag_pose(3.5, -0.9, 1.0)), (41, tag_pose(4.2, 1.0, 2.0))]
     found = DETECTOR.detect(drawn(over(0, 0, 3), tags, noise=2))
     assert [s.tag for s in found.all] == [2, 9, 41]
     assert found.repeated == ()
 
 
 def test_a_tag_twice_in_one_image_is_told():
-    tags = [(7, lying(2.5, 0.6)), (7, lying(3.5, -0.6)), (8, lying(3.5, 0.6))]
+    tags = [(7, tag_pose(2.5, 0.6)), (7, tag_pose(3.5, -0.6)), (8, tag_pose(3.5, 0.6))]
     found = DETECTOR.detect(drawn(over(0, 0, 3), tags))
     assert [s.tag for s in found.all] == [7, 7, 8]
     assert found.repeated == (7,)
@@ -67,7 +67,7 @@ def test_noise_has_no_tags(seed):
 
 def test_a_tag_that_the_edge_cuts_is_not_seen():
     """As the thesis says of its detector (4.3.2)."""
-    image = drawn(over(0, 0, 3), [(7, lying(3, 0))])
+    image = drawn(over(0, 0, 3), [(7, tag_pose(3, 0))])
     (whole,) = DETECTOR.detect(image).all
     cut = image.copy()
     cut[:, int(whole.centre[0]) :] = 110
@@ -80,7 +80,7 @@ def test_an_empty_floor_has_no_tags():
 
 
 def test_a_coloured_image_gives_what_a_grey_one_does():
-    image = drawn(over(0, 0, 3), [(7, lying(3, 0))])
+    image = drawn(over(0, 0, 3), [(7, tag_pose(3, 0))])
     (grey,) = DETECTOR.detect(image).all
     (coloured,) = DETECTOR.detect(np.repeat(image[:, :, None], 3, axis=2)).all
     np.testing.assert_array_equal(grey.corners, coloured.corners)
@@ -100,7 +100,7 @@ def test_bits_that_were_read_wrong(wrong):
 
 
 def test_faint_tags_count_only_if_let():
-    image = drawn(over(0, 0, 3), [(7, lying(3, 0))], floor=120)
+    image = drawn(over(0, 0, 3), [(7, tag_pose(3, 0))], floor=120)
     faint = (120 + (image.astype(int) - 120) // 12).astype(np.uint8)
     assert DETECTOR.detect(faint).all == ()
     assert [s.tag for s in TagDetector(DetectorParameters(least_margin=0.0)).detect(faint).all] == [7]
@@ -135,7 +135,7 @@ def test_how_small_a_tag_may_be(decimate, least_px):
     detector = TagDetector(DetectorParameters(decimate=decimate))
     view = over(0, 0, 3, mount=mount_of([0, 0, 0, 0, math.pi / 2, 0]))
     size = least_px * 3 / VGA.fx
-    tags = [(k, lying((k % 3 - 1) * 0.7, (k // 3 - 1) * 0.9, k)) for k in range(9)]
+    tags = [(k, tag_pose((k % 3 - 1) * 0.7, (k // 3 - 1) * 0.9, k)) for k in range(9)]
     found = detector.detect(drawn(view, tags, size, noise=3, blur=0.7))
     assert [s.tag for s in found.all] == list(range(9))
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from muster.mission.errors import ParameterError
 from muster.perception.laser import Scanner
-from muster.perception.spikes import Search, landmarks, spikes
+from muster.perception.spikes import SpikeParameters, landmarks, spikes
 
 SCANNER = Scanner()
 ARENA = np.array([[-1, -1, 1, -1], [1, -1, 1, 1], [1, 1, -1, 1], [-1, 1, -1, -1]], dtype=float)
-SEARCH = Search(depth_m=0.07)
+SEARCH = SpikeParameters(depth_m=0.07)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_cylinder_in_the_arena(place, away, bearing, heading, radius, known):
     disc = np.array([[x + away * math.cos(direction), y + away * math.sin(direction), radius]])
     assume(np.abs(disc[0, :2]).max() <= 0.85)
     ranges = SCANNER.ranges((x, y, heading), ARENA, disc)
-    found = landmarks(ranges, SCANNER.bearings, Search(depth_m=0.07, radius_m=radius if known else None))
+    found = landmarks(ranges, SCANNER.bearings, SpikeParameters(depth_m=0.07, radius_m=radius if known else None))
     (mark,) = found
     assert math.dist(mark.position, (away * math.cos(bearing), away * math.sin(bearing))) < 0.005
     assert abs(mark.radius_m - radius) < 0.005
@@ -88,7 +88,9 @@ def test_a_box_is_no_cylinder():
     def seen(half, away=0.6):
         corners = np.array([[away, -half], [away, half], [away + 2 * half, half], [away + 2 * half, -half]])
         box = np.hstack([corners, np.roll(corners, -1, axis=0)])
-        return landmarks(SCANNER.ranges((0, 0, 0), np.vstack([ARENA, box])), SCANNER.bearings, Search(misfit_m=0.002))
+        return landmarks(
+            SCANNER.ranges((0, 0, 0), np.vstack([ARENA, box])), SCANNER.bearings, SpikeParameters(misfit_m=0.002)
+        )
 
     assert seen(0.05) == ()
     assert seen(0.15) == ()
@@ -97,15 +99,15 @@ def test_a_box_is_no_cylinder():
 def test_a_known_radius_takes_no_other_circle():
     disc = np.array([[0.6, 0.0, 0.12]])
     ranges = SCANNER.ranges((0, 0, 0), ARENA, disc)
-    assert len(landmarks(ranges, SCANNER.bearings, Search(radius_m=0.12))) == 1
-    assert landmarks(ranges, SCANNER.bearings, Search(radius_m=0.03, misfit_m=0.005)) == ()
+    assert len(landmarks(ranges, SCANNER.bearings, SpikeParameters(radius_m=0.12))) == 1
+    assert landmarks(ranges, SCANNER.bearings, SpikeParameters(radius_m=0.03, misfit_m=0.005)) == ()
 
 
 def test_one_beam_is_enough():
     """The range of the one beam is that of the circle's nearest point: D - r, with r = D sin(half a step)."""
     ranges = np.full(667, math.inf)
     ranges[333] = 3.0
-    (mark,) = landmarks(ranges, SCANNER.bearings, Search(smallest_m=0.001))
+    (mark,) = landmarks(ranges, SCANNER.bearings, SpikeParameters(smallest_m=0.001))
     half = math.sin(SCANNER.step_rad / 2)
     assert mark.position == pytest.approx((3 / (1 - half), 0))
     assert mark.radius_m == pytest.approx(3 * half / (1 - half))
@@ -117,8 +119,8 @@ def test_nothing_in_reach_has_no_landmarks():
 
 def test_refusals():
     with pytest.raises(ParameterError, match=r"^depth_m: 0; expected a finite number above 0$"):
-        Search(depth_m=0)
+        SpikeParameters(depth_m=0)
     with pytest.raises(ParameterError, match=r"^smallest_m: 0.3; expected at most largest_m, 0.2$"):
-        Search(smallest_m=0.3)
+        SpikeParameters(smallest_m=0.3)
     with pytest.raises(ParameterError, match=r"shapes \(3,\), \(667,\); expected \(n,\) twice"):
         landmarks(np.zeros(3), SCANNER.bearings)

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from muster.mission.errors import ParameterError
 from muster.perception.kalman import Estimate
-from muster.perception.targets import Sighting, averaged, crossing
+from muster.perception.targets import TargetSighting, averaged, crossing
 
 angles = st.floats(-math.pi, math.pi)
 
 
 def sighting(pose, range_m, bearing, deviations=(0.05, 0.05, 0.05)):
-    return Sighting(Estimate(np.array(pose), np.diag(np.square(deviations))), range_m, bearing, 0.01, 0.006)
+    return TargetSighting(Estimate(np.array(pose), np.diag(np.square(deviations))), range_m, bearing, 0.01, 0.006)
 
 
 def test_a_sighting_by_hand():

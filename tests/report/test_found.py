@@ -11,8 +11,8 @@ from matplotlib.colors import to_hex
 from muster.perception.clusters import by_tag
 from muster.perception.detection import Sighting, Sightings
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import points_of_interest
 from muster.perception.matching import error_table
+from muster.perception.points_of_interest import points_of_interest
 from muster.report.camera_view import with_sightings
 from muster.report.found import plot_found
 from muster.report.styles import ALARM

@@ -15,9 +15,10 @@ from muster.mission.plan import Plan, Route
 from muster.motion.frames import wrapped
 from muster.motion.port import Waypoint
 from muster.perception import ground_fusion
-from muster.perception.tracking import AirTracker, GroundTracker
-from muster.running.simulation import carry_out, world_named
+from muster.perception.pose_tracking import AirTracker, GroundTracker
+from muster.running.simulation import carry_out
 from muster.running.state_estimation import FusedHearing, FusedPorts, air_errors, ground_errors, heard
+from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
 
 NOISE = Noise(position_m=0.1, heading_rad=0.05, slip=0.05)

@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Map, Mission, Robot, Zone
 from muster.motion.map_world import World, body_of
 from muster.perception.laser import Scanner, faces_at, points_of
-from muster.perception.spikes import Search, landmarks
+from muster.perception.spikes import SpikeParameters, landmarks
 from muster.simulation import KinematicWorld, Laser
 from muster.simulation.walls import faces_and_slabs
 
@@ -59,7 +59,7 @@ def test_a_wall_a_robot_and_a_cylinder(make):
     assert towards(scanner, ranges, 90) == pytest.approx(1.45, abs=1e-3)
     assert towards(scanner, ranges, -90) == pytest.approx(3.0 - THICK_M * true_body, abs=1e-3)
     assert towards(scanner, ranges, -45) == np.inf
-    (mark,) = landmarks(ranges, scanner.bearings, Search(largest_m=0.08))
+    (mark,) = landmarks(ranges, scanner.bearings, SpikeParameters(largest_m=0.08))
     assert mark.position == pytest.approx((0.0, 1.5), abs=0.005)
 
 

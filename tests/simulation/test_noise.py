@@ -11,7 +11,8 @@ from muster.execution import Executor
 from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.motion.port import Waypoint
-from muster.running.simulation import carry_out, world_named
+from muster.running.simulation import carry_out
+from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
 
 WORLDS = [

@@ -127,17 +127,3 @@ def test_reasons_name_robots_of_the_mission_and_known_words():
     ):
         plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("a", (Reason(*reason, "..."),)),))
         assert found(mission, plan) == ([("reason", reason[0], "a")] if is_false else [])
-
-
-def test_with_fixed_beginnings_only_the_gaps_behind_them_count():
-    mission = Mission(
-        robots=(Robot(id="r", position=(0, 0), work_capacity=11),),
-        tasks=(Task(id="on-the-way", position=(5, 0)), Task(id="far", position=(10, 0))),
-    )
-    fixed = Plan(routes=(Route("r", ("far",)),))
-    said = (Unassigned("on-the-way", (Reason("r", "capacity", "..."),)),)
-    plan = Plan(routes=(Route("r", ("far",)),), unassigned=said)
-    assert [v.kind for v in verify(mission, plan).violations] == ["reason"]
-    assert verify(mission, plan, fixed=fixed).valid
-    other = Plan(routes=(Route("r", ("on-the-way", "far")),))
-    assert [v.kind for v in verify(mission, other, fixed=fixed).violations] == ["fixed"]

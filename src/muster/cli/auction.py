@@ -33,6 +33,7 @@ from muster.cli.outputs import require_csv, require_drawable, require_folder, re
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
+from muster.planning.judging import judged
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
@@ -111,7 +112,7 @@ def command(
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))
     plan = chosen.plan(problem, terms, first, agreement.took_s)
-    show_plan(loaded, plan, ignore, objective, form=form, output=output, plot=plot, gantt=gantt)
+    show_plan(loaded, plan, judged(loaded, plan, ignore, objective), form=form, output=output, plot=plot, gantt=gantt)
     if views is not None:
         _write_views(views, {r: chosen.plan(problem, terms, v, agreement.took_s) for r, v in agreement.views.items()})
     if book is not None and not write_book(plan, book, quiet):

@@ -20,4 +20,4 @@ class Agreement:
 
 def by_kind(sent: Mapping[str, int]) -> str:
     """How many messages were sent, by kind."""
-    return ", ".join(f"{sent[kind]} {kind}" for kind in ("news", "repairs", "beats", "greetings"))
+    return ", ".join(f"{sent[kind]} {kind}" for kind in ("news", "repairs", "heartbeats", "greetings"))

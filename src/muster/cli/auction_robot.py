@@ -13,14 +13,14 @@ from muster.allocation.problem import Problem
 from muster.cli.auction_result import Agreement, by_kind
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster.negotiation.joining import node_of
 from muster.negotiation.keys import read_key
 from muster.negotiation.memory_file import kept_of
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.node import NodeStatus
-from muster.negotiation.one_robot import Staying, new_incarnation, take_part
+from muster.negotiation.node_factory import node_of
+from muster.negotiation.one_robot import StayLimits, new_incarnation, take_part
 from muster.negotiation.transport import Transport
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
@@ -68,10 +68,10 @@ def agree_with_others(
 
     if forgot and node.negotiator.once:
         say(f"{len(node.negotiator.once)} tasks are for at most one robot: without --memory they may find none")
-    staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
+    limits = StayLimits(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
     with node:
         watch = _Watch(node.negotiator, say)
-        view, took_s = take_part(node, staying, watch)
+        view, took_s = take_part(node, limits, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
 

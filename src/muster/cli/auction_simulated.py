@@ -10,7 +10,7 @@ import click
 from muster.allocation.problem import Problem
 from muster.cli.auction_result import Agreement
 from muster.mission.errors import MusterError, ParameterError
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.methods import Method
 from muster.negotiation.robot_view import view_of
 
@@ -28,7 +28,7 @@ def agree_in_memory(
         if those that live do not agree within the time limit, in virtual seconds.
     """
     names = [robot.id for robot in problem.robots]
-    weather = Weather(
+    conditions = LinkConditions(
         loss=options["loss"] or 0.0,
         duplication=options["duplication"] or 0.0,
         delay_s=0.001 if options["delay"] is None else options["delay"],
@@ -38,7 +38,7 @@ def agree_in_memory(
     def make(robot: str, incarnation: int) -> Any:
         return method.negotiator(problem, terms, robot, incarnation=incarnation)
 
-    network = MemoryNetwork(make, names, options["network_seed"], weather)
+    network = MemoryNetwork(make, names, options["network_seed"], conditions)
     account = _Account(network, rounds=verbose, quiet=quiet)
     _plan_faults(network, account, names, options["crashes"] or 0, options["cut"] or 0.0, len(problem.tasks))
     network.start()
@@ -91,7 +91,9 @@ class _Account:
     def end(self) -> None:
         counts = self._network.counts
         nodes = self._network.nodes.values()
-        kinds = ", ".join(f"{sum(getattr(node.counts, k) for node in nodes)} {k}" for k in ("news", "repairs", "beats"))
+        kinds = ", ".join(
+            f"{sum(getattr(node.counts, k) for node in nodes)} {k}" for k in ("news", "repairs", "heartbeats")
+        )
         self.tell(
             f"all {len(self._network.nodes)} agree; {counts['sent']} messages ({kinds}), {counts['copies']} copies, "
             f"{counts['lost']} lost"
@@ -105,8 +107,8 @@ def _plan_faults(
     if crashes >= len(names):
         raise ParameterError(f"--crashes: {crashes}; expected less than the {len(names)} robots")
     random = Random(network.seed)
-    weather = network.weather
-    whole_s = (tasks + 2) * (weather.delay_s + weather.jitter_s) / (1 - weather.loss)
+    conditions = network.conditions
+    whole_s = (tasks + 2) * (conditions.delay_s + conditions.jitter_s) / (1 - conditions.loss)
 
     def fault(when_s: float, what: str, happen: Any) -> None:
         def strike() -> None:

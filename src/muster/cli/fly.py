@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
     Wishes,
@@ -21,7 +20,7 @@ from muster.cli.real_robots import (
     show_final_states,
 )
 from muster.mission.errors import ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 

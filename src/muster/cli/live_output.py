@@ -56,7 +56,12 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
 
 
 def tell(event: ExecutionEvent) -> None:
-    """Say what happens, as it happens."""
+    """Print an event on standard error as it happens."""
     from muster.mission.event_descriptions import event_line
 
-    click.echo(f"{event.time_s:9.1f} s  {event_line(event.kind, event.data)}", err=True)
+    tell_line(event.time_s, event_line(event.kind, event.data))
+
+
+def tell_line(time_s: float, line: str) -> None:
+    """Print the line of an event on standard error, with its time."""
+    click.echo(f"{time_s:9.1f} s  {line}", err=True)

@@ -180,7 +180,7 @@ def ignore_option(verb: Verb) -> Verb:
 
 def objective_option(verb: Verb) -> Verb:
     """--objective."""
-    return click.option("--objective", type=click.Choice(OBJECTIVES), help="Instead of the mission's own.")(verb)
+    return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:
@@ -191,11 +191,7 @@ def require_complete_option(verb: Verb) -> Verb:
 
 
 def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
-    names = [name.strip() for name in (value or "").split(",") if name.strip()]
-    try:
-        return ignored_rules(names)
-    except ParameterError as error:
-        raise click.BadParameter(str(error).removeprefix("ignore: "), param_hint="'--ignore'") from None
+    return ignored_rules([name.strip() for name in (value or "").split(",") if name.strip()])
 
 
 def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
 from muster.cli.real_robots import (
     Wishes,
@@ -23,7 +22,7 @@ from muster.cli.real_robots import (
     ros_options,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 

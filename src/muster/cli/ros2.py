@@ -7,7 +7,6 @@ from typing import Any, Literal
 import click
 
 from muster.cli.exits import INTERRUPTED
-from muster.cli.interrupt import ctrl_c_halts
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
     Wishes,
@@ -20,7 +19,7 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
-from muster.mission.interrupts import TO_END
+from muster.mission.interrupts import TO_END, ctrl_c_halts
 
 _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, REJECTED
 from muster.cli.options import (
     MissionFile,
@@ -16,8 +17,7 @@ from muster.cli.options import (
     objective_option,
     quiet_option,
 )
-from muster.cli.remote.server_option import server_option
-from muster.mission.plan import json_text, read_plan
+from muster.mission.plan import json_text
 
 
 @click.command()
@@ -25,18 +25,15 @@ from muster.mission.plan import json_text, read_plan
 @click.argument("plan", type=click.Path(path_type=Path))
 @objective_option
 @ignore_option
-@click.option(
-    "--fixed", type=click.Path(path_type=Path), metavar="PLAN", help="The routes begin with those of this plan."
-)
 @format_option
 @quiet_option
-@server_option
+@server_option()
 def command(
+    backend: Backend,
     mission: MissionFile,
     plan: Path,
     objective: str | None,
     ignore: tuple[str, ...],
-    fixed: Path | None,
     form: str,
     quiet: bool,
     verbose: bool,
@@ -47,12 +44,10 @@ def command(
     whatever the plan says of itself.
     """
     from muster.cli.plan_tables import print_verdict
-    from muster.verification import verify
 
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    beginnings = None if fixed is None else read_plan(fixed)
-    verdict = verify(loaded, given, ignore, objective, beginnings)
+    verdict = backend.verify(loaded, given, ignore, objective)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+import time
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from typing import Any
 from urllib.parse import urlsplit
+from uuid import uuid4
 
 from muster.exchange.mission_control import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import (
@@ -30,6 +32,11 @@ _ERRORS: Mapping[int, type[MusterError]] = {
 }
 _UNDER_WAY = re.compile(r"/(run|job)s/(\d+)")
 _PURPOSE = "talking to a server"
+_TRIES, _PAUSE_S = 3, 0.3
+
+
+class BrokenConnectionError(NetworkError):
+    """The connection broke; whether the server has got the request is not known."""
 
 
 class Connection:
@@ -69,6 +76,16 @@ class Connection:
 
     def post(self, path: str, body: Mapping[str, Any]) -> Any:
         return self._json("POST", path, json=body)
+
+    def post_once(self, path: str, body: Mapping[str, Any]) -> Any:
+        """Have something made once: where the connection breaks, the request is sent again with the same key."""
+        headers = {"Idempotency-Key": uuid4().hex}
+        for _ in range(_TRIES - 1):
+            try:
+                return self._json("POST", path, json=body, headers=headers)
+            except BrokenConnectionError:
+                time.sleep(_PAUSE_S)
+        return self._json("POST", path, json=body, headers=headers)
 
     def put(self, path: str, body: Mapping[str, Any]) -> Any:
         return self._json("PUT", path, json=body)
@@ -137,7 +154,9 @@ class Connection:
             why = f"{_line(error)}; expected a server there (muster serve)"
             if _UNDER_WAY.match(path):
                 why += f"; {_goes_on(path)}"
-            raise NetworkError(f"{self._url}: cannot be reached: {why}") from None
+            is_broken = isinstance(error, httpx.ReadError | httpx.WriteError | httpx.RemoteProtocolError)
+            kind = BrokenConnectionError if is_broken else NetworkError
+            raise kind(f"{self._url}: cannot be reached: {why}") from None
         if answer.is_success:
             return answer
         if answer.is_redirect:

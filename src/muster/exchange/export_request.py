@@ -1,15 +1,24 @@
-"""What can be asked for of a plan as files of other tools: as data, for faces that do not load what makes them."""
+"""The formats of exported plans, their options, and the files that come out: data, without what makes the files."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 FORMATS = ("qgc", "geojson", "gpx", "kml", "csv")
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """What can be asked for of QGroundControl's plan files.
+class Files:
+    """Texts by the names of their files, and what a person has to know of them."""
+
+    texts: Mapping[str, str]
+    messages: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class QgcOptions:
+    """The options of QGroundControl's plan files.
 
     Parameters
     ----------

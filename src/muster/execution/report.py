@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any
 
 from muster.execution.task_ledger import Ledger
+from muster.mission.data_frames import data_frame
+from muster.mission.html_tables import html_line, html_table
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,6 +155,28 @@ class Report:
         rows = {name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks", "found")}
         names = {"tasks_done": list(self.tasks_done), "remarks": list(self.remarks)}
         return asdict(self) | names | {"tasks_lost": lost, **rows}
+
+    def __repr__(self) -> str:
+        return f"<Report: {self._summary}>"
+
+    def _repr_html_(self) -> str:
+        tasks = [(t.task, t.robot, self.starts_s[t.task], self.ends_s[t.task], t.waiting_s) for t in self.tasks]
+        columns = ("task", "robot", "starts (s)", "ends (s)", "waits (s)")
+        lost = html_table("Tasks lost", ("task", "reason"), self.tasks_lost) if self.tasks_lost else ""
+        return html_line(self._summary) + html_table("Tasks done", columns, tasks) + lost
+
+    @property
+    def _summary(self) -> str:
+        done, lost = len(self.tasks_done), len(self.tasks_lost)
+        objective = f"{self.objective.name} {self.objective.flown:.2f}"
+        return f"{done} tasks done, {lost} lost, {self.mission_time_s:.1f} s, {objective}"
+
+    def to_frame(self) -> DataFrame:
+        """A DataFrame with a row for each task done: robot, usage planned and measured, times; needs `frames`."""
+        rows = (
+            {**asdict(row), "starts_s": self.starts_s[row.task], "ends_s": self.ends_s[row.task]} for row in self.tasks
+        )
+        return data_frame(rows, (*(f.name for f in fields(TaskReport)), "starts_s", "ends_s"))
 
 
 def report_of(account: Account, *, contacts: int | None = None, min_distance_m: float | None = None) -> Report:

@@ -7,6 +7,7 @@ from muster.library.shipped import (
     mission_names,
     mission_path,
     mission_summary,
+    missions,
     published,
     published_names,
 )
@@ -18,6 +19,7 @@ __all__ = [
     "mission_names",
     "mission_path",
     "mission_summary",
+    "missions",
     "published",
     "published_names",
 ]

@@ -35,6 +35,11 @@ def mission_names() -> list[str]:
     return [*_names(_MISSIONS), *_names(_TSPLIB)]
 
 
+def missions() -> tuple[MissionSummary, ...]:
+    """The shipped missions; `muster.load` takes their names."""
+    return tuple(mission_summary(name) for name in mission_names())
+
+
 def mission_path(name: str) -> Path | None:
     """The file of the shipped mission of that name, `.yaml` or `.tsp`; None if there is none."""
     folder = next((folder for folder in (_MISSIONS, _TSPLIB) if name in _names(folder)), None)

@@ -6,21 +6,27 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 from muster.mission.consistency import inconsistencies
-from muster.mission.errors import MissionError
+from muster.mission.data_frames import frame_of_records
+from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
-from muster.mission.ignorable_rules import IGNORABLE
+from muster.mission.html_tables import html_line, html_table
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Map, Origin, Point, Tag, TravelTable, Zone
 from muster.mission.tasks import Action, Found, Task, Work
+from muster.mission.text_files import write_text
+from muster.mission.yaml_writer import with_files_from, yaml_text
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = [
-    "IGNORABLE",
     "OBJECTIVES",
     "SCHEMA",
     "Action",
@@ -58,6 +64,39 @@ class Mission(MissionData):
         faults = list(inconsistencies(self))
         if faults:
             raise MissionError(findings(faults, self.source))
+
+    def __repr__(self) -> str:
+        return f"<Mission {self.name}: {self._counts}, {self.rules.objective}>"
+
+    def _repr_html_(self) -> str:
+        robots = [(r.id, r.type, r.position, r.work_capacity, r.skills) for r in self.robots]
+        tasks = [(t.id, t.type, t.position, t.actuation_cost, t.prerequisites) for t in self.tasks]
+        return (
+            html_line(f"Mission {self.name}: {self._counts}, objective {self.rules.objective}")
+            + html_table("Robots", ("robot", "type", "position", "work capacity", "skills"), robots)
+            + html_table("Tasks", ("task", "type", "position", "actuation cost", "prerequisites"), tasks)
+        )
+
+    @property
+    def _counts(self) -> str:
+        robots, tasks = len(self.robots), len(self.tasks)
+        return f"{robots} robot{'' if robots == 1 else 's'}, {tasks} task{'' if tasks == 1 else 's'}"
+
+    def to_frame(self, of: Literal["tasks", "robots"] = "tasks") -> DataFrame:
+        """The tasks, or the robots, as a DataFrame with a column for each field; needs the extra `frames`."""
+        if of not in ("tasks", "robots"):
+            raise ParameterError(f"of: {of}; expected tasks or robots")
+        return frame_of_records(Task, self.tasks) if of == "tasks" else frame_of_records(Robot, self.robots)
+
+    def save(self, path: str | Path) -> None:
+        """Write the mission as YAML. Files that it names, maps and travel tables, are found from there as from before.
+
+        Raises
+        ------
+        OSError
+            if the file cannot be written.
+        """
+        write_text(Path(path), yaml_text(with_files_from(self, Path(path).parent)))
 
     def at_once(self, **changes: Any) -> Mission:
         """The mission, changed, without what happens or is found while it is carried out."""

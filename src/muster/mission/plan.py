@@ -7,14 +7,19 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.auction_book import Award, Book
-from muster.mission.errors import Finding, MissionError, PlanError
+from muster.mission.data_frames import data_frame
+from muster.mission.errors import Finding, MissionError, ParameterError, PlanError
+from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule, ignored_rules
-from muster.mission.model import OBJECTIVES
-from muster.mission.text_files import read_text
+from muster.mission.rules import OBJECTIVES
+from muster.mission.text_files import read_text, write_text
 from muster.mission.value_types import shown
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 PLAN_SCHEMA = "muster-plan/1"
 REASONS = ("skill", "suitability", "lock", "capacity", "prerequisite", "unreachable", "not-chosen")
@@ -111,10 +116,28 @@ class Plan:
 
     def save(self, path: str | Path) -> None:
         """Write the plan as JSON."""
-        try:
-            Path(path).write_text(self.text(), encoding="utf-8")
-        except OSError as error:
-            raise OSError(error.errno, error.strerror, str(path)) from None
+        write_text(Path(path), self.text())
+
+    def __repr__(self) -> str:
+        done = sum(len(route.tasks) for route in self.routes)
+        value = "" if self.objective_value is None else f", {self.objective} {self.objective_value:.2f}"
+        return f"<Plan of {self.mission or 'a mission'} by {self.allocator or 'hand'}: {done} tasks done{value}>"
+
+    def _repr_html_(self) -> str:
+        routes = [(route.robot, " ".join(route.tasks), route.usage) for route in self.routes]
+        columns = ("robot", "tasks", f"usage ({self.usage_unit})" if self.usage_unit else "usage")
+        text = html_line(repr(self)[1:-1]) + html_table("Routes", columns, routes)
+        left_out = [(item.task, ", ".join(sorted({r.reason for r in item.reasons}))) for item in self.unassigned]
+        return text + (html_table("Left out", ("task", "reasons"), left_out) if left_out else "")
+
+    def to_frame(self) -> DataFrame:
+        """A DataFrame with a row for each stop: robot, place in its route from 1, task; needs the extra `frames`."""
+        rows = (
+            {"robot": route.robot, "place": place, "task": task}
+            for route in self.routes
+            for place, task in enumerate(route.tasks, 1)
+        )
+        return data_frame(rows, ("robot", "place", "task"))
 
 
 def gap(value: float, bound: float) -> float:
@@ -168,6 +191,28 @@ def plan_from(data: object, file: str) -> Plan:
         with everything that is wrong with it.
     """
     return _Reading(file).plan(data)
+
+
+def plan_of(given: Plan | Mapping[str, Any]) -> Plan:
+    """A plan as it is; or the plan in a mapping: from robots to their tasks in order, or a plan file's content.
+
+    Raises
+    ------
+    ParameterError
+        if it is neither.
+    PlanError
+        with everything that is wrong with the mapping.
+    """
+    if isinstance(given, Plan):
+        return given
+    if not isinstance(given, Mapping):
+        raise ParameterError(f"plan: {shown(given)}; expected a Plan, or a mapping from robots to lists of tasks")
+    data = given if "schema" in given else {"schema": PLAN_SCHEMA, "routes": _routes_in(given)}
+    return plan_from(json.loads(json.dumps(data, default=str)), "<plan>")
+
+
+def _routes_in(given: Mapping[str, Any]) -> list[dict[str, Any]]:
+    return [{"robot": robot, "tasks": tasks} for robot, tasks in given.items()]
 
 
 class _Reading:

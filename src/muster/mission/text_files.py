@@ -1,4 +1,4 @@
-"""The text of input files."""
+"""The text of files: reading those that are given, writing those that are asked for."""
 
 from __future__ import annotations
 
@@ -21,3 +21,11 @@ def read_text(path: Path) -> str:
         raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
     except ValueError as error:
         raise MissionError([Finding(str(path), None, "", str(error), "a file to read")]) from None
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file; an error names it."""
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from None

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from os.path import relpath
+from pathlib import Path
+from typing import Any, TypeVar
 
-from muster.mission.model import Mission
+from muster.mission.mission_data import MissionData
 from muster.mission.records import specified
+from muster.mission.source import IN_PYTHON
+
+M = TypeVar("M", bound=MissionData)
 
 
-def yaml_text(mission: Mission) -> str:
+def yaml_text(mission: MissionData) -> str:
     """The mission as YAML of `schema: muster/1`; one line a robot and task."""
     lines: list[str] = []
-    for f in specified(Mission):
+    for f in specified(MissionData):
         value = getattr(mission, f.name)
         if f.name != "schema" and value == f.default:
             continue
@@ -25,6 +31,23 @@ def yaml_text(mission: Mission) -> str:
         else:
             lines.append(f"{f.name}: {flow_text(data)}")
     return "\n".join(lines) + "\n"
+
+
+def with_files_from(mission: M, folder: Path) -> M:
+    """The mission as a file in that folder has it: the names of other files lead to them from there."""
+    origin = Path(mission.source.file).parent
+    if mission.source is IN_PYTHON or origin.resolve() == folder.resolve():
+        return mission
+
+    def moved(name: str | None) -> str | None:
+        return name if name is None else relpath(origin / name, folder)
+
+    changes: dict[str, Any] = {}
+    if mission.map is not None:
+        changes["map"] = replace(mission.map, ros_yaml=moved(mission.map.ros_yaml), image=moved(mission.map.image))
+    if mission.travel is not None:
+        changes["travel"] = {kind: moved(name) for kind, name in mission.travel.items()}
+    return replace(mission, **changes)
 
 
 def plain(value: Any) -> Any:

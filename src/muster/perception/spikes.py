@@ -27,7 +27,7 @@ _INNER = 0.8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Search:
+class SpikeParameters:
     """What is taken for a landmark.
 
     Parameters
@@ -110,7 +110,7 @@ def spikes(ranges: Floats, depth_m: float) -> list[slice]:
     ]
 
 
-def landmarks(ranges: Floats, bearings: Floats, search: Search | None = None) -> tuple[Landmark, ...]:
+def landmarks(ranges: Floats, bearings: Floats, search: SpikeParameters | None = None) -> tuple[Landmark, ...]:
     """The cylinders of a scan, from right to left.
 
     Parameters
@@ -126,13 +126,13 @@ def landmarks(ranges: Floats, bearings: Floats, search: Search | None = None) ->
         if the shapes differ.
     """
     require_scan(ranges, bearings)
-    search = search or Search()
+    search = search or SpikeParameters()
     step = float(bearings[1] - bearings[0])
     seen = (_circle(ranges[run], bearings[run], step, search.radius_m) for run in spikes(ranges, search.depth_m))
     return tuple(mark for mark in seen if mark is not None and _is_one(mark, search))
 
 
-def _is_one(mark: Landmark, search: Search) -> bool:
+def _is_one(mark: Landmark, search: SpikeParameters) -> bool:
     fits = search.radius_m is not None or search.smallest_m <= mark.radius_m <= search.largest_m
     return fits and mark.misfit_m <= search.misfit_m
 

@@ -54,7 +54,7 @@ def tag_image(tag: int, cell_px: int = 8) -> npt.NDArray[np.uint8]:
     return np.kron(_cells()[tag], np.full((cell_px, cell_px), 255, dtype=np.uint8))
 
 
-def lying(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]:
+def tag_pose(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]:
     """The pose (4, 4) of a tag that lies face up, of its middle (2,) or (3,) and the direction of its upper edge."""
     x, y, z = (*np.asarray(position, dtype=np.float64), 0.0)[:3]
     return pose_transform([x, y, z, math.pi, 0.0, heading - math.pi / 2])

@@ -20,7 +20,7 @@ _PARALLEL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Sighting:
+class TargetSighting:
     """A target seen by one robot.
 
     Parameters

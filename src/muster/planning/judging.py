@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
-from muster.planning.request import Request, require_mission
+from muster.mission.plan import Plan, plan_of
+from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -18,49 +18,46 @@ _MOST_SHOWN = 3
 
 def verify(
     mission: Mission,
-    plan: Plan,
+    plan: Plan | Mapping[str, Any],
     ignore: str | Collection[str] = (),
     objective: str | None = None,
-    fixed: Plan | None = None,
 ) -> Verdict:
     """Judge a plan from scratch, by code that no allocator uses.
 
     Parameters
     ----------
+    plan
+        a plan; or a mapping from robots to their tasks in order, or the content of a plan file.
     ignore
         rules that do not hold, as for `solve`. What the plan says of itself in `ignored` has no effect.
     objective
         the one that the plan was to minimise; the mission's by default.
-    fixed
-        a plan whose routes the routes were to begin with.
 
     Raises
     ------
     ParameterError, NotSupportedError
+    PlanError
+        if a mapping is no plan.
     """
     from muster.verification import verify as judge
 
     require_mission(mission)
-    return judge(mission, plan, ignore, objective, fixed)
+    return judge(mission, plan_of(plan), ignore, objective)
 
 
-def judged(request: Request, plan: Plan) -> Verdict:
-    """The verdict on the plan that an allocator has made for a request.
+def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
+    """The verdict on a plan that an allocator has made for an objective, some rules ignored.
 
     Raises
     ------
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
-    verdict = verify(request.mission, plan, request.ignore, request.objective, request.fixed)
+    from muster.allocation.registry import ALLOCATORS
+
+    verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
-        raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
+        internal = "internal error: " if plan.allocator in ALLOCATORS.shipped else ""
+        raise MusterError(f"{internal}allocator {plan.allocator}: the judge rejects its plan: {details}")
     return verdict
-
-
-def plot(mission: Mission, plan: Plan, *, ax: Any = None) -> Any:
-    """Draw a plan's routes; returns the matplotlib Axes (`ax`, if given). Needs the extra `plot`."""
-    from muster.report import plot_routes
-
-    return plot_routes(mission, plan, verify(mission, plan, plan.ignored, plan.objective), ax=ax)

@@ -12,7 +12,7 @@ from muster.mission.model import Mission
 from muster.perception.detection import Sighting
 from muster.perception.matching import error_table
 from muster.perception.optional_parts import require_physics
-from muster.perception.search import Search
+from muster.perception.point_search import PointSearch
 from muster.report.camera_view import with_sightings
 from muster.report.files import save_figure
 from muster.report.found import plot_found
@@ -22,7 +22,7 @@ FARTHEST_M = 1.0
 """What was found farther than this from every tag is where nothing is."""
 
 
-class Looks:
+class CameraPictures:
     """Is told every look; see `Simulation`.
 
     Parameters
@@ -43,7 +43,7 @@ class Looks:
             folder.mkdir(parents=True, exist_ok=True)
         self._folder = folder
         self._largest: dict[tuple[str, int], float] = {}
-        self._search = Search()
+        self._search = PointSearch()
 
     def __call__(self, look: Look) -> None:
         """Take one look in."""

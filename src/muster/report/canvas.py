@@ -37,12 +37,14 @@ def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axe
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    from muster.report.picture_axes import PictureAxes, PictureAxes3D
+
     figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     if not spatial:
-        return figure.add_subplot()
+        return figure.add_subplot(axes_class=PictureAxes)
     with rc_context({"grid.color": GRID, "grid.linewidth": 0.6}):  # 3-D axes read these once, when they are made
-        axes: Axes = figure.add_subplot(projection="3d", computed_zorder=False)
+        axes: Axes = figure.add_subplot(axes_class=PictureAxes3D, computed_zorder=False)
     return axes
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import PointOfInterest
 from muster.perception.matching import ErrorTable
+from muster.perception.points_of_interest import PointOfInterest
 from muster.report.canvas import add_title, frame_of_map, limits, new_axes
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT, robot_style
 

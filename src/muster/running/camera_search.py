@@ -19,13 +19,13 @@ from muster.mission.records import specified
 from muster.motion.frames import angles
 from muster.motion.port import RobotPort
 from muster.perception.camera import Intrinsics, View, mount_of_mission
+from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
-from muster.perception.interest import remarks
 from muster.perception.localisation import Uncertainty
-from muster.perception.observer import Observer
-from muster.perception.search import Find, Proof, Search
+from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
+from muster.perception.points_of_interest import remarks
 from muster.simulation import KinematicWorld, Noise, SimulatedWorld
-from muster.simulation.cameras import GeometricSight, Look, Sight, true_body
+from muster.simulation.cameras import Cameras, GeometricCameras, Look, true_body
 
 OnLook = Callable[[Look], None]
 
@@ -35,7 +35,7 @@ class _Eye:
     """One robot's camera: its number in the world, and when it looks next."""
 
     number: int
-    observer: Observer
+    observer: CameraObserver
     period_s: float
     due_s: float
 
@@ -73,7 +73,7 @@ class Lookout:
         noise: Noise,
         seed: int,
         on_look: OnLook | None = None,
-        proof: Proof | None = None,
+        proof: FoundCriteria | None = None,
     ) -> None:
         self._mission, self._world, self._ports, self._noise = mission, world, ports, noise
         self._random = np.random.default_rng((seed, 2))
@@ -82,7 +82,7 @@ class Lookout:
         self._eyes: dict[str, _Eye] = {}
         self._tasks: dict[tuple[int, int], str] = {}
         self._remarks: dict[tuple[str, str], str] = {}
-        self.search = Search(proof)
+        self.search = PointSearch(proof)
         for robot in mission.robots:
             self.join(robot)
 
@@ -105,7 +105,7 @@ class Lookout:
         """A robot that is in the world looks from now on, if it has a camera."""
         if robot.camera is None:
             return
-        eye = Observer(
+        eye = CameraObserver(
             robot=robot.id,
             intrinsics=intrinsics_of(robot.camera),
             mount=mount_of_mission(robot.camera),
@@ -161,7 +161,7 @@ class Lookout:
         """Give back what cameras hold."""
         self._sight.close()
 
-    def _event(self, find: Find, now: float) -> Event | None:
+    def _event(self, find: FoundPoint, now: float) -> Event | None:
         """The task that a find becomes; or, of one that was found before, that its task is elsewhere."""
         place = self._place(find)
         task = self._tasks.get((find.tag, find.number))
@@ -174,11 +174,11 @@ class Lookout:
         self._tasks[find.tag, find.number] = name
         return Event(at_s=now, new_task=task_of(rule.becomes, name, place))
 
-    def _place(self, find: Find) -> tuple[float, ...]:
+    def _place(self, find: FoundPoint) -> tuple[float, ...]:
         x, y = (round(float(value), 4) for value in find.point.position[:2])
         return (x, y) if self._mission.dimensions == 2 else (x, y, self._world.ground_m)
 
-    def _free_name(self, find: Find) -> str:
+    def _free_name(self, find: FoundPoint) -> str:
         taken = {task.id for task in self._mission.tasks} | {
             event.new_task.id for event in self._mission.events if event.new_task is not None
         }
@@ -187,7 +187,7 @@ class Lookout:
             name += "'"
         return name
 
-    def _told(self, find: Find) -> FoundReport:
+    def _told(self, find: FoundPoint) -> FoundReport:
         point = find.point
         place = tuple(float(value) for value in point.position)
         truth = [tag.position[:2] for tag in self._mission.tags if tag.id == find.tag]
@@ -203,15 +203,15 @@ class Lookout:
         )
 
 
-def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Sight, TagDetector | None]:
+def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Cameras, TagDetector | None]:
     """How the cameras of a world see, and what looks for tags in their pictures, if they have any."""
     if isinstance(world, KinematicWorld):
-        return GeometricSight(mission.tags, seed), None
+        return GeometricCameras(mission.tags, seed), None
     from muster.simulation.physics.physics_world import PhysicsWorld
-    from muster.simulation.physics.rendered_cameras import DrawnSight
+    from muster.simulation.physics.rendered_cameras import RenderedCameras
 
     assert isinstance(world, PhysicsWorld)
-    return DrawnSight(world), TagDetector()
+    return RenderedCameras(world), TagDetector()
 
 
 def lookout_for(mission: Mission, world: SimulatedWorld, ports: Mapping[str, RobotPort], **how: Any) -> Lookout | None:

@@ -7,13 +7,15 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from muster.mission.errors import ParameterError
+from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.planning.request import require_mission
+from muster.running.simulation_options import SimulationOptions
 
 if TYPE_CHECKING:
     import threading
@@ -32,7 +34,7 @@ def simulate(
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
     observers: Sequence[Recorder] = (),
-    **how: Any,
+    **how: Unpack[SimulationOptions],
 ) -> Report:
     """Carry a plan out with moving robots, in virtual time; the mission's events happen.
 
@@ -51,8 +53,9 @@ def simulate(
     observers
         who else is told, such as `muster.report.live.FoxgloveServer`.
     how
-        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`; `ignore`, rules that do not hold,
-        whatever the plan says of itself; and `speed`, times real time.
+        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `noise`, `on_look`, `on_world`; `ignore`, rules that do
+        not hold, whatever the plan says of itself; and `speed`, times real time, `on_event`, which is called with each
+        event, and `halt`, which ends it when it is set.
 
     Raises
     ------
@@ -63,6 +66,7 @@ def simulate(
     MissingExtraError
         where an extra is not installed that is needed; a negotiation needs `net`, the physics world `physics`.
     """
+    require_known(how, (*SimulationOptions.__annotations__, "seed", "record", "film", "observers"))
     require_mission(mission)
     carry_out = _carrying_out(mission, plan)
     if film is not None:

@@ -14,8 +14,8 @@ from muster.mission.model import Robot
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.port import RobotPort
 from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.tracking import AirTracker, FusedPort, GroundTracker, Tracker
-from muster.simulation import Noise, Passing, SimulatedWorld
+from muster.perception.pose_tracking import AirTracker, FusedPort, GroundTracker, Tracker
+from muster.simulation import Noise, SimulatedWorld, WaypointPassed
 from muster.simulation.port import SimulatedPort
 
 LEAST_M, LEAST_RAD, LEAST_RADPS, LEAST_MPS = 0.001, 0.001, 0.001, 0.001
@@ -33,7 +33,7 @@ class Hearing(Protocol):
         """By the robots' ids; those that join are in it as soon as they are in the world."""
         ...
 
-    def advance(self, until_s: float) -> tuple[Passing, ...]:
+    def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """As `SimulatedWorld.advance`."""
         ...
 
@@ -51,7 +51,7 @@ class FusedHearing:
         self.ports = FusedPorts(world)
         self._listen()
 
-    def advance(self, until_s: float) -> tuple[Passing, ...]:
+    def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """See `SimulatedWorld`."""
         while self._world.time_s + self._world.dt_s <= until_s + 1e-6 * self._world.dt_s:
             passed = self._world.step()

@@ -3,6 +3,6 @@
 from muster.simulation.kinematic_world import KinematicWorld
 from muster.simulation.lasers import Laser
 from muster.simulation.noise import NO_NOISE, Noise
-from muster.simulation.world import Contact, Observer, Passing, SimulatedWorld
+from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
-__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Laser", "Noise", "Observer", "Passing", "SimulatedWorld"]
+__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Laser", "Noise", "Observer", "SimulatedWorld", "WaypointPassed"]

@@ -13,10 +13,10 @@ import numpy.typing as npt
 from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.perception.camera import View
+from muster.perception.camera_observer import CameraObserver, Observation
+from muster.perception.geometric_detection import GroundTag, sightings_of
 from muster.perception.images import Image
-from muster.perception.observer import Observation, Observer
-from muster.perception.seen_by_geometry import LyingTag, sightings_of
-from muster.perception.tags import lying
+from muster.perception.tags import tag_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,10 +29,10 @@ class Look:
     observation: Observation
 
 
-class Sight(Protocol):
+class Cameras(Protocol):
     """How cameras of a world see."""
 
-    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
+    def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
         """Let a robot look from where its camera truly is; `body`, (6,) or (4, 4), is where it takes itself to be."""
         ...
 
@@ -41,21 +41,23 @@ class Sight(Protocol):
         ...
 
 
-class GeometricSight:
+class GeometricCameras:
     """Sees tags where geometry has them, `corner_px` off in the picture; draws nothing and needs no extra."""
 
     def __init__(self, tags: Sequence[Tag], seed: int, corner_px: float = 0.2) -> None:
-        self._tags = [LyingTag(tag.id, lying(tag.position, math.radians(tag.heading_deg)), tag.size_m) for tag in tags]
+        self._tags = [
+            GroundTag(tag.id, tag_pose(tag.position, math.radians(tag.heading_deg)), tag.size_m) for tag in tags
+        ]
         self._random = np.random.default_rng((seed, 1))
         self._corner_px = corner_px
 
-    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
-        """See `Sight`."""
+    def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
+        """See `Cameras`."""
         sightings = sightings_of(self._tags, view, self._random, self._corner_px)
         return Look(observer.robot, now, None, observer.locate(sightings, body, now))
 
     def close(self) -> None:
-        """See `Sight`; it holds nothing."""
+        """See `Cameras`; it holds nothing."""
 
 
 def true_body(frame: Floats, axes: Floats) -> Floats:

@@ -87,7 +87,7 @@ class Laser:
         return self.scanner.measured(exact, np.random.default_rng(errors))
 
 
-def mounted_m(robot: Robot, height_m: float | None) -> float:
+def laser_height_m(robot: Robot, height_m: float | None) -> float:
     """How high a laser is above the robot's place: as asked for, else amid its body.
 
     Raises
@@ -102,7 +102,7 @@ def mounted_m(robot: Robot, height_m: float | None) -> float:
     return height_m
 
 
-def discs_at(robots: Sequence[Robot], places: Floats, who: int, height_m: float) -> Floats:
+def discs_seen_at(robots: Sequence[Robot], places: Floats, who: int, height_m: float) -> Floats:
     """The other robots as one of them sees them at a height of the map frame: (k, 3) of x, y, radius.
 
     Ground robots are upright cylinders, drones balls. In a mission in the plane drones fly above the others.

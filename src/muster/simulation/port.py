@@ -65,11 +65,11 @@ class SimulatedPort:
         """See `RobotPort`."""
         return self._now() if self._last_word is None else self._last_word
 
-    def fall_silent(self) -> None:
+    def mute(self) -> None:
         """From now on telemetry stays what it is."""
         self._last_word = self.telemetry()
 
-    def speak(self) -> None:
+    def unmute(self) -> None:
         """Telemetry goes on."""
         self._last_word = None
 

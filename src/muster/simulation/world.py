@@ -17,7 +17,7 @@ Observer = Callable[[float, Floats, Floats, Floats], None]
 
 
 @dataclass(frozen=True)
-class Passing:
+class WaypointPassed:
     """A labelled way point was passed, hold included, or all of an order were.
 
     Parameters
@@ -72,11 +72,11 @@ class SimulatedWorld(Protocol):
         """By the robots' ids, in order of the mission; those that joined come last."""
         ...
 
-    def step(self) -> tuple[Passing, ...]:
+    def step(self) -> tuple[WaypointPassed, ...]:
         """Let one step go by."""
         ...
 
-    def advance(self, until_s: float) -> tuple[Passing, ...]:
+    def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """Let time go by until `until_s`, at most to the end of the first step in which something was passed."""
         ...
 

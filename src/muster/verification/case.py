@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -28,8 +27,6 @@ class Case:
         the rules that do not hold.
     deadlocked
         whether routes and prerequisites wait for each other in a cycle.
-    fixed
-        for some robots the number of tasks at the beginning of the route that the caller had fixed.
     """
 
     mission: Mission
@@ -37,7 +34,6 @@ class Case:
     routes: tuple[MeasuredRoute, ...]
     ignored: tuple[str, ...]
     deadlocked: bool
-    fixed: Mapping[str, int]
 
     @cached_property
     def done(self) -> frozenset[str]:
@@ -77,11 +73,10 @@ class Case:
     def first_gap(self, route: MeasuredRoute, task: Task) -> int:
         """The number of tasks in a route that come before a task wherever it is put in it.
 
-        These are the fixed ones, and those that must be done before a prerequisite of the task can be done.
+        These are the ones that must be done before a prerequisite of the task can be done.
         """
         before = self._before(task.id)
-        last = max((k for k, step in enumerate(route.steps, 1) if step.task.id in before), default=0)
-        return max(last, min(self.fixed.get(route.robot.id, 0), len(route.steps)))
+        return max((k for k, step in enumerate(route.steps, 1) if step.task.id in before), default=0)
 
     def _before(self, task: str) -> frozenset[str]:
         """The tasks in the plan that are done before a task can begin, by prerequisites and routes."""

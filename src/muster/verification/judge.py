@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from muster.mission.errors import ParameterError
@@ -23,13 +23,7 @@ from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
 
 
-def verify(
-    mission: Mission,
-    plan: Plan,
-    ignore: str | Collection[str] = (),
-    objective: str | None = None,
-    fixed: Plan | None = None,
-) -> Verdict:
+def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
     """Judge a plan: recompute its figures and find everything that is wrong with it (docs/design.md, Meaning).
 
     A task or robot that does not exist, or stands twice, is left out, and the rest is judged. A leg without a way
@@ -41,8 +35,6 @@ def verify(
         rules that do not hold, of IGNORABLE. What the plan says of itself in `ignored` has no effect.
     objective
         the one that the plan was to minimise; the mission's by default.
-    fixed
-        a plan whose routes the routes were to begin with.
 
     Raises
     ------
@@ -62,17 +54,14 @@ def verify(
     travel = Travel(mission)
     routes = tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots)
     times = schedule(routes, awaited_in(routes, ignored="prerequisite" in ignored))
-    beginnings = {} if fixed is None else {route.robot: route.tasks for route in fixed.routes}
     case = Case(
         mission=mission,
         travel=travel,
         routes=routes,
         ignored=ignored,
         deadlocked=isinstance(times, Deadlock),
-        fixed={robot: len(tasks) for robot, tasks in beginnings.items()},
     )
     violations += _broken_rules(case)
-    violations += _other_beginnings(routes, beginnings)
     if isinstance(times, Deadlock):
         violations.append(Violation("deadlock", None, None, times.detail))
     verdict = _verdict(case, objective, None if isinstance(times, Deadlock) else times)
@@ -88,14 +77,6 @@ def _broken_rules(case: Case) -> Iterator[Violation]:
     for route in case.routes:
         for rule in rules:
             yield from rule.violations(case, route)
-
-
-def _other_beginnings(routes: Sequence[MeasuredRoute], fixed: Mapping[str, Sequence[str]]) -> Iterator[Violation]:
-    """Find routes that do not begin as they were to."""
-    for route in routes:
-        wanted = tuple(fixed.get(route.robot.id, ()))
-        if tuple(step.task.id for step in route.steps[: len(wanted)]) != wanted:
-            yield Violation("fixed", route.robot.id, None, f"its route does not begin with {', '.join(wanted)}")
 
 
 def _verdict(case: Case, objective: str, times: Mapping[str, Times] | None) -> Verdict:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any
 
+from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
+from muster.mission.html_tables import html_line, html_table
 from muster.mission.value_types import shown
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 KINDS = (
     "unknown-robot",
@@ -20,7 +25,6 @@ KINDS = (
     "capacity",
     "prerequisite",
     "deadlock",
-    "fixed",
     "unassigned",
     "reason",
     "book",
@@ -146,3 +150,29 @@ class Verdict:
             "tasks_total": self.tasks_total,
             "weight_completed": self.weight_completed,
         }
+
+    def __repr__(self) -> str:
+        return f"<Verdict: {self._summary}>"
+
+    def _repr_html_(self) -> str:
+        wrong = [(v.kind, v.robot, v.task, v.detail) for v in self.violations]
+        routes = [(route.robot, " ".join(route.tasks), route.usage, route.capacity) for route in self.routes]
+        columns = ("robot", "tasks", f"usage ({self.usage_unit})", "capacity")
+        return (
+            html_line(self._summary)
+            + (html_table("Violations", ("kind", "robot", "task", "detail"), wrong) if wrong else "")
+            + html_table("Routes", columns, routes)
+        )
+
+    @property
+    def _summary(self) -> str:
+        count = len(self.violations)
+        judgement = "valid" if self.valid else f"{count} violation{'' if count == 1 else 's'}"
+        value = self.value()
+        figure = "no schedule" if value is None else f"{self.objective_name} {value:.2f}"
+        return f"{judgement}, {self.tasks_completed} of {self.tasks_total} tasks, {figure}"
+
+    def to_frame(self) -> DataFrame:
+        """A DataFrame with a row for each visit of a task: robot, task and times; needs the extra `frames`."""
+        rows = ({"robot": route.robot, **asdict(visit)} for route in self.routes for visit in route.visits)
+        return data_frame(rows, ("robot", *(f.name for f in fields(Visit))))

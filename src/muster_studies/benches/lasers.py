@@ -6,7 +6,7 @@ import time
 
 from muster.perception.laser import Scanner
 from muster.planning.loading import load
-from muster.running.simulation import WORLDS, world_named
+from muster.running.worlds import WORLDS, world_named
 from muster.simulation import SimulatedWorld
 from muster_studies.benches.measurement import Measurement
 
@@ -24,7 +24,7 @@ def lasers(runs: int) -> list[Measurement]:
     MissingExtraError
         if MuJoCo is not installed.
     """
-    return [_scans(mission, world, runs) for mission in MISSIONS for world in WORLDS]
+    return [_scans(mission, world, runs) for mission in MISSIONS for world in WORLDS.shipped]
 
 
 def _scans(mission: str, name: str, runs: int) -> Measurement:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from contextlib import closing
 
 from muster.perception.camera import View, mount_of_mission
+from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
-from muster.perception.observer import Observer
 from muster.planning.loading import load
 from muster.running.camera_search import intrinsics_of
 from muster_studies.benches.measurement import Measurement
@@ -29,19 +29,19 @@ def perception(runs: int) -> list[Measurement]:
         if the extra `physics` is not installed.
     """
     from muster.simulation.physics import PhysicsWorld
-    from muster.simulation.physics.rendered_cameras import DrawnSight
+    from muster.simulation.physics.rendered_cameras import RenderedCameras
     from muster.simulation.physics.rendering import Lens, Renderer
 
     mission = load(MISSION)
     camera = mission.robots[0].camera
     assert camera is not None
     lens, mount, detector = intrinsics_of(camera), mount_of_mission(camera), TagDetector()
-    drone = Observer(robot="r_0", intrinsics=lens, mount=mount, detector=detector)
+    drone = CameraObserver(robot="r_0", intrinsics=lens, mount=mount, detector=detector)
     view = View.from_body(lens, OVER_TAGS, mount)
     world = PhysicsWorld(mission)
     world.step()  # the model is made
     size = lens.width, lens.height
-    with closing(DrawnSight(world)) as sight, Renderer(world, *size) as renderer:
+    with closing(RenderedCameras(world)) as sight, Renderer(world, *size) as renderer:
         look = sight.look(drone, view, OVER_TAGS, 0.0)
         image = look.image
         assert image is not None

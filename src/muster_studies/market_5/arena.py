@@ -14,7 +14,7 @@ import numpy as np
 
 from muster.perception.errors import GroundErrors
 from muster.perception.laser import Scanner
-from muster.perception.spikes import Search
+from muster.perception.spikes import SpikeParameters
 from muster_studies.rescue.flights import NOISE
 
 SURVIVORS: Mapping[str, tuple[float, float]] = MappingProxyType(
@@ -37,7 +37,7 @@ CYLINDERS = np.array([(*place, CYLINDER_RADIUS_M) for place in (*SURVIVORS.value
 
 SCANNER = Scanner(range_m=0.01)
 """The paper's: 240 degrees, 4 m, 0.36 degrees. The error of a range is ours."""
-SEARCH = Search(depth_m=0.07, smallest_m=0.012, largest_m=0.04)
+SEARCH = SpikeParameters(depth_m=0.07, smallest_m=0.012, largest_m=0.04)
 """Cylinders of this size, noise and beams allowed for: robots and the ends of obstacles are wider."""
 
 RANGE_M, BEARING_RAD = 0.005, math.radians(0.36)

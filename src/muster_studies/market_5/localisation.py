@@ -19,7 +19,7 @@ from muster.perception.estimates import NO_TAG, RawEstimates
 from muster.perception.kalman import Estimate, gated
 from muster.perception.laser import points_of
 from muster.perception.spikes import Landmark, landmarks
-from muster.perception.targets import Sighting
+from muster.perception.targets import TargetSighting
 from muster.simulation import Laser, SimulatedWorld
 from muster_studies.market_5.arena import (
     BEACONS,
@@ -95,7 +95,7 @@ class Eyes:
 
     def _seen(self, mark: Landmark) -> Seen:
         pose = Estimate(self.fused.mean[:3], self.fused.covariance[:3, :3])
-        target = Sighting(pose, mark.range_m, mark.bearing_rad, RANGE_M, BEARING_RAD).target
+        target = TargetSighting(pose, mark.range_m, mark.bearing_rad, RANGE_M, BEARING_RAD).target
         return Seen(self.robot, self._said.time_s, target)
 
     def _place(self, mark: Landmark) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
-from muster.running.simulation import WORLDS
+from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
 from muster_studies.market_5.searches import PLACES, TRUE, Search, Searched, performed, searches
@@ -24,7 +24,7 @@ from muster_studies.rescue.tracking import deviations, legs, track
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WORLD = WORLDS[-1]
+_WORLD = WORLDS.shipped[-1]
 """That of the pictures: the paper simulates with physics."""
 
 

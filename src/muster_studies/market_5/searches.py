@@ -13,9 +13,10 @@ import numpy as np
 
 from muster.motion.grid import Floats
 from muster.perception.clusters import by_density
-from muster.perception.interest import PointOfInterest, points_of_interest
 from muster.perception.matching import ErrorTable, error_table
-from muster.running.simulation import WORLDS, Simulation
+from muster.perception.points_of_interest import PointOfInterest, points_of_interest
+from muster.running.simulation import Simulation
+from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import SURVIVORS
 from muster_studies.market_5.localisation import Eyes, Seen, raw_estimates
@@ -115,7 +116,7 @@ def performed(search: Search) -> Searched:
     return search.perform()
 
 
-def searches(effort: Effort, worlds: Sequence[str] = WORLDS) -> list[Search]:
+def searches(effort: Effort, worlds: Sequence[str] = WORLDS.shipped) -> list[Search]:
     """In each world the repetitions."""
     iterations = market_case(effort).iterations or 0
     seeds = range(repetitions(effort))
@@ -124,7 +125,7 @@ def searches(effort: Effort, worlds: Sequence[str] = WORLDS) -> list[Search]:
 
 def found_by_world(effort: Effort, results: Mapping[Any, Any]) -> Iterator[tuple[str, list[Searched]]]:
     """Each world, and what its searches found."""
-    for world in WORLDS:
+    for world in WORLDS.shipped:
         yield world, [results[job] for job in searches(effort, [world])]
 
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from muster.perception.clusters import Labels, by_density, by_means, by_tag
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import PointOfInterest, points_of_interest
 from muster.perception.matching import ErrorTable, error_table
+from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
 from muster_studies.thesis_6_1.flights import Flight, Flown

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import Any
 
-from muster.running.simulation import WORLDS
+from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
 from muster_studies.thesis_6_1.flights import Flight, Flown
@@ -35,10 +35,16 @@ class TagErrors:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        return ("tag", "truth", *self.thesis.values(), "seen", *(f"{world}{k}" for world in WORLDS for k in _KINDS))
+        return (
+            "tag",
+            "truth",
+            *self.thesis.values(),
+            "seen",
+            *(f"{world}{k}" for world in WORLDS.shipped for k in _KINDS),
+        )
 
     def jobs(self, effort: Effort) -> Iterator[Flight]:
-        for world in reversed(WORLDS):  # what needs the extra whole comes first
+        for world in reversed(WORLDS.shipped):  # what needs the extra whole comes first
             yield calm(self.number, world)
             yield from noisy(self.number, effort, world)
 
@@ -60,7 +66,7 @@ class TagErrors:
     def _ours(self, effort: Effort, found: Mapping[Flight, Flown]) -> dict[str, dict[str, float]]:
         """By column and tag, the mean error over flights; a tag that was not found in all of them is not there."""
         columns = {}
-        for world in WORLDS:
+        for world in WORLDS.shipped:
             kinds = ([calm(self.number, world)], noisy(self.number, effort, world))
             for kind, flights in zip(_KINDS, kinds, strict=True):
                 runs = [found[flight].errors(truth(self.number)) for flight in flights]

@@ -17,8 +17,8 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
 from muster.perception.estimates import RawEstimates
-from muster.perception.interest import PointOfInterest
 from muster.perception.matching import ErrorTable, error_table
+from muster.perception.points_of_interest import PointOfInterest
 from muster.running.simulation import Simulation
 from muster.simulation import NO_NOISE, Noise
 from muster.simulation.cameras import Look

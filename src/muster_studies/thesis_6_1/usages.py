@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from muster.running.simulation import WORLDS
+from muster.running.worlds import WORLDS
 from muster_studies.comparison_marks import EQUAL, ERRATUM, differences, equal
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
@@ -20,7 +20,7 @@ from muster_studies.thesis_6_1.published import flown_plan, thirty
 
 def _flights(effort: Effort, plan: PublishedPlan) -> dict[str, Flight]:
     """By world; a plan that the thesis did not carry out is not flown in physics where time is short."""
-    worlds = WORLDS if plan is flown_plan() or not effort.quick else WORLDS[:1]
+    worlds = WORLDS.shipped if plan is flown_plan() or not effort.quick else WORLDS.shipped[:1]
     return {world: thirty(plan, world=world) for world in worlds}
 
 

@@ -1,4 +1,4 @@
-"""What every route answers, with the real desk."""
+"""What every route answers, with the real services."""
 
 import io
 import re
@@ -191,3 +191,18 @@ def test_the_description_lists_every_route_and_needs_nothing_from_elsewhere(http
     page = http.get("/docs").text
     assert all(path in page for path in described["paths"])
     assert not re.findall(r"""(?:src|href)=["']?(?:https?:)?//""", page)
+
+
+def test_the_same_request_with_the_same_key_makes_nothing_again(http, yard, plan):
+    for path, body, other in (
+        ("/runs", {"plan": plan, "speed": None}, {"plan": plan, "speed": 2.0}),
+        (f"/missions/{yard}/plans", {"iterations": 1}, {"iterations": 2}),
+    ):
+        key = {"idempotency-key": f"k{path}"}
+        first, second = (http.post(path, json=body, headers=key) for _ in range(2))
+        assert first.status_code == second.status_code in (201, 202)
+        assert first.json()["id"] == second.json()["id"]
+        assert first.headers["location"] == second.headers["location"]
+        assert http.post(path, json=other, headers=key).status_code == 409
+        assert http.post(path, json=body).json()["id"] > first.json()["id"]
+        assert http.post(path, json=body, headers={"idempotency-key": "a b"}).status_code == 422

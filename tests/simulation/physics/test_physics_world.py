@@ -12,17 +12,18 @@ import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.motion.port import Waypoint
-from muster.running.simulation import carry_out, world_named
+from muster.running.simulation import carry_out
+from muster.running.worlds import world_named
 
 if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 from muster.simulation.physics import PhysicsWorld
-from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, Build, RobotBody
+from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, BodyKind, RobotBody
 from muster.simulation.physics.control import Commands, Control
-from muster.simulation.physics.model import Standing
+from muster.simulation.physics.model import PlacedRobot
 from muster.simulation.physics.scenery import Scenery
-from muster.simulation.physics.simulated_model import Stage
+from muster.simulation.physics.simulated_model import SimulatedModel
 
 WAFFLE = {"kinematics": "differential-drive", "radius_m": 0.3, "speed_mps": 0.26, "yaw_rate_radps": 1.82}
 DRONE = {"kind": "air", "kinematics": "quadcopter", "radius_m": 0.7, "speed_mps": 0.5, "yaw_rate_radps": 2.5}
@@ -31,7 +32,7 @@ WALL_AHEAD = np.array([[1.0, -2.0, 1.0, 2.0, -math.inf, math.inf]])
 
 
 def standing(build, *, position=(0.0, 0.0, 0.0), walls=0):
-    return Standing(RobotBody(build, 1.0), position, 0.0, walls)
+    return PlacedRobot(RobotBody(build, 1.0), position, 0.0, walls)
 
 
 def extent(model, data):
@@ -48,34 +49,34 @@ def extent(model, data):
 
 
 def test_the_wafflebot_is_that_of_table_a20():
-    stage = PhysicsWorld(mission(robot(**WAFFLE))).stage
-    assert stage.model.body_subtreemass[stage.bodies[0]] == pytest.approx(1.8)
-    assert extent(stage.model, stage.data) == pytest.approx((0.281, 0.306, 0.141), abs=0.012)
+    simulated = PhysicsWorld(mission(robot(**WAFFLE))).simulated
+    assert simulated.model.body_subtreemass[simulated.bodies[0]] == pytest.approx(1.8)
+    assert extent(simulated.model, simulated.data) == pytest.approx((0.281, 0.306, 0.141), abs=0.012)
 
 
 def test_a_robot_of_half_the_radius_is_half_as_large():
-    stage = PhysicsWorld(mission(robot(**WAFFLE | {"radius_m": 0.15}))).stage
-    assert stage.model.body_subtreemass[stage.bodies[0]] == pytest.approx(1.8 / 8)
-    assert extent(stage.model, stage.data) == pytest.approx((0.1405, 0.153, 0.0705), abs=0.006)
+    simulated = PhysicsWorld(mission(robot(**WAFFLE | {"radius_m": 0.15}))).simulated
+    assert simulated.model.body_subtreemass[simulated.bodies[0]] == pytest.approx(1.8 / 8)
+    assert extent(simulated.model, simulated.data) == pytest.approx((0.1405, 0.153, 0.0705), abs=0.006)
 
 
-@pytest.mark.parametrize("build", list(Build))
+@pytest.mark.parametrize("build", list(BodyKind))
 def test_walls_stop_bodies(build):
-    at = (0.0, 0.0, 1.0 if build is Build.ROTORS else 0.0)
+    at = (0.0, 0.0, 1.0 if build is BodyKind.ROTORS else 0.0)
     for walls, far in (([WALL_AHEAD], False), ([np.empty((0, 6))], True)):
-        stage = Stage([standing(build, position=at)], walls, PLAIN, 0.005)
-        control = Control(stage, keeps_height=True)
+        simulated = SimulatedModel([standing(build, position=at)], walls, PLAIN, 0.005)
+        control = Control(simulated, keeps_height=True)
         ahead = Commands(np.array([[0.3, 0.0, 0.0, 0.0]]), np.array([0.3]))
         for _ in range(60):
             poses = control.carry_out(ahead, 20).poses
         assert (poses[0, 0] > 1.5) == far
         if not far:
-            assert poses[0, 0] == pytest.approx(1.0 - stage.robots[0].body.size_m[0] / 2, abs=0.03)
+            assert poses[0, 0] == pytest.approx(1.0 - simulated.robots[0].body.size_m[0] / 2, abs=0.03)
 
 
 def test_wheels_cannot_slide_sideways():
-    stage = Stage([standing(Build.WHEELS)], [np.empty((0, 6))], PLAIN, 0.005)
-    control = Control(stage, keeps_height=True)
+    simulated = SimulatedModel([standing(BodyKind.WHEELS)], [np.empty((0, 6))], PLAIN, 0.005)
+    control = Control(simulated, keeps_height=True)
     for _ in range(20):
         poses = control.carry_out(Commands(np.array([[0.0, 0.2, 0.0, 0.0]]), np.zeros(1)), 20).poses
     assert abs(poses[0, 1]) < 0.005
@@ -84,12 +85,14 @@ def test_wheels_cannot_slide_sideways():
 @pytest.mark.parametrize("scale", [1 / 3, 1.0, 3.0])
 def test_bodies_do_not_outrun_their_wheels(scale):
     """With MuJoCo's implicit integrators they do, by half."""
-    stage = Stage([Standing(RobotBody(Build.WHEELS, scale), (0.0, 0.0, 0.0), 0.0, 0)], [np.empty((0, 6))], PLAIN, 0.005)
-    group, rates = stage.group(Build.WHEELS), []
+    simulated = SimulatedModel(
+        [PlacedRobot(RobotBody(BodyKind.WHEELS, scale), (0.0, 0.0, 0.0), 0.0, 0)], [np.empty((0, 6))], PLAIN, 0.005
+    )
+    group, rates = simulated.group(BodyKind.WHEELS), []
     rim = WHEEL_RADIUS_M * scale
-    stage.data.ctrl[stage.motors(group.who)[0]] = np.array([-1.0, 1.0]) * TRACK_M / 2 * scale / rim
+    simulated.data.ctrl[simulated.motors(group.who)[0]] = np.array([-1.0, 1.0]) * TRACK_M / 2 * scale / rim
     for _ in range(60):
-        stage.go_on()
+        simulated.go_on()
         rates.append(group.motion().rates[0, 2])
     assert max(rates) < 1.02
     assert rates[-1] == pytest.approx(1.0, rel=0.02)
@@ -116,7 +119,7 @@ def test_a_drone_tilts_to_go_and_hovers_level():
     world.advance(world.time_s + 3)
     assert world.positions[0] == pytest.approx((4.0, 0.0, 3.0), abs=0.02)
     assert math.acos(min(1.0, world.axes[0, 2, 2])) < 0.005
-    assert world.frames[0] == pytest.approx((4.0, 0.0, 3.0 + world.stage.robots[0].body.standing_m), abs=0.02)
+    assert world.frames[0] == pytest.approx((4.0, 0.0, 3.0 + world.simulated.robots[0].body.standing_m), abs=0.02)
 
 
 def test_robots_without_a_radius_go_through_each_other():

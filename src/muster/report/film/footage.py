@@ -103,6 +103,8 @@ class Footage:
     def _keep(self, now: float) -> None:
         if self._times and now <= self._times[-1]:
             return
-        stage = self._world.stage
+        simulated = self._world.simulated
         self._times.append(float(now))
-        self._poses.append(np.column_stack([stage.data.xpos[stage.bodies], stage.data.xquat[stage.bodies]]))
+        self._poses.append(
+            np.column_stack([simulated.data.xpos[simulated.bodies], simulated.data.xquat[simulated.bodies]])
+        )

@@ -13,12 +13,12 @@ from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
-from muster.report.film.ground_marks import RING_PX, TASK_PX, StageMarks, rgba
-from muster.report.film.interpolation import Moments
+from muster.report.film.ground_marks import RING_PX, TASK_PX, GroundMarks, rgba
+from muster.report.film.interpolation import RunInterpolation
 from muster.report.film.view import Frame, View, view_of
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.buildings import Heights
-from muster.simulation.physics.posed_scene import Tableau
+from muster.simulation.physics.posed_scene import PosedScene
 from muster.simulation.physics.rendering import Lens, Renderer
 
 OVERSAMPLED = 2
@@ -32,7 +32,7 @@ _FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
 """What is kept free for captions, pixels of the film."""
 
 
-class FilmSet:
+class FilmScene:
     """Goes through a run and draws it; use it in a `with`.
 
     Parameters
@@ -44,14 +44,14 @@ class FilmSet:
     """
 
     def __init__(self, footage: Footage, width: int, height: int) -> None:
-        self.moments = Moments(footage)
+        self.moments = RunInterpolation(footage)
         mission = footage.mission
         places = places_of(mission, self.moments.poses)
         self.size = (width, height)
         frame = Frame(width, height, **_FREE)
         self.view: View = view_of(places, frame)
         self._tableau = tableau_of(footage, self.view.pixel_m)
-        self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
+        self._marks = GroundMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
         self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
 
     def __enter__(self) -> Self:
@@ -74,7 +74,7 @@ class FilmSet:
         return picture
 
 
-def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Tableau:
+def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> PosedScene:
     """The world of a run, its robots in their colours, those that joined included, between low walls.
 
     Parameters
@@ -82,14 +82,14 @@ def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Tab
     pixel_m
         how many metres a pixel of the picture is across.
     """
-    stage = footage.world.replica(Heights.low(min(WALL_PX * pixel_m, MOST_WALL_M)))
-    colors = [rgba(robot_style(k).color) for k in range(len(stage.robots))]
-    return Tableau(stage, colors, smooth=smooth)
+    simulated = footage.world.replica(Heights.low(min(WALL_PX * pixel_m, MOST_WALL_M)))
+    colors = [rgba(robot_style(k).color) for k in range(len(simulated.robots))]
+    return PosedScene(simulated, colors, smooth=smooth)
 
 
 def name_all(
     picture: Picture,
-    moments: Moments,
+    moments: RunInterpolation,
     poses: Floats,
     pixels: Callable[[Floats], Floats],
     pixel_m: float,

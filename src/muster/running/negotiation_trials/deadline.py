@@ -2,8 +2,8 @@
 
 A robot that crashed at the last moment is missed after `suspect_s`, by those that it is far from, or was while links
 were cut, after FAR times as long; half as long again is for those that heard of it last. Who was left out is back after
-at most eight times `mute_s`. Then all rounds are held, with declarations before and agreement behind. A word takes as
-long as its way, and where it is lost until it is asked for again; it is said 1 / (1 - loss) times on the average, and
+at most eight times `exclusion_s`. Then all rounds are held, with declarations before and agreement after. A word takes
+as long as its way, and where it is lost until it is asked for again; it is said 1 / (1 - loss) times on average, and
 twice that is allowed for each round and hop. Loss has no upper bound, so agreement has none either: that runs keep to
 this was measured.
 """
@@ -24,17 +24,17 @@ OTHER_WORDS = 3
 
 def someone_is_left_out(nodes: Collection[Negotiator], now: float) -> bool:
     """Whether a robot that lives keeps another waiting in its eyes."""
-    return any(a.members.is_muted(b.robot, now) for a in nodes for b in nodes if a is not b)
+    return any(a.members.is_excluded(b.robot, now) for a in nodes for b in nodes if a is not b)
 
 
 def deadline_s(scene: Scene, group: Sequence[str], rounds: int, *, left_out: bool) -> float:
     """By when a group agrees that needs so many rounds, seconds after it is quiet."""
-    patience, weather = scene.patience, scene.weather
-    word_s = (patience.retry_s + TICK_S + weather.delay_s + weather.jitter_s) / (1 - weather.loss)
-    alone_s = 8 * patience.mute_s if left_out else 0.0
+    timeouts, conditions = scene.timeouts, scene.conditions
+    word_s = (timeouts.retry_s + TICK_S + conditions.delay_s + conditions.jitter_s) / (1 - conditions.loss)
+    alone_s = 8 * timeouts.exclusion_s if left_out else 0.0
     hops = _hops(scene.links, group)
-    far = hops > 1 or any(incident.kind in ("cut", "deafen") for incident in scene.incidents)
-    missed_s = 1.5 * patience.suspect_s * (FAR if far else 1.0)
+    far = hops > 1 or any(incident.kind in ("cut", "block") for incident in scene.incidents)
+    missed_s = 1.5 * timeouts.suspect_s * (FAR if far else 1.0)
     return missed_s + alone_s + 2 * (rounds + OTHER_WORDS) * hops * word_s
 
 

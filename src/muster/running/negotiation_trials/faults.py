@@ -20,14 +20,14 @@ class Incident:
     Parameters
     ----------
     kind
-        "start", "crash", "restart", "forget" (restart without memory), "cut", "deafen", "heal", "announce", "cancel",
+        "start", "crash", "restart", "forget" (restart without memory), "cut", "block", "heal", "announce", "cancel",
         "release", "withdraw".
     robot
         to which robot, or by which; "" to none.
     groups
         of "cut": who still hears each other.
     links
-        of "deafen": on which nothing is heard.
+        of "block": on which nothing is heard.
     task
         of "announce": the task; of "cancel" its id.
     """

@@ -20,7 +20,7 @@ from muster.running.negotiation_trials.scenario import Scene
 from muster.verification import verify
 
 
-class Judgement:
+class Invariants:
     """Of the robots of one scene, in which the observer has seen who has begun what."""
 
     def __init__(self, scene: Scene, problem: Problem, observer: Observer) -> None:

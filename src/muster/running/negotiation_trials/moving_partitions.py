@@ -1,7 +1,8 @@
-"""A siege: cuts that move while tasks are carried out, so that one majority after the other may go on.
+"""Moving partitions: cuts that change while tasks are carried out, so that one majority after another may go on.
 
-At-most-once rests on any two majorities having a robot in common that remembers. So here they have one alone, most of
-the time, and it crashes, and may forget, at bad moments; links go one way; cuts heal when somebody is about to begin.
+At-most-once tasks rest on the fact that any two majorities have a robot in common that remembers. So here consecutive
+majorities have only one robot in common, and it crashes, and may lose its memory, at critical moments; links work in
+one direction only; cuts heal when a robot is about to begin a task.
 """
 
 from __future__ import annotations
@@ -14,10 +15,10 @@ from muster.running.negotiation_trials.faults import Incident, Links, orders
 from muster.running.negotiation_trials.random_missions import random_task
 
 _MOVING = ("next majority",) * 3 + ("ambush",)
-_MIXED = ("next majority", "any cut", "deafen", "deafen", "heal", "ambush")
+_MIXED = ("next majority", "any cut", "block", "block", "heal", "ambush")
 
 
-def siege(
+def moving_partitions(
     mission: Mission, names: Sequence[str], until_s: float, suspect_s: float, random: Random
 ) -> Iterator[Incident]:
     """What happens to a team whose robots take for lost of whom they have heard nothing for `suspect_s`."""
@@ -48,8 +49,8 @@ class _Waves:
                 yield from self._next_majority(self._danger)
             elif kind == "any cut":
                 yield Incident(self._now, "cut", groups=_apart(self._names, random))
-            elif kind == "deafen":
-                yield Incident(self._now, "deafen", links=_one_way(self._names, random))
+            elif kind == "block":
+                yield Incident(self._now, "block", links=_one_way(self._names, random))
             else:
                 yield Incident(self._now, "heal")
             if random.random() < 0.5:

@@ -1,4 +1,4 @@
-"""Everything that happens in one run, by a seed: mission, terms, weather, links, and faults with their times."""
+"""Everything that happens in one run, by a seed: mission, terms, conditions, links, and faults with their times."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from muster.allocation import consensus_bundle
 from muster.allocation.auction import Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
-from muster.negotiation.members import Patience
-from muster.negotiation.memory_network import Weather
+from muster.negotiation.members import Timeouts
+from muster.negotiation.memory_network import LinkConditions
 from muster.running.negotiation_trials.faults import Incident, Links, incidents
-from muster.running.negotiation_trials.moving_partitions import siege
+from muster.running.negotiation_trials.moving_partitions import moving_partitions
 from muster.running.negotiation_trials.random_missions import random_mission
 
-SIEGES = 0.3
+MOVING_PARTITIONS = 0.3
 """Which share of the scenes are sieges."""
 
 BUNDLES = 0.25
@@ -37,37 +37,37 @@ class Scene:
         None: everybody hears everybody.
     work_s
         how long robots take for a task; None: they only agree.
-    zeal
+    take_up_rate
         the chance that who has nothing to do tries one of its tasks in the next tenth of a second.
-    patience
+    timeouts
         of the robots.
     incidents
         in no order.
     quiet_s
-        from when on nothing happens any more but what the weather does.
+        from when on nothing happens any more except for what `conditions` do.
     """
 
     seed: int
     mission: Mission
     method: str
     terms: Any
-    weather: Weather
+    conditions: LinkConditions
     links: Links | None
     work_s: float | None
     incidents: tuple[Incident, ...]
     quiet_s: float
-    zeal: float = 1.0
-    patience: Patience = field(default_factory=Patience)
+    take_up_rate: float = 1.0
+    timeouts: Timeouts = field(default_factory=Timeouts)
 
     def described(self) -> Iterator[str]:
         """Lines for people."""
-        weather = self.weather
+        conditions = self.conditions
         terms = ", ".join(f"{name} {value}" for name, value in asdict(self.terms).items())
         mission = self.mission
         yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; {self.method}, {terms}"
-        yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s"
-        yield f"taken for lost after {self.patience.suspect_s:g} s; zeal {self.zeal:g}"
-        yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
+        yield f"loss {conditions.loss:.0%}, delay {conditions.delay_s:.3f} s and up to {conditions.jitter_s:g} s"
+        yield f"taken for lost after {self.timeouts.suspect_s:g} s; taken up at {self.take_up_rate:g}"
+        yield f"duplication {conditions.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
         if self.links is not None:
             yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
         for what in sorted(self.incidents, key=lambda incident: incident.at_s):
@@ -80,7 +80,7 @@ class Scene:
 def scene(seed: int) -> Scene:
     """The scene of a seed."""
     random = Random(f"negotiation {seed}")
-    return _besieged(seed, random) if random.random() < SIEGES else _troubled(seed, random)
+    return _partitioned(seed, random) if random.random() < MOVING_PARTITIONS else _troubled(seed, random)
 
 
 def _troubled(seed: int, random: Random) -> Scene:
@@ -94,7 +94,7 @@ def _troubled(seed: int, random: Random) -> Scene:
         seed,
         mission,
         *_terms(random),
-        weather=_weather(random),
+        conditions=_conditions(random),
         links=_links(names, random) if random.random() < 0.25 else None,
         work_s=random.choice((None, random.uniform(0.3, 3.0))),
         incidents=tuple(incidents(mission, names, quiet_s, random)),
@@ -102,27 +102,29 @@ def _troubled(seed: int, random: Random) -> Scene:
     )
 
 
-def _besieged(seed: int, random: Random) -> Scene:
+def _partitioned(seed: int, random: Random) -> Scene:
     """A small team that carries out tasks, most of which nobody may begin twice, while cuts move."""
     robots, tasks = random.choice((2, 3, 3, 3, 4, 5)), random.randint(1, 9)
     once, free = random.choice((0.6, 1.0, 1.0)), random.random() < 0.8
     mission = random_mission(random, robots=robots, tasks=tasks, once=once, free=free)
-    names, weather, patience = [robot.id for robot in mission.robots], _weather(random), Patience()
-    if random.random() < 0.7:  # who soon loses patience can be lost more often, but must hear most beats
-        patience = Patience(suspect_s=1.2, bid_s=1.8, mute_s=1.5)
-        weather = Weather(loss=0.3 * weather.loss, delay_s=0.3 * weather.delay_s, jitter_s=0.1 * weather.jitter_s)
-    quiet_s = patience.suspect_s * random.uniform(5, 20)
+    names, conditions, timeouts = [robot.id for robot in mission.robots], _conditions(random), Timeouts()
+    if random.random() < 0.7:  # robots with short timeouts can be lost more often, but must hear most heartbeats
+        timeouts = Timeouts(suspect_s=1.2, bid_s=1.8, exclusion_s=1.5)
+        conditions = LinkConditions(
+            loss=0.3 * conditions.loss, delay_s=0.3 * conditions.delay_s, jitter_s=0.1 * conditions.jitter_s
+        )
+    quiet_s = timeouts.suspect_s * random.uniform(5, 20)
     return Scene(
         seed,
         mission,
         *_terms(random),
-        weather=weather,
+        conditions=conditions,
         links=None,
-        work_s=patience.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
-        incidents=tuple(siege(mission, names, quiet_s, patience.suspect_s, random)),
+        work_s=timeouts.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
+        incidents=tuple(moving_partitions(mission, names, quiet_s, timeouts.suspect_s, random)),
         quiet_s=quiet_s,
-        zeal=random.choice((0.1, 0.3, 0.6)),
-        patience=patience,
+        take_up_rate=random.choice((0.1, 0.3, 0.6)),
+        timeouts=timeouts,
     )
 
 
@@ -134,8 +136,8 @@ def _terms(random: Random) -> tuple[str, Any]:
     return "auction", terms
 
 
-def _weather(random: Random) -> Weather:
-    return Weather(
+def _conditions(random: Random) -> LinkConditions:
+    return LinkConditions(
         loss=random.choice((0.0, random.uniform(0, 0.5))),
         delay_s=random.uniform(0.001, 0.1),
         jitter_s=random.choice((0.0, 0.05, 0.3)),

@@ -1,26 +1,30 @@
-"""What every route needs: the desk, who asks, and that nothing unknown is asked."""
+"""What every route needs: the services, who asks, and that nothing unknown is asked."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+from hashlib import sha256
 from typing import Annotated, Any
 
-from fastapi import Depends, Request
+from fastapi import Depends, Header, Request
 from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.near_matches import did_you_mean
-from muster.server.services.services import Desk
+from muster.server.services.services import Services
+from muster.server.store.request_keys import RequestKey
 
 
-def _desk(connection: HTTPConnection) -> Desk:
-    found: Desk = connection.app.state.desk_of()
+def _services(connection: HTTPConnection) -> Services:
+    found: Services = connection.app.state.services_of()
     return found
 
 
-def _asker(connection: HTTPConnection) -> Who:
-    found: Who = connection.app.state.who_of(connection)
+def _user(connection: HTTPConnection) -> User:
+    found: User = connection.app.state.user_of(connection)
     return found
 
 
@@ -53,5 +57,23 @@ def _require_known(where: str, given: Mapping[str, Any], known: Sequence[str]) -
         raise RequestValidationError(unknown)
 
 
-TheDesk = Annotated[Desk, Depends(_desk)]
-Asker = Annotated[Who, Depends(_asker)]
+def key_of(who: User, key: str | None, path: str, body: BaseModel) -> RequestKey | None:
+    """The key of a request, with a digest of what it asks for."""
+    if key is None:
+        return None
+    asked = json.dumps([path, body.model_dump(mode="json")], sort_keys=True)
+    return RequestKey(who.name, key, sha256(asked.encode()).hexdigest())
+
+
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=1,
+        max_length=200,
+        pattern=r"^[\x21-\x7e]+$",
+        description="The same request with the same key, within a day, makes nothing again: it is answered as before.",
+    ),
+]
+TheServices = Annotated[Services, Depends(_services)]
+TheUser = Annotated[User, Depends(_user)]

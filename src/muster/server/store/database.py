@@ -8,13 +8,13 @@ that writes takes the lock at its beginning (BEGIN IMMEDIATE), so it cannot fail
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy import Connection, Engine, Table, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
 from muster.exchange.mission_control import StoreError
@@ -102,6 +102,16 @@ class Database:
         except SQLAlchemyError as error:
             self.failures += 1
             raise store_error(error, self.name) from None
+
+
+def insert_unless_there(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
+    """Insert a row unless there is one with its key, which may come at this moment; says whether it was inserted."""
+    if connection.dialect.name == "sqlite":
+        from sqlalchemy.dialects.sqlite import insert as insert_or_leave
+    else:
+        from sqlalchemy.dialects.postgresql import insert as insert_or_leave  # type: ignore[assignment]
+    insert = insert_or_leave(table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
+    return connection.execute(insert).first() is not None
 
 
 def _sqlite(address: Any) -> Engine:

@@ -11,6 +11,7 @@ from sqlalchemy import Connection, insert, select, update
 from muster.exchange.mission_control import ConflictError, Job, JobState, NotFoundError
 from muster.server.store.database import Database
 from muster.server.store.plans import add_plan
+from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import jobs
 
 
@@ -18,8 +19,22 @@ class JobTable:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def add(self, kind: str, mission: str, mission_version: int, arguments: Mapping[str, Any], author: str) -> Job:
-        """A new job, queued."""
+    def add(
+        self,
+        kind: str,
+        mission: str,
+        mission_version: int,
+        arguments: Mapping[str, Any],
+        author: str,
+        request: RequestKey | None = None,
+    ) -> Job:
+        """A new job, queued.
+
+        Raises
+        ------
+        RepeatedRequestError, ConflictError
+            if the request has a key that came before.
+        """
         row = {
             "kind": kind,
             "state": "queued",
@@ -30,8 +45,10 @@ class JobTable:
             "asked_at": datetime.now(UTC),
             "error": "",
         }
-        with self._database.writing() as connection:
-            return Job(**connection.execute(insert(jobs).values(row).returning(jobs)).one()._mapping)
+        with self._database.writing() as connection, keyed(connection, request) as settle:
+            job = Job(**connection.execute(insert(jobs).values(row).returning(jobs)).one()._mapping)
+            settle(job.id)
+            return job
 
     def get(self, job: int) -> Job:
         """One job.

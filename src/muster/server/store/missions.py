@@ -13,7 +13,7 @@ from typing import Any
 from sqlalchemy import Connection, Row, and_, insert, select, update
 
 from muster.exchange.mission_control import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry
-from muster.server.store.database import Database
+from muster.server.store.database import Database, insert_unless_there
 from muster.server.store.schema import blobs, mission_files, mission_versions, missions
 
 _LONGEST_ID = 80
@@ -215,11 +215,7 @@ def _write(
 def _keep(connection: Connection, data: bytes) -> str:
     """The digest of a blob that is in the table afterwards. Two may bring it at once."""
     digest = sha256(data).hexdigest()
-    if connection.dialect.name == "sqlite":
-        from sqlalchemy.dialects.sqlite import insert as insert_or_leave
-    else:
-        from sqlalchemy.dialects.postgresql import insert as insert_or_leave  # type: ignore[assignment]
-    connection.execute(insert_or_leave(blobs).values(sha256=digest, data=data).on_conflict_do_nothing())
+    insert_unless_there(connection, blobs, {"sha256": digest, "data": data})
     return digest
 
 

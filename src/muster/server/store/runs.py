@@ -8,9 +8,10 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, Who, World
+from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, User, World
 from muster.server.store.actions import add_action
 from muster.server.store.database import Database
+from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
 
 _CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
@@ -29,9 +30,16 @@ class RunTable:
         settings: Mapping[str, Any],
         speed: float | None,
         author: str,
-        by: Who | None = None,
+        by: User | None = None,
+        request: RequestKey | None = None,
     ) -> Run:
-        """A new run, starting; in the same transaction the action of whoever starts it, so that none is without."""
+        """A new run, starting; in the same transaction the action of whoever starts it, so that none is without.
+
+        Raises
+        ------
+        RepeatedRequestError, ConflictError
+            if the request has a key that came before.
+        """
         row = {
             "mission": mission,
             "mission_version": mission_version,
@@ -46,11 +54,12 @@ class RunTable:
             "resumed": 0,
             "remark": "",
         }
-        with self._database.writing() as connection:
+        with self._database.writing() as connection, keyed(connection, request) as settle:
             run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
             if by is not None:
                 said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
                 add_action(connection, by, "run.start", said, run.id, "done", applied_s=0.0)
+            settle(run.id)
             return run
 
     def get(self, run: int) -> Run:

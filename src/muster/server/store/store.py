@@ -14,6 +14,7 @@ from muster.server.store.log import LogTable
 from muster.server.store.migrate import migrate, revision
 from muster.server.store.missions import MissionTable
 from muster.server.store.plans import PlanTable
+from muster.server.store.request_keys import RequestKeyTable
 from muster.server.store.runs import RunTable
 from muster.server.store.schema import HEAD
 
@@ -32,6 +33,7 @@ class Store:
     runs: RunTable
     log: LogTable
     actions: ActionTable
+    request_keys: RequestKeyTable
 
     @classmethod
     def open(cls, url: str) -> Store:
@@ -59,7 +61,7 @@ class Store:
         except BaseException:
             database.close()
             raise
-        tables = (MissionTable, PlanTable, JobTable, RunTable, LogTable, ActionTable)
+        tables = (MissionTable, PlanTable, JobTable, RunTable, LogTable, ActionTable, RequestKeyTable)
         return cls(database, *(table(database) for table in tables))  # type: ignore[arg-type]
 
     def close(self) -> None:

@@ -27,7 +27,7 @@ GROUND_INFLATED_M, AIR_INFLATED_M = 0.3, 0.7
 """Table A.2: R_i of ground robots and of drones."""
 
 
-class Build(Enum):
+class BodyKind(Enum):
     """How a body is driven."""
 
     WHEELS = "two wheels and two casters"
@@ -35,7 +35,7 @@ class Build(Enum):
     ROTORS = "a thrust along its own axis, and torques"
 
 
-ACCELERATION_MPS2 = {Build.WHEELS: 2.0, Build.SLIDER: 3.0, Build.ROTORS: 2.5}
+ACCELERATION_MPS2 = {BodyKind.WHEELS: 2.0, BodyKind.SLIDER: 3.0, BodyKind.ROTORS: 2.5}
 """The most that robots are told to use: wheels slip and drones tilt by more than 30 degrees not far above."""
 
 
@@ -43,19 +43,19 @@ ACCELERATION_MPS2 = {Build.WHEELS: 2.0, Build.SLIDER: 3.0, Build.ROTORS: 2.5}
 class RobotBody:
     """How a robot is built, and how many times as large as the nominal one."""
 
-    build: Build
+    kind: BodyKind
     scale: float
 
     @property
     def mass_kg(self) -> float:
-        return (DRONE_KG if self.build is Build.ROTORS else WAFFLE_KG) * self.scale**3
+        return (DRONE_KG if self.kind is BodyKind.ROTORS else WAFFLE_KG) * self.scale**3
 
     @property
     def size_m(self) -> tuple[float, float, float]:
         """Length, width, height of the box around it."""
-        if self.build is Build.WHEELS:
+        if self.kind is BodyKind.WHEELS:
             nominal = (WAFFLE_LENGTH_M, WAFFLE_WIDTH_M, WAFFLE_HEIGHT_M)
-        elif self.build is Build.SLIDER:
+        elif self.kind is BodyKind.SLIDER:
             nominal = (2 * SLIDER_RADIUS_M, 2 * SLIDER_RADIUS_M, WAFFLE_HEIGHT_M)
         else:
             nominal = (2 * DRONE_RADIUS_M, 2 * DRONE_RADIUS_M, DRONE_HEIGHT_M)
@@ -66,7 +66,7 @@ class RobotBody:
     def inertia_kgm2(self) -> tuple[float, float, float]:
         """About its axes: a wheeled robot's are a box's, the others' a cylinder's."""
         length, width, height = self.size_m
-        if self.build is Build.WHEELS:
+        if self.kind is BodyKind.WHEELS:
             squares = (width**2 + height**2, length**2 + height**2, length**2 + width**2)
             about_x, about_y, about_z = (self.mass_kg / 12 * square for square in squares)
             return about_x, about_y, about_z
@@ -76,16 +76,16 @@ class RobotBody:
     @property
     def standing_m(self) -> float:
         """The height of the body's frame over the place where a mission has the robot."""
-        return 0.6 * self.size_m[2] if self.build is Build.ROTORS else 0.0
+        return 0.6 * self.size_m[2] if self.kind is BodyKind.ROTORS else 0.0
 
 
 def robot_body(robot: Robot) -> RobotBody:
     """The body of a robot; one without a radius has the nominal size, and touches nothing but the ground."""
     if robot.kind == "air":
-        build, nominal = Build.ROTORS, AIR_INFLATED_M
+        build, nominal = BodyKind.ROTORS, AIR_INFLATED_M
     else:
         faces_its_way = kinematics_named(robot.kinematics).faces_its_way
-        build, nominal = (Build.WHEELS if faces_its_way else Build.SLIDER), GROUND_INFLATED_M
+        build, nominal = (BodyKind.WHEELS if faces_its_way else BodyKind.SLIDER), GROUND_INFLATED_M
     return RobotBody(build, robot.radius_m / nominal if robot.radius_m > 0 else 1.0)
 
 

@@ -17,9 +17,9 @@ from typing import Protocol
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, Build
+from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, BodyKind
 from muster.simulation.physics.model import SERVO_S
-from muster.simulation.physics.simulated_model import Group, Indices, Motion, Stage
+from muster.simulation.physics.simulated_model import Group, Indices, Motion, SimulatedModel
 
 GRAVITY_MPS2 = 9.81
 MOST_TILT = math.radians(35)
@@ -45,7 +45,7 @@ class Commands:
 
 
 @dataclass(frozen=True)
-class Done:
+class StepResult:
     """What became of commands, at the end of a step of the world.
 
     Parameters
@@ -61,7 +61,7 @@ class Done:
     counted: Floats
 
 
-class Law(Protocol):
+class Controller(Protocol):
     """Drives the robots of a group, all built in one way.
 
     `following`, in 1/s: how much faster they go for each metre that they are behind their references, and turn for each
@@ -79,7 +79,7 @@ class Law(Protocol):
         """Set their motors for a step of physics."""
         ...
 
-    def set_strengths(self, shares: Floats) -> None:
+    def set_force_shares(self, shares: Floats) -> None:
         """Shares (n, 2) of the force asked for that motors give from now on: of both wheels; of push and of turn."""
         ...
 
@@ -88,16 +88,16 @@ class Law(Protocol):
         ...
 
 
-class Wheels:
+class WheelController:
     """Differential drives: servos of the wheels."""
 
     following = 15.0
 
-    def __init__(self, stage: Stage) -> None:
-        self.group = stage.group(Build.WHEELS)
-        self._lag_s = SERVO_S - stage.step_s  # the sum over steps, not the integral
-        self._motors, self._angles = stage.motors(self.group.who), stage.wheels(self.group.who)
-        self._model, self._gains = stage.model, stage.model.actuator_gainprm[self._motors, 0]
+    def __init__(self, simulated: SimulatedModel) -> None:
+        self.group = simulated.group(BodyKind.WHEELS)
+        self._lag_s = SERVO_S - simulated.step_s  # the sum over steps, not the integral
+        self._motors, self._angles = simulated.motors(self.group.who), simulated.wheels(self.group.who)
+        self._model, self._gains = simulated.model, simulated.model.actuator_gainprm[self._motors, 0]
         scale = np.array([body.scale for body in self.group.robots])
         self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
 
@@ -109,7 +109,7 @@ class Wheels:
         self.group.data.ctrl[self._motors[:, 0]] = (commands.ahead - rims) / self._radius
         self.group.data.ctrl[self._motors[:, 1]] = (commands.ahead + rims) / self._radius
 
-    def set_strengths(self, shares: Floats) -> None:
+    def set_force_shares(self, shares: Floats) -> None:
         self._model.actuator_gainprm[self._motors, 0] = shares * self._gains
         self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
 
@@ -118,19 +118,19 @@ class Wheels:
         return counted
 
 
-class Pushes:
+class ForceController:
     """Holonomic ground robots: a force in the plane and a torque about the upright axis."""
 
     following = 10.0
     GAIN = 40.0
     """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
 
-    def __init__(self, stage: Stage) -> None:
-        self.group = stage.group(Build.SLIDER)
-        self._lag_s = 1 / self.GAIN - stage.step_s
+    def __init__(self, simulated: SimulatedModel) -> None:
+        self.group = simulated.group(BodyKind.SLIDER)
+        self._lag_s = 1 / self.GAIN - simulated.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
-        self.set_strengths(np.ones((len(self.group.who), 2)))
+        self.set_force_shares(np.ones((len(self.group.who), 2)))
 
     def lags(self, motion: Motion) -> Floats:
         return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
@@ -141,14 +141,14 @@ class Pushes:
         forces[bodies, :2] = self.GAIN * self._pushes[:, None] * missing
         forces[bodies, 5] = self.GAIN * self._turns * (commands.rates[:, 3] - motion.rates[:, 2])
 
-    def set_strengths(self, shares: Floats) -> None:
+    def set_force_shares(self, shares: Floats) -> None:
         self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1] * self._inertia
 
     def odometers(self) -> Floats:
         return _no_wheels(self.group)
 
 
-class Rotors:
+class RotorController:
     """Quadcopters at the level of forces: four rotors give a thrust along the body's axis and torques.
 
     The velocity loop asks for an acceleration; thrust and tilt follow from it; the attitude loop tilts the body, and
@@ -162,12 +162,12 @@ class Rotors:
     ATTITUDE, DAMPING = 900.0, 55.0
     """1/s^2 and 1/s: angular acceleration for each radian off, and against each radian a second."""
 
-    def __init__(self, stage: Stage) -> None:
-        self.group = stage.group(Build.ROTORS)
-        self._lag_s, self._yaw_lag_s = 1 / self.VELOCITY - stage.step_s, 1 / self.YAW_RATE - stage.step_s
+    def __init__(self, simulated: SimulatedModel) -> None:
+        self.group = simulated.group(BodyKind.ROTORS)
+        self._lag_s, self._yaw_lag_s = 1 / self.VELOCITY - simulated.step_s, 1 / self.YAW_RATE - simulated.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2 for body in self.group.robots]).reshape(-1, 3)
-        self.set_strengths(np.ones((len(self.group.who), 2)))
+        self.set_force_shares(np.ones((len(self.group.who), 2)))
 
     def lags(self, motion: Motion) -> Floats:
         tilted, jerk = GRAVITY_MPS2 * self.DAMPING / self.ATTITUDE, GRAVITY_MPS2 / self.ATTITUDE
@@ -193,7 +193,7 @@ class Rotors:
         forces[bodies, :3] = (self._pushes * climb / up[:, 2])[:, None] * up
         forces[bodies, 3:] = self._turns * turn
 
-    def set_strengths(self, shares: Floats) -> None:
+    def set_force_shares(self, shares: Floats) -> None:
         self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1:] * self._inertia
 
     def odometers(self) -> Floats:
@@ -211,7 +211,7 @@ def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float)
     return lags
 
 
-class Follower:
+class CommandFollower:
     """The robots of one law, and where they should be at this moment.
 
     Parameters
@@ -220,7 +220,7 @@ class Follower:
         in the plane nobody climbs.
     """
 
-    def __init__(self, law: Law, *, keeps_height: bool) -> None:
+    def __init__(self, law: Controller, *, keeps_height: bool) -> None:
         self.law = law
         self._motion = law.group.motion()
         self._reference = self._motion.poses
@@ -234,7 +234,7 @@ class Follower:
 
     @property
     def lags(self) -> Floats:
-        """See `Law.lags`."""
+        """See `Controller.lags`."""
         return self.law.lags(self._motion)
 
     def counted(self) -> Floats:
@@ -264,28 +264,32 @@ class Follower:
 
 
 class Control:
-    """Of all robots of a stage."""
+    """Drives all robots of a model."""
 
-    def __init__(self, stage: Stage, *, keeps_height: bool) -> None:
-        self._stage = stage
-        laws: tuple[Law, ...] = (Wheels(stage), Pushes(stage), Rotors(stage))
-        self._followers = [Follower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
+    def __init__(self, simulated: SimulatedModel, *, keeps_height: bool) -> None:
+        self._simulated = simulated
+        laws: tuple[Controller, ...] = (
+            WheelController(simulated),
+            ForceController(simulated),
+            RotorController(simulated),
+        )
+        self._followers = [CommandFollower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
 
-    def carry_out(self, commands: Commands, count: int, strengths: Floats | None = None) -> Done:
-        """So many steps of physics; `strengths` (n, 2) as `Law.set_strengths` takes them, None as they are."""
+    def carry_out(self, commands: Commands, count: int, force_shares: Floats | None = None) -> StepResult:
+        """Take `count` steps of physics; `force_shares` (n, 2) as `Controller.set_force_shares` has it; None: all 1."""
         for follower in self._followers:
             who = follower.law.group.who
             follower.begin(commands.of(who))
-            if strengths is not None:
-                follower.law.set_strengths(strengths[who])
+            if force_shares is not None:
+                follower.law.set_force_shares(force_shares[who])
         for _ in range(count):
             for follower in self._followers:
                 follower.drive()
-            self._stage.go_on()
+            self._simulated.go_on()
             for follower in self._followers:
-                follower.look(self._stage.step_s)
-        robots = len(self._stage.robots)
-        done = Done(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
+                follower.look(self._simulated.step_s)
+        robots = len(self._simulated.robots)
+        done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
         for follower in self._followers:
             who = follower.law.group.who
             done.poses[who], done.lags[who], done.counted[who] = follower.poses, follower.lags, follower.counted()

@@ -22,7 +22,7 @@ from muster.simulation.physics.bodies import (
     WHEEL_KG,
     WHEEL_RADIUS_M,
     WHEEL_WIDTH_M,
-    Build,
+    BodyKind,
     RobotBody,
     quaternion,
 )
@@ -43,7 +43,7 @@ SHOW_WIDTH, SHOW_HEIGHT = 1920, 1440
 
 
 @dataclass(frozen=True)
-class Standing:
+class PlacedRobot:
     """A robot of the model: its body, where it is (x, y, z of its frame), its heading in radians.
 
     `walls` is the number of the set of walls that stops it; None where it touches nothing but the ground.
@@ -56,7 +56,7 @@ class Standing:
 
 
 def mjcf(
-    robots: Sequence[Standing],
+    robots: Sequence[PlacedRobot],
     walls: Sequence[Floats],
     show: Show,
     ground_m: float,
@@ -107,7 +107,7 @@ def mjcf(
             world, "body", name=f"robot{number}", pos=robot.position, quat=quaternion(robot.heading)
         )  # its frame: x ahead, y left, z up
         add(body, "freejoint", name=f"free{number}")
-        _MAKERS[robot.body.build](body, actuators, number, robot)
+        _MAKERS[robot.body.kind](body, actuators, number, robot)
     return ET.tostring(root, encoding="unicode")
 
 
@@ -139,7 +139,7 @@ def _wall(world: ET.Element, face: Floats, number: int, ground_m: float, top: fl
     )
 
 
-def _touches(robot: Standing, *, ground: bool) -> dict[str, int]:
+def _touches(robot: PlacedRobot, *, ground: bool) -> dict[str, int]:
     """The bits of a robot's hull."""
     bits = GROUND_BIT if ground else 0
     if robot.walls is None:
@@ -147,7 +147,7 @@ def _touches(robot: Standing, *, ground: bool) -> dict[str, int]:
     return {"contype": ROBOTS_BIT, "conaffinity": bits | ROBOTS_BIT | 1 << (FIRST_WALLS_BIT + robot.walls)}
 
 
-def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standing) -> None:
+def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: PlacedRobot) -> None:
     """The frame lies on the ground, in the middle between the wheels."""
     scale, (length, width, height) = robot.body.scale, robot.body.size_m
     clear, radius = 0.3 * WHEEL_RADIUS_M * scale, WHEEL_RADIUS_M * scale
@@ -190,7 +190,7 @@ def _wheeled(body: ET.Element, actuators: ET.Element, number: int, robot: Standi
         )
 
 
-def _sliding(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> None:
+def _sliding(body: ET.Element, _: ET.Element, number: int, robot: PlacedRobot) -> None:
     """The frame lies on the ground, in the middle."""
     length, _width, height = robot.body.size_m
     clear = 0.1 * WAFFLE_HEIGHT_M * robot.body.scale
@@ -223,7 +223,7 @@ def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: flo
     )
 
 
-def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> None:
+def _flying(body: ET.Element, _: ET.Element, number: int, robot: PlacedRobot) -> None:
     """The frame lies in its centre of mass."""
     span, _width, height = robot.body.size_m
     add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
@@ -256,7 +256,7 @@ def _flying(body: ET.Element, _: ET.Element, number: int, robot: Standing) -> No
         )
 
 
-_MAKERS = {Build.WHEELS: _wheeled, Build.SLIDER: _sliding, Build.ROTORS: _flying}
+_MAKERS = {BodyKind.WHEELS: _wheeled, BodyKind.SLIDER: _sliding, BodyKind.ROTORS: _flying}
 
 
 def _both_ways(most: float) -> tuple[float, float]:

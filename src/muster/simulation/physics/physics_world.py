@@ -22,15 +22,15 @@ from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.simulation.crowded_world import FLIGHT_M, CrowdedWorld, Event
-from muster.simulation.lasers import mounted_m
+from muster.simulation.lasers import laser_height_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
 from muster.simulation.physics.buildings import Heights
 from muster.simulation.physics.control import Commands, Control
-from muster.simulation.physics.model import WALL_SETS, Standing
+from muster.simulation.physics.model import WALL_SETS, PlacedRobot
 from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
-from muster.simulation.physics.simulated_model import Stage
+from muster.simulation.physics.simulated_model import SimulatedModel
+from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
@@ -38,8 +38,8 @@ STILL_MPS = 0.002
 """Slower is standing: a drone that hovers is never quite still."""
 
 
-class PhysicsWorld(CrowdedWorld):
-    """Robots with masses, wheels and rotors; see `CrowdedWorld`, and `bodies` for what they are.
+class PhysicsWorld(WorldBase):
+    """Robots with masses, wheels and rotors; see `WorldBase`, and `bodies` for what they are.
 
     Robots without a radius, and all with `avoidance="none"`, touch nothing but the ground. No robot accelerates harder
     than `ACCELERATION_MPS2`, whatever its mission allows. When a robot joins, the model is made anew, and all others go
@@ -48,7 +48,7 @@ class PhysicsWorld(CrowdedWorld):
     Raises
     ------
     ParameterError
-        as `CrowdedWorld`; and if robots of more than 29 kinds are stopped by different walls.
+        as `WorldBase`; and if robots of more than 29 kinds are stopped by different walls.
     """
 
     _turned_rad = 0.01
@@ -58,41 +58,43 @@ class PhysicsWorld(CrowdedWorld):
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
-        self._stage: Stage | None = None
+        self._simulated: SimulatedModel | None = None
         self._rays: Rays | None = None
         super().__init__(mission, **how)
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     @property
-    def stage(self) -> Stage:
+    def simulated(self) -> SimulatedModel:
         """MuJoCo's model and data, for pictures: of the robots that are in the world now."""
-        self._set_stage()
-        assert self._stage is not None
-        return self._stage
+        self._update_model()
+        assert self._simulated is not None
+        return self._simulated
 
-    def replica(self, heights: Heights) -> Stage:
-        """Another stage with the same robots, to put them anywhere for pictures; see `buildings`."""
-        stage = self.stage
-        return Stage(stage.robots, (), Scenery(self._map, self._tags, self.ground_m, heights), stage.step_s)
+    def replica(self, heights: Heights) -> SimulatedModel:
+        """Another model with the same robots, which can be put anywhere for pictures; see `buildings`."""
+        simulated = self.simulated
+        return SimulatedModel(
+            simulated.robots, (), Scenery(self._map, self._tags, self.ground_m, heights), simulated.step_s
+        )
 
     @property
     def frames(self) -> Floats:
         """Where the bodies' frames truly are: (n, 3), metres, also in height; of a drone its centre of mass."""
-        stage = self.stage
-        found: Floats = stage.data.xpos[stage.bodies].copy()
+        simulated = self.simulated
+        found: Floats = simulated.data.xpos[simulated.bodies].copy()
         return found
 
     @property
     def axes(self) -> Floats:
         """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
-        stage = self.stage
-        found: Floats = stage.data.xmat[stage.bodies].reshape(-1, 3, 3)
+        simulated = self.simulated
+        found: Floats = simulated.data.xmat[simulated.bodies].reshape(-1, 3, 3)
         return found
 
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
         """See `SimulatedWorld`. Rays meet bodies as they are drawn, and walls; the laser tilts with the robot."""
         number, frames, axes = self._number(robot), self.frames, self.axes
-        place = frames[number] + mounted_m(self._robots[number], height_m) * axes[number, :, 2]
+        place = frames[number] + laser_height_m(self._robots[number], height_m) * axes[number, :, 2]
         bearings = scanner.bearings
         beams = np.column_stack([np.cos(bearings), np.sin(bearings)]) @ axes[number, :, :2].T
         x, y = map(float, place[:2])
@@ -103,7 +105,7 @@ class PhysicsWorld(CrowdedWorld):
 
     def _limits(self, robot: Robot) -> Limits:
         limits = limits_of(robot)
-        most = ACCELERATION_MPS2[robot_body(robot).build]
+        most = ACCELERATION_MPS2[robot_body(robot).kind]
         return replace(limits, acceleration_mps2=min(limits.acceleration_mps2, most))
 
     def _go_on(self, until_s: float) -> list[Event]:
@@ -114,50 +116,50 @@ class PhysicsWorld(CrowdedWorld):
 
     def _carry_out(self) -> list[Event]:
         """One step of the world."""
-        self._set_stage()
+        self._update_model()
         rows = np.array(self._crowd.command()).reshape(-1, 5)
         rates = rows[:, [0, 1, 2, 4]] * self._carried
-        done = self._control.carry_out(Commands(rates, rows[:, 3]), self._count, self._strengths(len(rows)))
+        done = self._control.carry_out(Commands(rates, rows[:, 3]), self._count, self._force_shares(len(rows)))
         after, lags = done.poses, done.lags
         lags *= self._carried
         heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
         after[:, 2] = np.where(self._carried[:, 2] > 0, after[:, 2] - self._standing_m, heights)
         return self._crowd.carried_out(after, lags, done.counted, STILL_MPS)
 
-    def _strengths(self, count: int) -> Floats | None:
+    def _force_shares(self, count: int) -> Floats | None:
         """Shares of the force asked for that the motors of so many robots give in this step; None: all of it."""
         if self._noise.motors == 0:
             return None
         random = np.random.default_rng(np.random.SeedSequence((self._seed, self._crowd.steps), spawn_key=(2,)))
         return np.maximum(0.0, random.normal(1.0, self._noise.motors, (count, 2)))
 
-    def _set_stage(self) -> None:
-        """Make the stage, at first and where a robot joined: then all others go on as they were."""
-        before = self._stage
+    def _update_model(self) -> None:
+        """Make the model at first, and anew when a robot has joined; all others go on as they were."""
+        before = self._simulated
         if before is not None and len(before.robots) == len(self._robots):
             return
         walls = [self._walls_of(robot) for robot in self._robots]
-        robots = [self._standing(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
+        robots = [self._placed(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
         scenery = Scenery(self._map, self._tags, self.ground_m)
-        stage = Stage(robots, self._wall_sets, scenery, self._dt_s / self._count)
+        simulated = SimulatedModel(robots, self._wall_sets, scenery, self._dt_s / self._count)
         if before is not None:
-            stage.take_over(before)
-        self._stage = stage
-        self._rays = Rays(stage, walls)
-        self._control = Control(stage, keeps_height=self._dimensions == 2)
+            simulated.take_over(before)
+        self._simulated = simulated
+        self._rays = Rays(simulated, walls)
+        self._control = Control(simulated, keeps_height=self._dimensions == 2)
         self._standing_m = np.array([robot.body.standing_m for robot in robots])
         in_space = [robot.kind == "air" and self._dimensions == 3 for robot in self._robots]
         # Of x, y, z and heading what physics moves: heights only of those that fly in space.
         self._carried = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
 
-    def _standing(self, robot: Robot, place: Floats, heading: float, walls: int) -> Standing:
+    def _placed(self, robot: Robot, place: Floats, heading: float, walls: int) -> PlacedRobot:
         body = robot_body(robot)
         height = self.ground_m
         if robot.kind == "air":
             height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
         collides = self._collide and robot.radius_m > 0
         position = (float(place[0]), float(place[1]), height)
-        return Standing(body, position, float(heading), walls if collides else None)
+        return PlacedRobot(body, position, float(heading), walls if collides else None)
 
     def _walls_of(self, robot: Robot) -> int:
         """The number of the set of walls that stops it."""

@@ -1,4 +1,4 @@
-"""A stage to look at: bodies are put where one wants them, in colours that tell them apart."""
+"""A model for pictures: bodies are put at any poses, in colours that tell robots apart."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.simulation.physics.bodies import Build
+from muster.simulation.physics.bodies import BodyKind
 from muster.simulation.physics.buildings import Rgba
 from muster.simulation.physics.model import UNSEEN
-from muster.simulation.physics.simulated_model import Stage
+from muster.simulation.physics.simulated_model import SimulatedModel
 
 GROUND_RGBA: Rgba = (0.97, 0.975, 0.98, 1.0)
 _LIGHT = 0.55
@@ -23,12 +23,12 @@ _AWAY_M = -1000.0
 _SAMPLES = 4
 
 
-class Tableau:
+class PosedScene:
     """Takes the place of a world for a `Renderer`.
 
     Parameters
     ----------
-    stage
+    simulated
         its own: see `PhysicsWorld.replica`.
     colors
         of the robots, in order.
@@ -36,10 +36,10 @@ class Tableau:
         whether edges are, which takes four times as long.
     """
 
-    def __init__(self, stage: Stage, colors: Sequence[Rgba], *, smooth: bool = False) -> None:
-        self._robots = stage
-        self.model: Any = stage.model
-        self.data: Any = stage.data
+    def __init__(self, simulated: SimulatedModel, colors: Sequence[Rgba], *, smooth: bool = False) -> None:
+        self._robots = simulated
+        self.model: Any = simulated.model
+        self.data: Any = simulated.data
         self.ground_m = float(self.model.geom("ground").pos[2])
         self.model.geom("ground").rgba = GROUND_RGBA
         for k, color in enumerate(colors):
@@ -50,7 +50,7 @@ class Tableau:
             self.model.vis.quality.offsamples = _SAMPLES
 
     @property
-    def stage(self) -> Tableau:
+    def simulated(self) -> PosedScene:
         """What a renderer draws."""
         return self
 
@@ -73,7 +73,7 @@ class Tableau:
         """Its rotors, or what of it is broadest."""
         model, body = self.model, self._robots.bodies[robot]
         seen = np.flatnonzero((model.geom_bodyid == body) & (model.geom_group != UNSEEN))
-        if self._robots.robots[robot].body.build is Build.WHEELS:
+        if self._robots.robots[robot].body.kind is BodyKind.WHEELS:
             painted = seen[:1]
         else:
             painted = seen[model.geom_type[seen] == mujoco.mjtGeom.mjGEOM_CYLINDER]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from muster.perception.camera import Intrinsics, View
-from muster.perception.observer import Observer
+from muster.perception.camera_observer import CameraObserver
 from muster.simulation.cameras import Look
 from muster.simulation.physics.physics_world import PhysicsWorld
 from muster.simulation.physics.rendering import Lens, Renderer
 
 
-class DrawnSight:
+class RenderedCameras:
     """Draws what a camera sees, one renderer for each size of picture.
 
     Raises
@@ -24,8 +24,8 @@ class DrawnSight:
         self._world = world
         self._renderers: dict[tuple[int, int], Renderer] = {}
 
-    def look(self, observer: Observer, view: View, body: npt.ArrayLike, now: float) -> Look:
-        """See `Sight`."""
+    def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
+        """See `Cameras`."""
         i = view.intrinsics
         image = self._renderer(i).seen_from(view.position, view.rotation, Lens(i.width, i.height, i.fx, (i.cx, i.cy)))
         return Look(observer.robot, now, image, observer.look(image, body, now))

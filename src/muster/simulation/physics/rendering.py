@@ -38,10 +38,10 @@ class Drawable(Protocol):
 
 
 class Shown(Protocol):
-    """What can be drawn: a `PhysicsWorld`, whose stage is another one after a robot has joined, or a `Tableau`."""
+    """What can be drawn: a `PhysicsWorld`, whose model is made anew when a robot joins, or a `PosedScene`."""
 
     @property
-    def stage(self) -> Drawable: ...
+    def simulated(self) -> Drawable: ...
 
 
 @dataclass(frozen=True)
@@ -169,11 +169,11 @@ class Renderer:
         *,
         orthographic: bool,
     ) -> Picture:
-        if self._stage is not self._world.stage:
+        if self._simulated is not self._world.simulated:
             self.close()
             self._open()
         scene = self._renderer.scene
-        self._renderer.update_scene(self._stage.data)
+        self._renderer.update_scene(self._simulated.data)
         for flag in _COSTLY:
             scene.flags[flag] = 0
         for mark in marks:
@@ -187,10 +187,10 @@ class Renderer:
         return picture
 
     def _open(self) -> None:
-        self._stage = self._world.stage
+        self._simulated = self._world.simulated
         width, height = self._size
         try:
-            self._renderer: Any = mujoco.Renderer(self._stage.model, height, width)
+            self._renderer: Any = mujoco.Renderer(self._simulated.model, height, width)
         except (mujoco.FatalError, ImportError, AttributeError, RuntimeError):  # of MuJoCo or of PyOpenGL
             raise RenderingError(_nothing_draws()) from None
 

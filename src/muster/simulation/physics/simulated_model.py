@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.motion.grid import Floats
-from muster.simulation.physics.bodies import Build
-from muster.simulation.physics.model import Standing, mjcf
+from muster.simulation.physics.bodies import BodyKind
+from muster.simulation.physics.model import PlacedRobot, mjcf
 from muster.simulation.physics.scenery import Scenery
 
 Indices = npt.NDArray[np.intp]
@@ -45,15 +45,15 @@ class Motion:
 
 
 class Group:
-    """Some robots of a stage, by their numbers."""
+    """Some robots of a model, by their numbers."""
 
-    def __init__(self, stage: Stage, who: Indices) -> None:
+    def __init__(self, simulated: SimulatedModel, who: Indices) -> None:
         self.who = who
-        self.bodies = stage.bodies[who]
-        self.robots = tuple(stage.robots[k].body for k in who)
-        self.data = stage.data
-        self._places = stage.places[who][:, :3]
-        self._freedoms = stage.freedoms[who]
+        self.bodies = simulated.bodies[who]
+        self.robots = tuple(simulated.robots[k].body for k in who)
+        self.data = simulated.data
+        self._places = simulated.places[who][:, :3]
+        self._freedoms = simulated.freedoms[who]
 
     def motion(self) -> Motion:
         """As it is now."""
@@ -62,7 +62,7 @@ class Group:
         return Motion(self.data.qpos[self._places], axes, speeds[:, :3], (axes @ speeds[:, 3:, None])[:, :, 0])
 
 
-class Stage:
+class SimulatedModel:
     """MuJoCo's model and data of some robots.
 
     Parameters
@@ -75,7 +75,7 @@ class Stage:
 
     def __init__(
         self,
-        robots: Sequence[Standing],
+        robots: Sequence[PlacedRobot],
         walls: Sequence[Floats],
         scenery: Scenery,
         step_s: float,
@@ -99,8 +99,8 @@ class Stage:
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_step1(self.model, self.data)
 
-    def take_over(self, before: Stage) -> None:
-        """Robots that stood on a stage before, which are the first of this one, go on as they were."""
+    def take_over(self, before: SimulatedModel) -> None:
+        """Take over the state of the robots of an earlier model, which are the first of this one."""
         for k in range(len(before.robots)):
             self.data.qpos[self.places[k]] = before.data.qpos[before.places[k]]
             self.data.qvel[self.freedoms[k]] = before.data.qvel[before.freedoms[k]]
@@ -110,9 +110,9 @@ class Stage:
         self.data.time = before.data.time
         mujoco.mj_step1(self.model, self.data)
 
-    def group(self, build: Build) -> Group:
-        """Those that are so built."""
-        return Group(self, np.array([k for k, one in enumerate(self.robots) if one.body.build is build], dtype=np.intp))
+    def group(self, kind: BodyKind) -> Group:
+        """The robots with this kind of body."""
+        return Group(self, np.array([k for k, one in enumerate(self.robots) if one.body.kind is kind], dtype=np.intp))
 
     def motors(self, who: Indices) -> Indices:
         """Of robots on wheels, left and right: (k, 2) numbers in `data.ctrl`."""

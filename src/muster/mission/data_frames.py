@@ -1,0 +1,32 @@
+"""Tables as pandas DataFrames; pandas is loaded when one is made (extra `frames`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, fields
+from typing import TYPE_CHECKING, Any
+
+from muster.mission.errors import MissingExtraError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+def data_frame(rows: Iterable[Mapping[str, Any]], columns: Iterable[str]) -> DataFrame:
+    """A DataFrame of rows; with these columns, also where there is no row.
+
+    Raises
+    ------
+    MissingExtraError
+        without pandas.
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise MissingExtraError("frames", "a DataFrame") from None
+    return DataFrame(list(rows), columns=list(columns))
+
+
+def frame_of_records(kind: type[Any], records: Iterable[Any]) -> DataFrame:
+    """A DataFrame with a row for each instance of a dataclass and a column for each of its fields."""
+    return data_frame(map(asdict, records), [f.name for f in fields(kind)])

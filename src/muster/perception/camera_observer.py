@@ -1,0 +1,77 @@
+"""A robot that looks: from an image and the robot's pose to raw estimates ([tcf-thesis], Figure 4.8); sans I/O.
+
+What goes wrong with one image (its size, a tag twice, a pose that is none) is told, and the mission goes on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.perception.camera import Floats, Intrinsics, View
+from muster.perception.detection import Sightings, TagDetector
+from muster.perception.estimates import RawEstimates
+from muster.perception.images import Image
+from muster.perception.localisation import Uncertainty, ground_covariance, on_ground
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What one image told: the tags in it, where they are on the ground (x, y), and what was wrong."""
+
+    sightings: Sightings
+    estimates: RawEstimates
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraObserver:
+    """One robot's camera and what it knows of its errors.
+
+    `mount` is (4, 4) from body to image; images need a `detector`. Of what is farther away than `farthest_m` no
+    estimate is made: near the horizon a pixel is worth many metres.
+    """
+
+    robot: str
+    intrinsics: Intrinsics
+    mount: Floats
+    detector: TagDetector | None = None
+    uncertainty: Uncertainty = Uncertainty()
+    ground_m: float = 0.0
+    farthest_m: float = 20.0
+
+    def look(self, image: Image, body: npt.ArrayLike, time_s: float) -> Observation:
+        """Find tags in an image taken at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4)."""
+        assert self.detector is not None, "who looks at images needs a detector"
+        try:
+            return self.locate(self.detector.detect(image, self.intrinsics), body, time_s)
+        except ParameterError as error:
+            return Observation(Sightings((), ()), RawEstimates.joined([]), (f"{self._when(time_s)}: {error}",))
+
+    def locate(self, sightings: Sightings, body: npt.ArrayLike, time_s: float) -> Observation:
+        """Say where that is which was seen at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4).
+
+        Raises
+        ------
+        ParameterError
+            if the pose is none.
+        """
+        view = View.from_body(self.intrinsics, body, self.mount)
+        said = tuple(f"{self._when(time_s)}: tag {tag} is twice in one image" for tag in sightings.repeated)
+        return Observation(sightings, self._estimates(view, sightings, time_s), said)
+
+    def _estimates(self, view: View, sightings: Sightings, time_s: float) -> RawEstimates:
+        centres = np.array([sighting.centre for sighting in sightings.all]).reshape(-1, 2)
+        tags = np.array([sighting.tag for sighting in sightings.all], dtype=np.int64)
+        places = on_ground(view, centres, self.ground_m)
+        near = np.linalg.norm(places - view.position, axis=1) <= self.farthest_m  # False where NaN
+        covariances = ground_covariance(view, centres[near], self.uncertainty, self.ground_m)
+        return RawEstimates(
+            places[near, :2], covariances, tags[near], (self.robot,) * int(near.sum()), np.full(near.sum(), time_s)
+        )
+
+    def _when(self, time_s: float) -> str:
+        return f"{self.robot} at {time_s:.2f} s"

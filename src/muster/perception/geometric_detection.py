@@ -1,0 +1,63 @@
+"""What a camera would see of tags, by geometry alone: for worlds that draw no pictures.
+
+A tag is seen that lies within the picture, faces the camera and is large enough for a detector. Nothing is in the way,
+and no light is poor: what detection itself gets wrong is not here, but an error of the corners.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.motion.frames import moved
+from muster.perception.camera import View
+from muster.perception.detection import Sighting, Sightings
+from muster.perception.tags import CORNERS
+
+Floats = npt.NDArray[np.float64]
+
+LEAST_PX = 16.0
+"""So many pixels across its black square a tag needs to be found in every image (docs/perception.md)."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundTag:
+    """A tag where it truly is: its id, its pose (4, 4) in the map, and the side of its black square in metres."""
+
+    id: int
+    pose: Floats
+    size_m: float
+
+
+def sightings_of(
+    tags: Sequence[GroundTag], view: View, random: np.random.Generator, corner_px: float = 0.2
+) -> Sightings:
+    """The tags that a camera sees, with corners that are off by `corner_px` (standard deviation, each axis)."""
+    in_picture = view.sees([tag.pose[:3, 3] for tag in tags])  # quick, as most are not
+    near = [tag for tag, inside in zip(tags, in_picture, strict=True) if inside]
+    seen = [sighting for tag in near if (sighting := _sighting(tag, view, random, corner_px)) is not None]
+    seen.sort(key=lambda sighting: (sighting.tag, *sighting.centre))
+    times = Counter(sighting.tag for sighting in seen)
+    return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
+
+
+def _sighting(tag: GroundTag, view: View, random: np.random.Generator, corner_px: float) -> Sighting | None:
+    places = moved(tag.pose, CORNERS * tag.size_m)
+    if not view.sees(places).all() or not _faces(tag, view):
+        return None
+    corners = view.project(places)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+    if sides.min() < LEAST_PX:
+        return None
+    centre = view.project(tag.pose[None, :3, 3])[0]
+    off = random.normal(0.0, corner_px, (5, 2)) * ([[0.5]] + [[1.0]] * 4)  # the middle is that of four corners
+    return Sighting(tag.id, centre + off[0], corners + off[1:], corrected=0, margin=100.0)
+
+
+def _faces(tag: GroundTag, view: View) -> bool:
+    """Whether the camera is on the side from which the tag is to be seen: its z points into it."""
+    return float((tag.pose[:3, 3] - view.position) @ tag.pose[:3, 2]) > 0

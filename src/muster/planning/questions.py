@@ -1,0 +1,70 @@
+"""What can be done of a mission, and why a plan is as it is: the functions `check` and `explain` of the package."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, overload
+
+from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.planning.request import require_mission
+
+if TYPE_CHECKING:
+    from muster.planning.explaining import LeftOut, OneTask, Possible
+
+Rules = str | Collection[str]
+
+
+def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.0) -> Possible:
+    """Find the tasks of a mission that can never be done, and whether one plan can do all others.
+
+    Parameters
+    ----------
+    ignore
+        rules that do not hold.
+    time_limit
+        seconds for finding out whether all others can be done in one plan; None: that stays unknown.
+
+    Raises
+    ------
+    MissionError, NotSupportedError
+        if the mission cannot be planned at all, or its map is wrong.
+    """
+    from muster.planning.explaining import possible
+
+    require_mission(mission)
+    return possible(mission, ignored=ignored_rules(ignore), time_limit=time_limit)
+
+
+@overload
+def explain(mission: Mission, plan: Plan, task: None = None, *, ignore: Rules = ()) -> LeftOut: ...
+
+
+@overload
+def explain(mission: Mission, plan: Plan, task: str, *, ignore: Rules = ()) -> OneTask: ...
+
+
+def explain(mission: Mission, plan: Plan, task: str | None = None, *, ignore: Rules = ()) -> LeftOut | OneTask:
+    """Explain why tasks are left out of a plan; or why a task is done by this robot and not by another.
+
+    Parameters
+    ----------
+    task
+        the id of one task; None: all that are left out.
+    ignore
+        rules that do not hold.
+
+    Raises
+    ------
+    ParameterError
+        if the mission has no such task.
+    PlanError
+        if the plan is not one of this mission.
+    """
+    from muster.planning.explaining import left_out, one_task, require_fit
+
+    require_mission(mission)
+    ignored = ignored_rules(ignore)
+    require_fit(mission, plan, "<plan>", ignored)
+    return left_out(mission, plan, ignored) if task is None else one_task(mission, plan, task, ignored)

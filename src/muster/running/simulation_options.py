@@ -1,0 +1,39 @@
+"""How a mission is simulated: the keyword arguments that are passed on, for type checkers."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, TypedDict
+
+if TYPE_CHECKING:
+    from muster.execution import ExecutionEvent, Recorder
+    from muster.running.camera_search import OnLook
+    from muster.simulation import Noise, SimulatedWorld
+
+
+class WorldOptions(TypedDict, total=False):
+    """How the world is: `world`, `dt_s`, `avoidance`, `noise` and `ignore` as `Simulation` takes them."""
+
+    world: str
+    dt_s: float
+    avoidance: str
+    noise: Noise
+    ignore: str | Collection[str]
+    on_look: OnLook | None
+    on_world: Callable[[SimulatedWorld], None] | None
+
+
+class RecordedWorldOptions(WorldOptions, total=False):
+    """As `WorldOptions`; and the seed, and the recorder of what happens."""
+
+    seed: int
+    recorder: Recorder | None
+
+
+class SimulationOptions(WorldOptions, total=False):
+    """How the world is, and how fast time goes on: `speed`, `on_event` and `halt`."""
+
+    speed: float | None
+    on_event: Callable[[ExecutionEvent], None] | None
+    halt: threading.Event | None

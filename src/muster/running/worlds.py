@@ -1,0 +1,51 @@
+"""The worlds in which plans are carried out, by name, those of installed packages included."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from muster.execution import Recorder
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+from muster.mission.plugins import Registry
+from muster.simulation import SimulatedWorld
+
+MakeWorld = Callable[..., SimulatedWorld]
+"""Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`."""
+
+
+def _checked(name: str, found: object) -> MakeWorld:
+    if not callable(found):
+        raise ParameterError(f"it is a {type(found).__name__}; expected a class or function that makes a world")
+    return found
+
+
+WORLDS: Registry[MakeWorld] = Registry(
+    "world",
+    "muster.worlds",
+    {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics:PhysicsWorld"},
+    _checked,
+)
+
+
+def world_named(name: str) -> MakeWorld:
+    """What makes a world of that name for a mission.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    MissingExtraError
+        if it needs an extra that is not installed.
+    PluginError
+        if its package cannot be loaded.
+    """
+    return WORLDS.named(name)
+
+
+def recorded_world(name: str, mission: Mission, recorder: Recorder | None, **how: Any) -> SimulatedWorld:
+    """The world of that name for a mission, which tells a recorder where bodies are."""
+    if recorder is not None:
+        how |= {"observer": recorder.on_step, "observe_s": 0.1}
+    return world_named(name)(mission, **how)

@@ -1,0 +1,352 @@
+"""What all worlds share: robots that the core's crowd (`core/crowd_world.hpp`) tells where to go, step by step.
+
+There are way points, collision avoidance, limits of speed, yaw rate and acceleration, and a right of way that leaves
+every robot room to brake. Here is who is told what.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from muster import core
+from muster.mission.consistency import positions
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot
+from muster.mission.near_matches import did_you_mean
+from muster.motion.frames import rotation
+from muster.motion.grid import Floats
+from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.motion.limits import Limits
+from muster.motion.map_world import Body, World, body_of
+from muster.perception.laser import NO_DISCS, Scanner
+from muster.simulation.noise import NO_NOISE, Noise
+from muster.simulation.port import SimulatedPort
+from muster.simulation.walls import Slab, faces_and_slabs
+from muster.simulation.world import Contact, Observer, WaypointPassed
+
+AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+NEIGHBOURS = 10
+FLIGHT_M = 1.5
+"""How high drones fly in a mission in the plane."""
+MARGIN = 0.05
+"""By which avoidance takes robots that face their way for larger, as a share of the radius: they answer late."""
+WALL_HORIZON_S = 0.3
+CORNER_M = 0.02
+"""By how much a way point may be cut where a robot goes on past it."""
+Event = tuple[float, int, int, int, bool]
+"""Time, robot, order, way points passed, whether all; as `core.CrowdWorld.advance` gives it."""
+Faces = tuple[Floats, list[Slab]]
+"""As `faces_and_slabs` gives them."""
+_NO_FACES = np.empty((0, 6))
+_SLICE = 10_000
+"""Steps after which Ctrl-C is listened to."""
+
+
+class WorldBase(ABC):
+    """Robots of a mission that move; deterministic by seed. What moves them, those that inherit say.
+
+    Robots start where the mission says and stand until they are sent. Walls are there where travel is by the map.
+
+    Parameters
+    ----------
+    mission
+        its robots and its map are used.
+    seed
+        of noise, and of the ways that robots try when they hold each other up.
+    dt_s
+        seconds a step; velocities are constant within one.
+    noise
+        see `Noise`.
+    avoidance
+        `orca`, in the plane `rvo` or `hrvo` too, or `none`: robots drive through each other and through walls.
+    horizon_s
+        for which avoidance looks ahead.
+    arrival_m
+        from a way point, where a robot counts as there that cannot get nearer; undisturbed ones go to within 1 mm.
+    observer, observe_s
+        called at the beginning and then at each step, or at most this often; costs time.
+
+    Raises
+    ------
+    ParameterError
+        if a number is out of range.
+    MissionError, MissingExtraError
+        as `World.of`, with a map.
+    """
+
+    _turned_rad = 1e-9
+    """From a heading, where a robot counts as turned to it."""
+    _clearance_m = 0.0
+    """What the right of way leaves between robots that move less exactly than they are told."""
+
+    def __init__(
+        self,
+        mission: Mission,
+        *,
+        seed: int = 0,
+        dt_s: float = 0.1,
+        noise: Noise = NO_NOISE,
+        avoidance: str = "orca",
+        horizon_s: float = 2.0,
+        arrival_m: float = 0.02,
+        observer: Observer | None = None,
+        observe_s: float = 0.0,
+    ) -> None:
+        _require(avoidance, mission, seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
+        self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
+        self._dimensions = mission.dimensions
+        self._lowest_m = _lowest(mission)
+        self._dt_s = dt_s
+        self._noise = noise
+        self._seed = seed
+        self._observer = observer
+        self._observed_steps = max(1, round(observe_s / dt_s))
+        self._crowd = core.CrowdWorld(
+            dt=dt_s,
+            avoidance=avoidance,
+            space=mission.dimensions == 3,
+            horizon=horizon_s,
+            wall_horizon=max(WALL_HORIZON_S, dt_s),
+            neighbours=NEIGHBOURS,
+            clearance=self._clearance_m,
+            margin=MARGIN,
+            arrival=arrival_m,
+            corner=CORNER_M,
+            heading=self._turned_rad,
+            velocity_noise=noise.velocity,
+            slip=noise.slip,
+            odometry_noise=noise.odometry,
+            seed=seed,
+        )
+        self._walls: dict[Body, int] = {}
+        self._faces: dict[Body, Faces] = {}
+        self._numbers: dict[str, int] = {}
+        self._robots: list[Robot] = []
+        self._ports: dict[str, SimulatedPort] = {}
+        for robot in mission.robots:
+            self.join(robot)
+        self._observe()
+
+    @property
+    def time_s(self) -> float:
+        """Seconds since the beginning: a whole number of steps."""
+        return self._crowd.time
+
+    @property
+    def dt_s(self) -> float:
+        """Seconds a step."""
+        return self._dt_s
+
+    @property
+    def noise(self) -> Noise:
+        """Of all robots."""
+        return self._noise
+
+    @property
+    def ports(self) -> Mapping[str, SimulatedPort]:
+        """By the robots' ids, in order of the mission; those that joined come last."""
+        return MappingProxyType(self._ports)
+
+    def step(self) -> tuple[WaypointPassed, ...]:
+        """Let one step go by."""
+        return self._advance(self.time_s + self._dt_s)
+
+    def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
+        """Let time go by until `until_s`, at most to the end of the first step in which something was passed.
+
+        Returns
+        -------
+        what was passed in the last step; nothing if the time is up. Call it again until it returns nothing.
+        """
+        stride = self._observed_steps if self._observer is not None else _SLICE
+        while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
+            target = min(until_s, (self._crowd.steps // stride + 1) * stride * self._dt_s)
+            passed = self._advance(target)
+            if passed:
+                return passed
+        return ()
+
+    def join(self, robot: Robot) -> SimulatedPort:
+        """A robot comes into the world, where it says; returns its port.
+
+        Raises
+        ------
+        ParameterError
+            if its id is taken, or its position has not as many coordinates as the mission's.
+        """
+        if robot.id in self._numbers:
+            raise ParameterError(f"robot {robot.id}: it is in the world; expected a new id")
+        if len(robot.position) != self._dimensions:
+            raise ParameterError(f"robot {robot.id}: {robot.position}; expected {self._dimensions} coordinates")
+        limits, kinematics = self._limits(robot), kinematics_named(robot.kinematics)
+        x, y, z = (*robot.position, 0.0)[:3]
+        number = self._crowd.add(
+            (x, y, z),
+            math.radians(robot.heading_deg),
+            radius=robot.radius_m,
+            speed=limits.speed_mps,
+            yaw_rate=limits.yaw_rate_radps,
+            acceleration=limits.acceleration_mps2,
+            priority=robot.avoidance_priority,
+            faces_its_way=kinematics.faces_its_way,
+            flies=robot.kind == "air",
+            walls=self._walls_for(body_of(robot)),
+        )
+        self._numbers[robot.id] = number
+        self._robots.append(robot)
+        self._ports[robot.id] = SimulatedPort(robot, number, self._crowd, self._noise, self._seed)
+        return self._ports[robot.id]
+
+    def fail(self, robot: str, *, silent: bool = True) -> None:
+        """It stops as soon as it can and takes no more way points; `silent`: it says nothing more either."""
+        self._crowd.fail(self._number(robot))
+        if silent:
+            self._ports[robot].mute()
+
+    def recover(self, robot: str) -> None:
+        """It works and speaks again; it stands until it is sent."""
+        self._crowd.recover(self._number(robot))
+        self._ports[robot].unmute()
+
+    def silence(self, robot: str) -> None:
+        """Its telemetry stays what it is; the robot goes on, and orders still reach it."""
+        self._number(robot)
+        self._ports[robot].mute()
+
+    def unsilence(self, robot: str) -> None:
+        """Its telemetry goes on."""
+        self._number(robot)
+        self._ports[robot].unmute()
+
+    def slow(self, robot: str, factor: float) -> None:
+        """From now on its top speed is its own times `factor`, above 0 to 1."""
+        if not 0 < factor <= 1:
+            raise ParameterError(f"factor: {factor}; expected above 0 to 1")
+        self._crowd.slow(self._number(robot), factor)
+
+    @property
+    def positions(self) -> Floats:
+        """True ones: (n, 3), metres."""
+        found: Floats = self._crowd.positions()
+        return found
+
+    @property
+    def headings(self) -> Floats:
+        """True ones: (n,), radians."""
+        found: Floats = self._crowd.headings()
+        return found
+
+    @property
+    def frames(self) -> Floats:
+        """Where the bodies' frames truly are: (n, 3), metres, with the height of drones in the plane too."""
+        above = FLIGHT_M if self._dimensions == 2 else 0.0
+        flies = np.array([robot.kind == "air" for robot in self._robots], dtype=np.float64)
+        return np.asarray(self.positions + above * flies[:, None] * (0.0, 0.0, 1.0))
+
+    @property
+    def axes(self) -> Floats:
+        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        return rotation(0.0, 0.0, self.headings)
+
+    @property
+    def ground_m(self) -> float:
+        """How high the ground is: 0, or the lowest place of a mission in space."""
+        return self._lowest_m if self._dimensions == 3 else 0.0
+
+    @property
+    def velocities(self) -> Floats:
+        """Of the last step, true ones: (n, 3), m/s."""
+        found: Floats = self._crowd.velocities()
+        return found
+
+    @property
+    def distances_m(self) -> Mapping[str, float]:
+        """What each robot has truly travelled, by id."""
+        return dict(zip(self._numbers, self._crowd.travelled().tolist(), strict=True))
+
+    @property
+    def min_distance_m(self) -> float | None:
+        """Least distance so far of the centres of two robots of which one was under way; None if there was none."""
+        least = self._crowd.least_distance
+        return None if math.isinf(least) else least
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Pairs whose centres were ever closer than the sum of their radii while one was under way."""
+        ids = list(self._numbers)
+        return tuple(Contact(time, (ids[a], ids[b]), least) for a, b, time, least in self._crowd.contacts())
+
+    def idle(self, robot: str) -> bool:
+        """Whether it has passed all its way points, or has none."""
+        return not self._crowd.busy(self._number(robot))
+
+    @abstractmethod
+    def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
+        """See `SimulatedWorld`."""
+
+    @abstractmethod
+    def _go_on(self, until_s: float) -> list[Event]:
+        """Step until a time, or until something happened."""
+
+    def _limits(self, robot: Robot) -> Limits:
+        return limits_of(robot)
+
+    def _advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
+        ids = list(self._numbers)
+        passed = []
+        for time, number, order, count, idle in self._go_on(until_s):
+            label = self._ports[ids[number]].label(order, count)
+            passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
+        if self._crowd.steps % self._observed_steps == 0:
+            self._observe()
+        return tuple(passed)
+
+    def _observe(self) -> None:
+        if self._observer is not None:
+            self._observer(self.time_s, self.positions, self.headings, self.velocities)
+
+    def _number(self, robot: str) -> int:
+        if robot not in self._numbers:
+            known = list(self._numbers)
+            raise ParameterError(f"robot {robot}: not in the world; expected one of it{did_you_mean(robot, known)}")
+        return self._numbers[robot]
+
+    def _walls_for(self, body: Body) -> int:
+        """The number of the walls that stop this body; the same body has the same."""
+        if body not in self._walls:
+            faces, slabs = self._faces_for(body)
+            ground = self._lowest_m if body.kind == "air" else -math.inf
+            self._walls[body] = self._crowd.add_walls(faces, slabs, ground)
+        return self._walls[body]
+
+    def _faces_for(self, body: Body) -> Faces:
+        """What stops this body: upright faces, and zones with a height."""
+        if body not in self._faces:
+            self._faces[body] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
+        return self._faces[body]
+
+
+def _lowest(mission: Mission) -> float:
+    """Where the ground is: 0, or the lowest place of a mission in space; -inf in the plane."""
+    if mission.dimensions == 2:
+        return -math.inf
+    return min(0.0, *(place[2] for _, place in positions(mission) if len(place) == 3))
+
+
+def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:
+    if avoidance not in AVOIDANCE:
+        raise ParameterError(
+            f"avoidance: {avoidance}; expected {', '.join(AVOIDANCE)}{did_you_mean(avoidance, AVOIDANCE)}"
+        )
+    if avoidance in ("rvo", "hrvo") and mission.dimensions == 3:
+        raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
+    if not 0 <= seed < 2**64:
+        raise ParameterError(f"seed: {seed}; expected 0 to 2^64 - 1")
+    for name, number in numbers.items():
+        if not 0 < number < math.inf:
+            raise ParameterError(f"{name}: {number}; expected a finite number above 0")
