@@ -219,21 +219,21 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.exchange.mission_control import NotFoundError, Who
+    from muster.exchange.mission_control import NotFoundError, User
     from muster.mission.near_matches import did_you_mean
 
-    desk, who = app.state.desk, Who("local", "command")
+    services, who = app.state.services, User("local", "command")
     file = Path(mission)
-    known = {entry.id: entry for entry in await desk.missions.list()}
+    known = {entry.id: entry for entry in await services.missions.list()}
     if mission in known:
         return mission
     if not file.is_file():
         raise NotFoundError(f"{mission}: no file, and no mission of that name{did_you_mean(mission, known)}")
     text = file.read_text(encoding="utf-8", errors="replace")
     for entry in known.values():
-        if entry.version and (await desk.missions.get(entry.id)).text == text:
+        if entry.version and (await services.missions.get(entry.id)).text == text:
             return str(entry.id)
-    return str((await desk.missions.upload(who, file.name, file.read_bytes())).mission)
+    return str((await services.missions.upload(who, file.name, file.read_bytes())).mission)
 
 
 def _address(settings: Settings, port: int) -> str:

@@ -39,7 +39,7 @@ from muster.planning.request import Request
 if TYPE_CHECKING:
     from muster import Negotiation
     from muster.exchange.mission_control import World
-    from muster.report.camera_pictures import Looks
+    from muster.report.camera_pictures import CameraPictures
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
@@ -202,11 +202,11 @@ def _check_together(negotiate: bool) -> None:
         raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
 
 
-def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> Looks | None:
+def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> CameraPictures | None:
     """Who keeps what cameras see, where that is wanted."""
     if found is None and cameras is None:
         return None
-    from muster.report.camera_pictures import Looks
+    from muster.report.camera_pictures import CameraPictures
 
     option = "--found" if cameras is None else "--cameras"
     if not mission.tags:
@@ -216,7 +216,7 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     if cameras is not None and world != "physics":
         raise ParameterError(f"--cameras: no pictures in the {world} world; expected --world physics")
     require_folder(cameras, "--cameras")
-    return Looks(cameras)
+    return CameraPictures(cameras)
 
 
 def _negotiation(method: str, transport: str, others: Mapping[str, Any], settings: tuple[str, ...]) -> Negotiation:

@@ -22,7 +22,7 @@ from muster.exchange.thinning import thinned
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
 
 
@@ -83,10 +83,10 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions = QgcOpti
         if drones have no height to fly at.
     """
     earth = Earth.of(mission, "--to qgc")
-    roads = Roads.of(mission) if mission.travel_rule == "map" else None
-    whole = itineraries(mission, verdict, roads)
+    robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+    whole = itineraries(mission, verdict, robot_paths)
     _require_heights(mission, whole, options.altitude)
-    team = [_adapted(itinerary, roads, options) for itinerary in whole]
+    team = [_adapted(itinerary, robot_paths, options) for itinerary in whole]
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
     files = dict(zip(_file_names([i.robot.id for i in busy]), busy, strict=True))
     plans = PlanFiles(mission, earth, team, options.firmware)
@@ -99,10 +99,10 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions = QgcOpti
     return Files(texts, tuple(messages))
 
 
-def _adapted(itinerary: Itinerary, roads: Roads | None, options: QgcOptions) -> Itinerary:
+def _adapted(itinerary: Itinerary, robot_paths: RobotPaths | None, options: QgcOptions) -> Itinerary:
     """With fewer bends around corners, and a drone no lower than it may fly."""
-    if roads is not None and options.tolerance:
-        clear = partial(roads.clear, body_of(itinerary.robot))
+    if robot_paths is not None and options.tolerance:
+        clear = partial(robot_paths.clear, body_of(itinerary.robot))
         itinerary = thinned(itinerary, options.tolerance, clear)
     if options.altitude is None or itinerary.robot.kind == "ground":
         return itinerary

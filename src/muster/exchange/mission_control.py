@@ -45,8 +45,8 @@ class StoreError(MusterError):
 
 
 @dataclass(frozen=True)
-class Who:
-    """Who asks: a name, what they may do, and from which address."""
+class User:
+    """A user: a name, what they may do, and from which address they ask."""
 
     name: str
     role: Role
