@@ -173,7 +173,7 @@ def test_a_plan_is_exported_to_texts_and_files(tmp_path, mission, plan):
     files = muster.export(mission, plan, "csv", tmp_path / "plan.csv")
     assert (tmp_path / "plan.csv").read_text(encoding="utf-8") == files.texts["plan.csv"]
     assert files.texts["plan.csv"].count("\n") > len(plan.routes)
-    with pytest.raises(muster.ParameterError, match="format: cvs; expected qgc, .*did you mean 'csv'"):
+    with pytest.raises(muster.ParameterError, match=r"format: cvs; expected qgc, .*did you mean 'csv'"):
         muster.export(mission, plan, "cvs")
     with pytest.raises(muster.ParameterError, match="to csv: altitude: unknown; expected none"):
         muster.export(mission, plan, "csv", altitude=3.0)

@@ -72,7 +72,7 @@ def _surveyed(mission: Mission, verdict: Verdict, form: str) -> Survey:
     return survey(mission, verdict, itineraries(mission, verdict), earth)
 
 
-def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions = QgcOptions()) -> Files:
+def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = None) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 
     Raises
@@ -82,6 +82,7 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions = QgcOpti
     ParameterError
         if drones have no height to fly at.
     """
+    options = options or QgcOptions()
     earth = Earth.of(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     whole = itineraries(mission, verdict, robot_paths)
