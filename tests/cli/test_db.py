@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.store import Store
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}
@@ -22,7 +22,7 @@ def url(tmp_path, monkeypatch):
     store.missions.create("Yard", "a", {}, SUMMARY, "ann")
     plan = store.plans.add("Yard", 1, "planned", "ann", {})
     run = store.runs.add("Yard", 1, plan.id, "kinematic", {}, None, "ann")
-    store.actions.add(Who("ann", "command"), "run.start", {}, run.id)
+    store.actions.add(User("ann", "command"), "run.start", {}, run.id)
     store.runs.set(run.id, state="ended")
     store.close()
     return url

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
 
 from muster import core
@@ -165,10 +165,15 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
-        unassigned=unassigned(problem, lists, lambda: stop.hurried),
+        unassigned=unassigned(_without_beginnings(problem), lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )
+
+
+def _without_beginnings(problem: Problem) -> Problem:
+    """The problem in which no task has to stay where it is: a reason for a task left out is true of every place."""
+    return replace(problem, fixed=(), known=problem.measured) if problem.fixed else problem
 
 
 def equality_index(usages: Sequence[float]) -> float:

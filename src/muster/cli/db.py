@@ -47,9 +47,9 @@ def command() -> None:
 @quiet_option
 def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
     """Say what is in the database."""
-    from muster.server.store.database_info import contents
+    from muster.server.store.database_info import database_info
 
-    found = contents(url)
+    found = database_info(url)
     if form == "json":
         import json
 
@@ -91,11 +91,11 @@ def restore(file: Path, url: str, quiet: bool, verbose: bool) -> int:
     A database that is not there yet is made; of PostgreSQL that is done with createdb.
     """
     from muster.server.store.backup import restore as put_back
-    from muster.server.store.database_info import contents
+    from muster.server.store.database_info import database_info
 
     put_back(file, url)
     if not quiet:
-        found = contents(url)
+        found = database_info(url)
         amounts = f"{found.rows['missions']} missions, {found.rows['plans']} plans, {found.rows['runs']} runs"
         click.echo(f"restored {found.database}: {amounts}", err=True)
     return DONE

@@ -89,13 +89,13 @@ def _found(
     import numpy as np
 
     from muster.motion.paths import planner_named
-    from muster.motion.robot_paths import Roads, with_heights
+    from muster.motion.robot_paths import RobotPaths, with_heights
 
     start, goal = ends
     if world is None:
         return Path(np.array(ends))
     if planner == "shortest":
-        return Roads(world).path(body, start, goal)
+        return RobotPaths(world).path(body, start, goal)
     found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
     return found if isinstance(found, NoPath) else with_heights(found, start, goal)
 
@@ -103,9 +103,9 @@ def _found(
 def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
     """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
     from muster.motion.curve import Curve
-    from muster.motion.robot_paths import Roads
+    from muster.motion.robot_paths import RobotPaths
 
-    curve = Curve.along(path) if world is None else Roads(world).curve(body, path)
+    curve = Curve.along(path) if world is None else RobotPaths(world).curve(body, path)
     return Path(curve.sample(_STEP_M)), curve.max_curvature
 
 

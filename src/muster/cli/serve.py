@@ -14,6 +14,7 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.near_matches import did_you_mean
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -53,9 +54,10 @@ _LOCAL = "local"
 @click.option(
     "--bridge",
     "bridges",
-    type=click.Choice(["ros1", "ros2", "mavlink"]),
+    callback=lambda *a: _known_bridges(*a),
     multiple=True,
-    help="To real robots that missions may be carried out with; may be given again.",
+    metavar="NAME",
+    help="To real robots: ros1, ros2, mavlink, or a fleet of an installed package; may be given again.",
 )
 @click.option("--tokens", type=_FILE, metavar="FILE", help="Who may watch or command, a line each: ROLE NAME DIGEST.")
 @click.option("--new-token", metavar="NAME", help="Print a fresh token and its line, and end; with --tokens add it.")
@@ -159,6 +161,16 @@ def _add_line(file: Path, line: str, *, is_new: bool) -> None:
         stream.write(f"{line}\n".encode() if ended else f"\n{line}\n".encode())
 
 
+def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+    from muster.running.fleets import FLEETS
+
+    for name in names:
+        if name not in FLEETS:
+            hint = did_you_mean(name, FLEETS)
+            raise click.BadParameter(f"{name!r} is not one of {', '.join(FLEETS)}{hint}", param_hint="'--bridge'")
+    return names
+
+
 def _require_usable(settings: Settings) -> None:
     """Find out before anything is opened that it cannot be served in this way."""
     from muster.server.security.serving_rules import require_safe
@@ -219,21 +231,21 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.exchange.mission_control import NotFoundError, Who
+    from muster.exchange.mission_control import NotFoundError, User
     from muster.mission.near_matches import did_you_mean
 
-    desk, who = app.state.desk, Who("local", "command")
+    services, who = app.state.services, User("local", "command")
     file = Path(mission)
-    known = {entry.id: entry for entry in await desk.missions.list()}
+    known = {entry.id: entry for entry in await services.missions.list()}
     if mission in known:
         return mission
     if not file.is_file():
         raise NotFoundError(f"{mission}: no file, and no mission of that name{did_you_mean(mission, known)}")
     text = file.read_text(encoding="utf-8", errors="replace")
     for entry in known.values():
-        if entry.version and (await desk.missions.get(entry.id)).text == text:
+        if entry.version and (await services.missions.get(entry.id)).text == text:
             return str(entry.id)
-    return str((await desk.missions.upload(who, file.name, file.read_bytes())).mission)
+    return str((await services.missions.upload(who, file.name, file.read_bytes())).mission)
 
 
 def _address(settings: Settings, port: int) -> str:

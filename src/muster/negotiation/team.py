@@ -266,4 +266,4 @@ def _with_measured_travel(setup: TeamSetup) -> TeamSetup:
     problem = setup.problem
     if problem.mission.travel_rule != "map":
         return setup
-    return replace(setup, problem=replace(problem, known=problem.measured, mapped=problem.roads))
+    return replace(setup, problem=replace(problem, known=problem.measured, mapped=problem.robot_paths))

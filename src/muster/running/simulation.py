@@ -24,7 +24,7 @@ from muster.execution import (
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.running.camera_search import Lookout, OnLook, lookout_for, with_found
 from muster.running.state_estimation import heard
 from muster.running.worlds import recorded_world
@@ -90,8 +90,8 @@ class Simulation:
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
     ) -> None:
-        roads = Roads.of(mission) if mission.travel_rule == "map" else None
-        travel = travel_of(mission, roads)
+        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, robot_paths)
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         if on_world is not None:
             on_world(self._world)
@@ -100,7 +100,7 @@ class Simulation:
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
             self._hearing.ports,
-            way=way_of(mission, roads),
+            way=way_of(mission, robot_paths),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
             observer=recorder,

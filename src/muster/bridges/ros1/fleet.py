@@ -27,7 +27,7 @@ from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
 from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
@@ -280,9 +280,9 @@ def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
     """Whether the mission's map lets a robot go straight from a place to another."""
     if mission.map is None:
         return lambda *_: True
-    roads, d = Roads(World.of(mission)), mission.dimensions
+    robot_paths, d = RobotPaths(World.of(mission)), mission.dimensions
     for robot in mission.robots:
-        roads.clear(
+        robot_paths.clear(
             body_of(robot), [robot.position]
         )  # looks at the map for this body now, not while robots are steered
-    return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])
+    return lambda robot, here, there: robot_paths.clear(body_of(robot), [here[:d], there[:d]])

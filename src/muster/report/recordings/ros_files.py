@@ -12,7 +12,7 @@ from muster.mission.errors import MissingExtraError
 from muster.report.record import Recording
 from muster.report.record.json_messages import nanoseconds
 from muster.report.record.writer import require_mcap
-from muster.report.recordings.ros_messages import Sent, ros_messages
+from muster.report.recordings.ros_messages import TimedMessage, ros_messages
 
 _KEPT = ("/markers",)
 """Topics whose last message holds for who comes later: latched in ROS 1."""
@@ -78,7 +78,7 @@ def write_ros1(file: str | Path, recording: Recording, *, begins_s: float = 0.0)
     return counts
 
 
-def _connection(writer: Any, one: Sent) -> Any:
+def _connection(writer: Any, one: TimedMessage) -> Any:
     kind = type(one.message)
     return writer.add_connection(
         one.topic,
@@ -98,5 +98,5 @@ def _bag_writer() -> Any:
     return Writer
 
 
-def _time(one: Sent, begins_s: float) -> int:
+def _time(one: TimedMessage, begins_s: float) -> int:
     return nanoseconds(begins_s) + nanoseconds(one.time_s)

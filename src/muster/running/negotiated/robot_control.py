@@ -59,14 +59,14 @@ class RobotControl:
 
     def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
         mission = problem.mission.at_once()
-        roads = problem.roads if mission.travel_rule == "map" else None
-        self._travel = travel_of(mission, roads)
+        robot_paths = problem.robot_paths if mission.travel_rule == "map" else None
+        self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(
             mission,
             Plan(mission=mission.name, ignored=problem.ignored, routes=()),
             {port.robot: port},
-            way=way_of(mission, roads),
+            way=way_of(mission, robot_paths),
             travel=self._travel,
             replan=self._owned,
             now=now,

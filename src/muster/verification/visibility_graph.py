@@ -9,7 +9,7 @@ from muster.motion.grid import Floats, Indices
 _DETOURS = (0.02, 0.08, 0.32, 1.28, 5.12, 20.48)  # of the straight line
 
 
-class Roads:
+class VisibilityGraph:
     """A graph of points that see each other.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Shortest ways in one space between many places: one graph, one search a place (see `shortest`)."""
+"""Shortest paths in one space between many places: one visibility graph, one search per place (see `shortest`)."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ _CORNERS_AT_A_TIME = 1000  # for the same
 
 
 class _Ways(Protocol):
-    """Shortest ways in metres of the map frame."""
+    """Shortest paths in metres of the map frame."""
 
     def sees(self, a: Floats, b: Floats) -> bool: ...
     def way(self, start: Floats, goal: Floats) -> Floats: ...
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats: ...
 
 
-class WayFinder:
-    """Shortest paths in one space, which is looked at once."""
+class PathFinder:
+    """Shortest paths in one space, which is analysed once."""
 
     def __init__(self, space: Space) -> None:
         self._space = space
         self._ways = _ways_in(space)
 
     def path(self, start: npt.ArrayLike, goal: npt.ArrayLike) -> Path | NoPath:
-        """The shortest path between two points, (2,) or (3,) metres in the map frame; or why there is none.
+        """The shortest path between two points, (2,) or (3,) metres in the map frame, or the reason why there is none.
 
         Raises
         ------
@@ -54,14 +54,15 @@ class WayFinder:
         return Path(without_repetitions(points)) if len(points) else disconnected(a, b)
 
     def clear(self, points: Floats) -> bool:
-        """Whether straight pieces through points (k, d) are free from end to end; what smoothing asks (see `Clear`)."""
+        """Whether the straight pieces through points (k, d) are free from end to end: a `Clear` for smoothing."""
         places = points_of(self._space, points, "points")
         return all(self._ways.sees(a, b) for a, b in pairwise(places))
 
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
-        """Metres of the shortest paths from each exit (n, d) to each entry (m, d): (n, m).
+        """The lengths of the shortest paths from each exit (n, d) to each entry (m, d): (n, m) metres.
 
-        Without entries they are the exits; then lengths are symmetric. Where there is no path: inf; `path` says why.
+        Without entries they are the exits; then lengths are symmetric. Where there is no path: inf; `path` gives the
+        reason.
 
         Raises
         ------
@@ -79,8 +80,8 @@ class WayFinder:
 
 
 def travel_lengths(space: Space, exits: npt.ArrayLike, entries: npt.ArrayLike, threads: int = 1) -> Floats:
-    """Metres of the shortest paths from each exit to each entry; see `WayFinder.lengths`."""
-    return WayFinder(space).lengths(exits, entries, threads=threads)
+    """The lengths of the shortest paths from each exit to each entry; see `PathFinder.lengths`."""
+    return PathFinder(space).lengths(exits, entries, threads=threads)
 
 
 def _ways_in(space: Space) -> _Ways:
@@ -119,7 +120,7 @@ class _InRegion:
 
 
 class _OnGrid:
-    """The core counts in cells."""
+    """Shortest paths on a grid; the core counts in cells."""
 
     def __init__(self, grid: Grid) -> None:
         self._grid = grid
@@ -162,7 +163,7 @@ def _rows(ways: core.Ways, exits: Floats, entries: Floats, threads: int, *, mutu
 
 
 def _outermost_first(places: Floats) -> Indices:
-    """The order in which the box around the places that are left shrinks soon: each looks for those after it alone."""
+    """An order in which the bounding box of the remaining places shrinks fast; each place is searched to later ones."""
     if not len(places):
         return np.empty(0, dtype=np.intp)
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
@@ -170,7 +171,10 @@ def _outermost_first(places: Floats) -> Indices:
 
 
 class _InAir:
-    """Samples: 16 steps over the height of the obstacles, 100 along the region; higher places make them anew."""
+    """Shortest paths in the air.
+
+    Samples: 16 over the height of the obstacles, 100 along the region; higher places make new ones.
+    """
 
     def __init__(self, space: PrismSpace) -> None:
         self._space = space
@@ -205,7 +209,7 @@ class _InAir:
         return self._ways.sees(_triple(a), _triple(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
-        """Found from the lesser point, so that there and back are equally long."""
+        """Searched from the lesser point, so that both directions have the same length."""
         ways = self._ready(np.stack([start, goal]), 1)
         if tuple(start) <= tuple(goal):
             return ways.way(_triple(start), _triple(goal))
