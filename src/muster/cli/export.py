@@ -29,7 +29,14 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.command()
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
-@click.option("--to", "form", required=True, callback=_format, metavar="FORMAT", help=f"One of {', '.join(FORMATS)}.")
+@click.option(
+    "--to",
+    "form",
+    required=True,
+    callback=_format,
+    metavar="FORMAT",
+    help=f"One of {', '.join(FORMATS.shipped)}, or a format of an installed package.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="For qgc a folder.")
 @click.option(
     "--altitude",
@@ -91,6 +98,8 @@ def command(
         for message in () if quiet else files.messages:
             click.echo(message, err=True)
         return DONE
+    if len(files.texts) != 1:
+        raise ParameterError(f"--to: {form} made {len(files.texts)} files; expected one")
     (text,) = files.texts.values()
     if output is None:
         click.echo(text, nl=False)

@@ -14,6 +14,7 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.near_matches import did_you_mean
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -53,9 +54,10 @@ _LOCAL = "local"
 @click.option(
     "--bridge",
     "bridges",
-    type=click.Choice(["ros1", "ros2", "mavlink"]),
+    callback=lambda *a: _known_bridges(*a),
     multiple=True,
-    help="To real robots that missions may be carried out with; may be given again.",
+    metavar="NAME",
+    help="To real robots: ros1, ros2, mavlink, or a fleet of an installed package; may be given again.",
 )
 @click.option("--tokens", type=_FILE, metavar="FILE", help="Who may watch or command, a line each: ROLE NAME DIGEST.")
 @click.option("--new-token", metavar="NAME", help="Print a fresh token and its line, and end; with --tokens add it.")
@@ -157,6 +159,16 @@ def _add_line(file: Path, line: str, *, is_new: bool) -> None:
         end = os.fstat(descriptor).st_size
         ended = end == 0 or os.pread(descriptor, 1, end - 1) == b"\n"
         stream.write(f"{line}\n".encode() if ended else f"\n{line}\n".encode())
+
+
+def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+    from muster.running.fleets import FLEETS
+
+    for name in names:
+        if name not in FLEETS:
+            hint = did_you_mean(name, FLEETS)
+            raise click.BadParameter(f"{name!r} is not one of {', '.join(FLEETS)}{hint}", param_hint="'--bridge'")
+    return names
 
 
 def _require_usable(settings: Settings) -> None:

@@ -32,6 +32,7 @@ from muster.cli.report_tables import print_report
 from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text, read_plan
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
@@ -55,8 +56,16 @@ _IN_THIS_PROCESS = (
     "still",
     "foxglove",
 )
-_WORLDS = ("kinematic", "physics")
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+
+
+def _world(_: click.Context, __: click.Parameter, value: str) -> str:
+    from muster.running.worlds import WORLDS
+
+    if value not in WORLDS:
+        hint = did_you_mean(value, WORLDS)
+        raise click.BadParameter(f"{value!r} is not one of {', '.join(WORLDS)}{hint}", param_hint="'--world'")
+    return value
 
 
 @click.command()
@@ -64,7 +73,14 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @ignore_option
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
-@click.option("--world", type=click.Choice(_WORLDS), default="kinematic", show_default=True, help="Where.")
+@click.option(
+    "--world",
+    callback=_world,
+    default="kinematic",
+    show_default=True,
+    metavar="WORLD",
+    help="kinematic, physics, or a world of an installed package.",
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."
