@@ -1,4 +1,4 @@
-"""The one way from a planning request to a judged plan. Heavy parts are imported where they are used."""
+"""Answers planning requests with judged plans. Heavy modules are imported where they are used."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tup
 
 
 def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> OnProgress:
-    """What adds the bound that was asked for to progress, and lets its share include the time of an exact proof."""
+    """A function that adds the bound to progress, and the time of an exact proof to its share."""
     from muster.allocation.bounds import lower_bound
     from muster.allocation.proofs import EXACT_TIME_LIMIT_S
 
@@ -204,7 +204,7 @@ def solve(
 
 
 def _require_no_misspelt_argument(parameters: Mapping[str, Any]) -> None:
-    """Refuse what looks like an argument of `solve`; what the allocator does not have is refused by the allocator."""
+    """Refuse a misspelt argument of `solve`; the allocator refuses parameters that it does not have."""
     for name in parameters:
         if name not in AllocatorParameters.__annotations__ and did_you_mean(name, _ARGUMENTS):
             require_known([name], _ARGUMENTS)
