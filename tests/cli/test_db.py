@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.store import Store
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}
@@ -22,7 +22,7 @@ def url(tmp_path, monkeypatch):
     store.missions.create("Yard", "a", {}, SUMMARY, "ann")
     plan = store.plans.add("Yard", 1, "planned", "ann", {})
     run = store.runs.add("Yard", 1, plan.id, "kinematic", {}, None, "ann")
-    store.actions.add(Who("ann", "command"), "run.start", {}, run.id)
+    store.actions.add(User("ann", "command"), "run.start", {}, run.id)
     store.runs.set(run.id, state="ended")
     store.close()
     return url
@@ -59,7 +59,7 @@ def test_the_database_that_the_environment_names(url, muster, monkeypatch, tmp_p
 def test_info_as_a_table(url, muster, tmp_path):
     code, out, err = muster("db", "info")
     assert (code, err) == (0, "")
-    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables 0001, ")
+    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables 0002, ")
     assert [line.split() for line in out.splitlines() if "versions" in line] == [["mission", "versions", "1"]]
 
 

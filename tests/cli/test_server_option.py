@@ -14,10 +14,10 @@ from tests.cli.yard import MUSTER, comparable
 from tests.server.serving import served
 
 from muster import load
-from muster.cli.remote.simulate import _followed
-from muster.cli.remote.uploads import parcel
-from muster.cli.remote.waiting import planned
+from muster.allocation.stop import Stop
 from muster.client import Client
+from muster.client.backend import awaited, followed
+from muster.client.uploads import packed_mission
 from muster.exchange.mission_control import ConflictError, Job
 from muster.server.security.tokens import line_of, new_token
 
@@ -41,6 +41,21 @@ def test_a_plan_is_as_here(folder, muster, url):
     there = muster("solve", "yard.yaml", "--iterations", 20, "-o", "there.json", "--server", url)
     assert there == here
     assert comparable("there.json") == comparable("here.json")
+
+
+def test_rewire_fixed_and_bound_are_as_here(folder, muster, url):
+    assert muster("solve", "31T-6R50", "--iterations", 300, "-o", "first.json")[0] == 0
+    fixed = json.loads(Path("first.json").read_text(encoding="utf-8"))
+    for route in fixed["routes"]:
+        route["tasks"] = route["tasks"][:1]
+    Path("fixed.json").write_text(json.dumps({"schema": fixed["schema"], "routes": fixed["routes"]}), encoding="utf-8")
+    for more in (["--rewire"], ["--fixed", "fixed.json"], ["--start", "first.json", "--bound=quick", "-v"]):
+        call = ("solve", "31T-6R50", "--iterations", 300, *more)
+        here, there = muster(*call, "-o", "here.json"), muster(*call, "-o", "there.json", "--server", url)
+        assert (there[0], there[1]) == (here[0], here[1]) == (0, here[1])
+        assert comparable("there.json") == comparable("here.json")
+    assert here[2].splitlines()[-1] == there[2].splitlines()[-1]
+    assert there[2].splitlines()[-1].startswith("lower bound: ")
 
 
 def test_a_mission_is_kept_once_and_a_changed_one_as_its_next_version(folder, muster, url):
@@ -136,7 +151,7 @@ def test_missions_of_the_server_are_listed(muster, url):
 
 
 def test_files_are_sent_with_a_mission(muster, url):
-    text, files = parcel(load("floor"))
+    text, files = packed_mission(load("floor"))
     assert sorted(files) == ["floor-plan.png", "floor-plan.yaml"]
     assert "../" not in text
     assert muster("solve", "floor", "--iterations", 5, "-q", "--server", url)[0] == 0
@@ -146,8 +161,6 @@ def test_files_are_sent_with_a_mission(muster, url):
     ("arguments", "said"),
     [
         (("--ray", "x"), "--ray given; expected it without --server"),
-        (("--rewire",), "--rewire given; expected it without --server"),
-        (("--fixed", "p.json"), "--fixed given; expected it without --server"),
         (("--set", "nothing=1"), "nothing"),
         (("-a", "serach"), "serach"),
     ],
@@ -222,25 +235,28 @@ def test_ctrl_c_keeps_the_best_plan_as_here(folder, url):
         assert "objective" in out
         assert err.endswith("interrupted: this is the best plan so far\n")
         job = control.job(new[0].id).seen
-        assert (job.state, control.plans.get(job.result["plan"]).plan) == (
+        assert (job.state, control.plans.get(job.result["plan"]).entry.plan) == (
             "done",
             json.loads(Path("best.json").read_text(encoding="utf-8")),
         )
 
 
 class Interrupted:
-    """A job at a server; each time that somebody waits for it there is a Ctrl-C."""
+    """A job at a server; each time that it is looked at there is a Ctrl-C."""
 
     id = 7
 
-    def __init__(self, begun):
+    def __init__(self, begun, interrupt):
+        self.interrupt = interrupt
         self.begun = begun
         asked = {"kind": "plan", "mission": "yard", "mission_version": 1, "arguments": {}, "author": "local"}
         self.seen = Job(id=self.id, state="running" if begun else "queued", asked_at=datetime.now(UTC), **asked)
         self.told = []
 
-    def wait(self, on_progress):
-        raise KeyboardInterrupt
+    def wait(self, on_progress, on_look):
+        for _ in range(2):
+            self.interrupt.interrupt()
+            on_look()
 
     def stop(self):
         self.told.append("stop")
@@ -254,15 +270,16 @@ class Interrupted:
 @pytest.mark.parametrize(
     ("begun", "told", "said"),
     [
-        (True, ["stop", "cancel"], "job 7 is cancelled at the server, which keeps no plan of it\n"),
-        (False, ["stop"], "job 7 is cancelled at the server: it had not begun\n"),
+        (True, ["stop", "cancel"], "job 7 is cancelled at the server, which keeps no plan of it"),
+        (False, ["stop"], "job 7 is cancelled at the server: it had not begun"),
     ],
 )
-def test_a_second_ctrl_c_or_one_while_it_waits_cancels_the_job_there(capsys, begun, told, said):
-    job = Interrupted(begun)
+def test_a_second_ctrl_c_or_one_while_it_waits_cancels_the_job_there(begun, told, said):
+    interrupt, lines = Stop(), []
+    job = Interrupted(begun, interrupt)
     with pytest.raises(KeyboardInterrupt):
-        planned(lambda: job, load("6T-2R"), quiet=True, time_limit=1.0, iterations=None)
-    assert (job.told, capsys.readouterr().err) == (told, said)
+        awaited(job, None, interrupt, lines.append)
+    assert (job.told, lines) == (told, [said])
 
 
 class Carried:
@@ -281,7 +298,7 @@ class Carried:
 @pytest.mark.parametrize("before", [True, False])
 def test_ctrl_c_as_a_run_ends_is_no_error(before):
     carried = Carried()
-    assert _followed(carried, before, telling=False) is True
+    assert followed(carried, None, before) is True
     assert carried.waited
 
 

@@ -9,12 +9,12 @@ import pytest
 
 from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
-from muster.motion.paths import WayFinder
+from muster.motion.paths import PathFinder
 
 
 def test_while_a_graph_is_built():
     blocked = np.random.default_rng(1).random((1500, 1500)) < 0.02
-    finder = WayFinder(GridSpace(Grid(blocked, 1.0)))
+    finder = PathFinder(GridSpace(Grid(blocked, 1.0)))
     press = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     press.start()
     with pytest.raises(KeyboardInterrupt):

@@ -13,7 +13,7 @@ from muster.execution.reallocation import Reallocation
 from muster.execution.task_motion import place
 from muster.execution.travel import travel_of, way_of
 from muster.motion import actions
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from tests import trials
 from tests.disturbances.bodies import Bodies, bodily_mission
 from tests.disturbances.missions import disturbed_mission
@@ -129,10 +129,10 @@ def _among_bodies(report):
 def _run(report, mission, world):
     plan = muster.solve(mission, "greedy")
     watcher = Watcher(report, mission, world)
-    roads = Roads.of(mission) if mission.travel_rule == "map" else None
-    travel = travel_of(mission, roads)
+    robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+    travel = travel_of(mission, robot_paths)
     replan = Reallocation(travel=travel, iterations=ITERATIONS)
-    way = way_of(mission, roads)
+    way = way_of(mission, robot_paths)
     executor = Executor(mission, plan, world.ports, way=way, travel=travel, replan=replan, observer=watcher)
     watcher.executor = executor
     watcher.on_plan(0.0, executor.plan)

@@ -15,7 +15,7 @@ from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.thinning import thinned
 from muster.mission.model import Robot
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.verification import verify
 
 ARC = [(math.cos(a), math.sin(a), 3.0) for a in np.radians(np.arange(0, 91, 10))]
@@ -103,18 +103,18 @@ def away(point, line):
 @pytest.mark.parametrize("name", ["floor", "yard"])
 def test_robots_stay_clear_of_walls(name):
     mission = muster.load(name)
-    roads = Roads.of(mission)
-    team = itineraries(mission, verify(mission, muster.solve(mission, "greedy")), roads)
+    robot_paths = RobotPaths.of(mission)
+    team = itineraries(mission, verify(mission, muster.solve(mission, "greedy")), robot_paths)
     fewer = 0
     for whole in team:
         body = body_of(whole.robot)
-        found = thinned(whole, 0.1, lambda line, body=body: roads.clear(body, line))
+        found = thinned(whole, 0.1, lambda line, body=body: robot_paths.clear(body, line))
         fewer += len(whole.passages) - len(found.passages)
         places_of = places(found)
         ways = [way for way in pairwise(places_of) if way not in set(pairwise(places(whole)))]
         for a, b in ways:
             along = np.linspace(a, b, 50)[:, : mission.dimensions]
-            assert roads.world.clearance(along, body.kind, body.radius_m).min() >= body.radius_m - 1e-4
+            assert robot_paths.world.clearance(along, body.kind, body.radius_m).min() >= body.radius_m - 1e-4
         tasks = [passage for passage in whole.passages if passage.stays_s or passage.heading is not None]
         assert [passage for passage in found.passages if passage in tasks] == tasks
     assert fewer > 10

@@ -19,7 +19,7 @@ from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]
 
@@ -55,9 +55,9 @@ def test_shipped_missions_are_carried_out_as_planned(name):
     plan = muster.solve(mission, "greedy")
     verdict = muster.verify(mission, plan)
     world, step = World(mission), verdict.makespan_s / 2000
-    roads = None if mission.map is None else Roads.of(mission)
-    travel = None if roads is None else OverMap(roads)
-    executor = Executor(mission, plan, world.ports, way=way_of(mission, roads), travel=travel)
+    robot_paths = None if mission.map is None else RobotPaths.of(mission)
+    travel = None if robot_paths is None else OverMap(robot_paths)
+    executor = Executor(mission, plan, world.ports, way=way_of(mission, robot_paths), travel=travel)
     carry_out(executor, world, step=step, until=3 * verdict.makespan_s + 100)
     ledger = executor.ledger
     assert executor.done

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from muster.negotiation.codec import FACTS
-from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
+from muster.negotiation.messages import Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
 
 ROBOTS = ("r_0", "r_1", "r_2", "scout")
 TASKS = ("t_0", "t_1", "t_2", "t_3", "gate")
@@ -45,9 +45,9 @@ messages = st.builds(
     sales=several(st.builds(Sold, robots, tasks, prices)),
     sales_from=counts,
     lacks=several(robots),
-    pulses=several(st.builds(Pulse, robots, counts, counts)),
+    heartbeats=several(st.builds(Heartbeat, robots, counts, counts)),
     agreed=several(robots),
     facts=several(facts),
     known=counts,
-    misses=several(robots),
+    unheard=several(robots),
 )

@@ -3,7 +3,7 @@
 from muster import Mission, Robot, Task
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import AuctionValuer
@@ -24,7 +24,7 @@ def line_mission(robots=3, tasks=6, once=(), **more):
     )
 
 
-def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, absent=(), **weather):
+def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, absent=(), **conditions):
     """The team of a mission or a problem, not started; what robots remember is in `memories`, by robot."""
     problem = mission if isinstance(mission, Problem) else Problem.compile(mission)
     rules, terms, memories = rules_of(problem.ready()), terms or Parameters(), {}
@@ -34,7 +34,7 @@ def network(mission, terms=None, *, seed=0, links=None, make=Negotiator, absent=
         forgot = memory is None and incarnation > 1
         return make(robot, rules, valuer, incarnation=incarnation, remembered=memory, forgot=forgot, absent=absent)
 
-    net = MemoryNetwork(negotiator, [robot.id for robot in problem.robots], seed, Weather(**weather), links)
+    net = MemoryNetwork(negotiator, [robot.id for robot in problem.robots], seed, LinkConditions(**conditions), links)
     net.memories = memories
     return net
 

@@ -43,7 +43,7 @@ class RealNetwork:
 
     def __init__(self, hosts, *, loss=0.0, delay_s=0.0, jitter_s=0.0, seed=0):
         self.hosts = hosts
-        self._weather = {"loss": loss, "delay_s": delay_s, "jitter_s": jitter_s, "groups": None}
+        self._conditions = {"loss": loss, "delay_s": delay_s, "jitter_s": jitter_s, "groups": None}
         self._seed = seed
         self._started = []
 
@@ -55,7 +55,7 @@ class RealNetwork:
         if self._switch.stdout.readline() != "ready\n":
             self.__exit__()
             raise OSError("the switch did not start")
-        self._say(**self._weather)
+        self._say(**self._conditions)
         return self
 
     def __exit__(self, *_):
@@ -125,12 +125,12 @@ def _plugged_in(owner, host):
 
 
 class _Switch:
-    """Carries frames from cable to cable, as well as the weather lets it."""
+    """Carries frames from cable to cable, as well as the conditions let it."""
 
     def __init__(self, cables, seed):
         self._cables, self._random = cables, random.Random(seed)
         self._late, self._count = [], 0
-        self.weather = {"loss": 0.0, "delay_s": 0.0, "jitter_s": 0.0, "groups": None}
+        self.conditions = {"loss": 0.0, "delay_s": 0.0, "jitter_s": 0.0, "groups": None}
 
     def run(self):
         poll = select.epoll()
@@ -143,7 +143,7 @@ class _Switch:
                     line = sys.stdin.buffer.raw.readline()
                     if not line:
                         return
-                    self.weather.update(json.loads(line))
+                    self.conditions.update(json.loads(line))
                 else:
                     self._take(self._cables.index(descriptor))
             self._deliver()
@@ -156,14 +156,14 @@ class _Switch:
                 return
             to_one = frame[:5] == _MAC and 0 < frame[5] <= len(self._cables)
             for receiver in (frame[5] - 1,) if to_one else range(len(self._cables)):
-                lost = self._random.random() < self.weather["loss"]
+                lost = self._random.random() < self.conditions["loss"]
                 if receiver != sender and not lost and self._side(sender) == self._side(receiver):
-                    late_s = self.weather["delay_s"] + self._random.uniform(0, self.weather["jitter_s"])
+                    late_s = self.conditions["delay_s"] + self._random.uniform(0, self.conditions["jitter_s"])
                     self._count += 1
                     heapq.heappush(self._late, (time.monotonic() + late_s, self._count, receiver, frame))
 
     def _side(self, cable):
-        groups = self.weather["groups"]
+        groups = self.conditions["groups"]
         return 0 if groups is None else next((k for k, group in enumerate(groups) if cable + 1 in group), -1)
 
     def _deliver(self):

@@ -9,23 +9,23 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.codec import Codec
 from muster.negotiation.encryption import Seal, mission_digest
-from muster.negotiation.members import Patience
+from muster.negotiation.members import Timeouts
 from muster.negotiation.node import Node
 from muster.negotiation.participation import negotiator_of
 
 KEY = bytes(32)
 GUARD_S = 120.0
-QUICK = Patience(retry_s=0.03, beat_s=0.06)
+QUICK = Timeouts(retry_s=0.03, heartbeat_s=0.06)
 """For lossy transports of one machine."""
-CALM = Patience(retry_s=0.5, beat_s=1.0, suspect_s=20.0, bid_s=30.0)
+CALM = Timeouts(retry_s=0.5, heartbeat_s=1.0, suspect_s=20.0, bid_s=30.0)
 """For many robots on the cores of one busy machine: one that waits for a core is not silent."""
 
 
 class Team:
     """A shipped mission, and what its robots' processes are made of."""
 
-    def __init__(self, mission, patience=None, **terms):
-        self._patience = patience or Patience()
+    def __init__(self, mission, timeouts=None, **terms):
+        self._timeouts = timeouts or Timeouts()
         self.problem = Problem.compile(muster.load(mission)).ready()
         self.terms = Parameters(**terms)
         self.robots = [robot.id for robot in self.problem.robots]
@@ -33,7 +33,7 @@ class Team:
         self._digest = mission_digest(self.problem, self.terms)
 
     def negotiator(self, robot):
-        return negotiator_of(self.problem, self.terms, robot, incarnation=1, patience=self._patience)
+        return negotiator_of(self.problem, self.terms, robot, incarnation=1, timeouts=self._timeouts)
 
     def node(self, robot, transport, key=KEY):
         return Node(self.negotiator(robot), transport, self.codec, Seal(key, self._digest, robot, 1))

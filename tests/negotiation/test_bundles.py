@@ -9,7 +9,7 @@ from muster import Mission, ParameterError, Robot, Task
 from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE, Parameters, layers
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.methods import method_named
 from muster.negotiation.participation import bundler_of, plan_of_bundles
 from muster.negotiation.robot_view import view_of
@@ -17,13 +17,13 @@ from muster.negotiation.robot_view import view_of
 MISSIONS = ("31T-6R50", "auction-1", "24T-5R", "eil51-5", "market-rescue-20", "31T-2R65-4R25", "16T-3R", "floor")
 
 
-def network_of(problem, seed=0, params=None, weather=None, links=None):
+def network_of(problem, seed=0, params=None, conditions=None, links=None):
     params = params or Parameters()
 
     def make(robot, incarnation):
         return bundler_of(problem, params, robot, incarnation=incarnation)
 
-    return MemoryNetwork(make, [robot.id for robot in problem.robots], seed, weather or Weather(), links)
+    return MemoryNetwork(make, [robot.id for robot in problem.robots], seed, conditions or LinkConditions(), links)
 
 
 def agreed(network, within_s=60.0):
@@ -50,7 +50,9 @@ def test_without_faults_it_is_the_central_one(name, bundle_size):
 def test_with_faults_every_task_has_one_owner(seed):
     mission = muster.load("24T-5R")
     problem = Problem.compile(mission).ready()
-    network = network_of(problem, seed, weather=Weather(loss=0.3, delay_s=0.02, jitter_s=0.1, duplication=0.1))
+    network = network_of(
+        problem, seed, conditions=LinkConditions(loss=0.3, delay_s=0.02, jitter_s=0.1, duplication=0.1)
+    )
     names = [robot.id for robot in problem.robots]
     network.start()
     network.at(0.1 + 0.05 * seed, lambda: network.crash(names[seed % 5]))

@@ -3,16 +3,16 @@
 import pytest
 from tests.negotiation.networks import agree, line_mission, owners, settled_team
 
-from muster.negotiation.effects import Happening
+from muster.negotiation.effects import Notice
 from muster.negotiation.memory_file import Kept, keeper, kept_in
-from muster.negotiation.messages import Message, Pulse, Stage
+from muster.negotiation.messages import Heartbeat, Message, Stage
 
 TEAM = {"r_0", "r_1", "r_2"}
 
 
-def restarted_with_a_lower_incarnation(away_s, **weather):
+def restarted_with_a_lower_incarnation(away_s, **conditions):
     """A team of which r_0, at its ninth incarnation, crashes, stays away, and starts again as its third."""
-    net = settled_team(line_mission(tasks=8), **weather)
+    net = settled_team(line_mission(tasks=8), **conditions)
     net.crash("r_0")
     net.start(["r_0"], incarnation=9)
     agree(net)
@@ -33,7 +33,7 @@ def test_it_takes_part_again_under_a_higher_incarnation_and_owns_nothing_twice(a
     assert all(len(robots) == 1 for robots in owners(net).values())
     assert len(owners(net)) == 8
     assert net.nodes["r_0"].incarnation == 10
-    assert Happening("renumbered", ("r_0",)) in net.nodes["r_0"].happenings
+    assert Notice("renumbered", ("r_0",)) in net.nodes["r_0"].notices
     assert not net.nodes["r_0"].superseded
 
 
@@ -52,7 +52,7 @@ def test_where_the_others_hear_it_and_it_does_not_hear_them_it_owns_nothing():
     net.start(["r_0"], incarnation=9)
     agree(net)
     net.crash("r_0")
-    net.deafen({("r_1", "r_0"), ("r_2", "r_0")})
+    net.block({("r_1", "r_0"), ("r_2", "r_0")})
     net.start(["r_0"], incarnation=3)
     net.run(net.now + 1.0)
     assert net.nodes["r_0"].route == ()
@@ -75,7 +75,7 @@ def test_a_robot_that_the_others_have_accepted_does_not_rise_but_falls_silent():
     net = settled_team(line_mission())
     node = net.nodes["r_0"]
     stage = net.nodes["r_1"].stage
-    node.handle(Message("r_1", 1, 10**6, stage, pulses=(Pulse("r_0", 7, 1),)), net.now)
+    node.handle(Message("r_1", 1, 10**6, stage, heartbeats=(Heartbeat("r_0", 7, 1),)), net.now)
     assert node.superseded
     assert node.incarnation == 1
 

@@ -10,9 +10,9 @@ msgpack = pytest.importorskip("msgpack", reason="the extra `net` is not installe
 
 from tests.negotiation.messages import ROBOTS, TASKS, messages  # noqa: E402
 
-from muster.negotiation.codec import PARTED, PROTOCOL, Codec, OtherVersion  # noqa: E402
-from muster.negotiation.messages import Claim, Declaration, Message, Pulse, RoundBids, Sold, Stage  # noqa: E402
-from muster.negotiation.plain_values import Garbled  # noqa: E402
+from muster.negotiation.codec import PARTED, PROTOCOL, Codec, OtherVersionError  # noqa: E402
+from muster.negotiation.messages import Claim, Declaration, Heartbeat, Message, RoundBids, Sold, Stage  # noqa: E402
+from muster.negotiation.plain_values import MalformedError  # noqa: E402
 
 CODEC = Codec(ROBOTS, TASKS)
 BID = Message("r_1", 7, 12, Stage(1, b"12345678", 3), bids=(RoundBids("r_1", 3, (("t_2", 0.1 + 0.2),)),))
@@ -32,7 +32,7 @@ def test_prices_come_bit_by_bit(message):
 def read_or_garbled(data):
     try:
         message = CODEC.decode(data)
-    except Garbled:
+    except MalformedError:
         return
     assert isinstance(message, Message)
     assert CODEC.decode(CODEC.encode(message)) == message
@@ -84,24 +84,24 @@ def test_a_message_with_any_value_in_place_of_one_of_its_own_is_a_message_or_gar
     ],
 )
 def test_what_is_no_plain_array_is_garbled(values):
-    with pytest.raises(Garbled):
+    with pytest.raises(MalformedError):
         CODEC.decode(bytes((PROTOCOL,)) + values)
 
 
 def test_another_version_is_told():
-    with pytest.raises(OtherVersion):
+    with pytest.raises(OtherVersionError):
         CODEC.decode(bytes((PROTOCOL + 1,)) + CODEC.encode(BID)[1:])
 
 
 @pytest.mark.parametrize("more", [[len(fields(Message)), []], [5, [], 5, []], [5, [], 4, []], [5]])
 def test_fields_of_the_future_twice_or_out_of_order_are_refused(more):
     values = msgpack.unpackb(CODEC.encode(Message("r_1", 7, 12, Stage(1)))[1:])
-    with pytest.raises(Garbled):
+    with pytest.raises(MalformedError):
         CODEC.decode(bytes((PROTOCOL,)) + msgpack.packb(values + more))
 
 
 def test_not_a_number_is_garbled():
-    with pytest.raises(Garbled):
+    with pytest.raises(MalformedError):
         CODEC.decode(CODEC.encode(Message("r_1", 7, 12, Stage(1), sales=(Sold("r_0", "t_0", float("nan")),))))
 
 
@@ -112,11 +112,11 @@ def test_messages_are_small():
     bid = Message("r_3", start, 240, stage, bids=(RoundBids("r_3", 17, (("t_9", 1.1),)),))
     route = tuple(Claim(task, 1.1, 7) for task in tasks[:20])
     own = Declaration("r_3", start, 2, tuple(robots[:20]), route, rounds=50)
-    pulses = tuple(Pulse(robot, start + 800 * k, 240 + k) for k, robot in enumerate(robots))
+    heartbeats = tuple(Heartbeat(robot, start + 800 * k, 240 + k) for k, robot in enumerate(robots))
     assert len(codec.encode(bid)) <= 44
     assert len(codec.encode(Message("r_3", start, 240, Stage(2), (own,)))) <= 320
-    assert len(codec.encode(Message("r_3", start, 240, stage, pulses=pulses[:20]))) <= 180
-    assert len(codec.encode(Message("r_3", start, 240, stage, pulses=pulses))) <= 1000
+    assert len(codec.encode(Message("r_3", start, 240, stage, heartbeats=heartbeats[:20]))) <= 180
+    assert len(codec.encode(Message("r_3", start, 240, stage, heartbeats=heartbeats))) <= 1000
 
 
 @given(messages, st.integers(30, 400))

@@ -7,7 +7,7 @@ from tests.negotiation.networks import agree, line_mission, network, owners, set
 
 from muster import Task
 from muster.mission.errors import MissionError, ParameterError
-from muster.negotiation.effects import Happening
+from muster.negotiation.effects import Notice
 from muster.negotiation.messages import Message, Stage
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import content_of
@@ -35,7 +35,7 @@ def test_the_tasks_of_a_robot_that_crashes_are_sold_again():
     net.crash("r_0")
     agree(net)
     assert {task: len(names) for task, names in owners(net).items()} == dict.fromkeys(ALL, 1)
-    assert Happening("silent", ("r_0",)) in net.nodes["r_1"].happenings
+    assert Notice("silent", ("r_0",)) in net.nodes["r_1"].notices
 
 
 def test_what_a_robot_has_done_is_not_sold_again_when_it_crashes():
@@ -120,7 +120,7 @@ def test_an_earlier_process_of_a_name_falls_silent_and_a_later_one_goes_on():
     assert first.superseded
     assert first.route == ()
     assert first.tick(net.now + 9.0) == []
-    assert Happening("rival", ("r_0",)) in first.happenings
+    assert Notice("rival", ("r_0",)) in first.notices
     assert not second.superseded
     assert not second.rivals
 
@@ -157,7 +157,7 @@ def test_each_side_of_a_cut_goes_on_and_ownership_is_settled_when_it_heals():
     net.heal()
     agree(net, 5.0)
     assert {task: len(names) for task, names in owners(net).items()} == dict.fromkeys(ALL, 1)
-    assert any(event.kind == "dropped" for event in net.nodes["r_0"].happenings)
+    assert any(event.kind == "dropped" for event in net.nodes["r_0"].notices)
 
 
 def test_work_begun_on_both_sides_goes_on_and_is_told():
@@ -170,7 +170,7 @@ def test_work_begun_on_both_sides_goes_on_and_is_told():
     assert sorted(owners(net)["2"]) == ["r_0", "r_1"]
     for node in net.nodes.values():
         assert node.twice == {"2": ("r_0", "r_1")}
-        assert Happening("twice", ("r_0", "r_1"), "2") in node.happenings
+        assert Notice("twice", ("r_0", "r_1"), "2") in node.notices
         node.finish("2")
     net.run(net.now + 1.0)
     assert set(net.nodes["r_0"].twice["2"]) == {"r_0", "r_1"}

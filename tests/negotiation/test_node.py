@@ -63,7 +63,7 @@ def test_it_waits_until_due_and_never_in_vain(alone):
     node.start()
     assert not node.run(lambda _: False, 3.0)
     assert clock.now() == pytest.approx(3.0)
-    retry_s = node.negotiator.patience.retry_s
+    retry_s = node.negotiator.timeouts.retry_s
     assert len(transport.waits) <= 3.0 / retry_s + 2
     times = [when for when, _, _ in transport.sent]
     assert all(later - sooner == pytest.approx(retry_s) for sooner, later in pairwise(times))
@@ -93,7 +93,7 @@ def test_messages_are_counted_by_kind_as_they_travel(alone):
         node.run(lambda _: False, 2.0)
     status = node.status()
     assert status.sent["news"] == 1
-    assert status.sent["beats"] == len(transport.sent) - 1
+    assert status.sent["heartbeats"] == len(transport.sent) - 1
     assert sum(status.sent_bytes.values()) == transport.bytes_sent
     assert transport.closed
 
@@ -103,12 +103,12 @@ def test_what_is_no_message_is_counted_and_dropped(alone):
     node.start()
     transport.coming = [
         (0.0, b""),
-        (0.0, bytes((PROTOCOL,)) + b"garbled"),
+        (0.0, bytes((PROTOCOL,)) + b"malformed"),
         (0.0, bytes((PROTOCOL + 1,))),
         *((0.0, data) for data in said()),
     ]
     node.step(0.1)
-    assert node.status().refused == {"garbled": 2, "other_version": 1}
+    assert node.status().refused == {"malformed": 2, "other_version": 1}
     assert node.status().received == len(said())
 
 

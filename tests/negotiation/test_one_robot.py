@@ -9,20 +9,20 @@ pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 from tests.negotiation.teams import Team
 from tests.negotiation.test_udp import transports
 
-from muster.negotiation.members import Patience
-from muster.negotiation.one_robot import Staying, take_part
+from muster.negotiation.members import Timeouts
+from muster.negotiation.one_robot import StayLimits, take_part
 
-HASTY = Patience(suspect_s=0.5, bid_s=1.0, mute_s=1.0)
+HASTY = Timeouts(suspect_s=0.5, bid_s=1.0, exclusion_s=1.0)
 
 
 def test_what_all_have_agreed_on_holds_for_those_that_stay_when_others_have_left():
-    team = Team("auction-2", patience=HASTY)
+    team = Team("auction-2", timeouts=HASTY)
     made, found = transports(team.robots), {}
 
     def be(robot, linger_s):
         with team.node(robot, made[robot]) as node:
-            staying = Staying(wait_s=30.0, linger_s=linger_s, limit_s=30.0)
-            found[robot] = take_part(node, staying, lambda status: None)[0]
+            limits = StayLimits(wait_s=30.0, linger_s=linger_s, limit_s=30.0)
+            found[robot] = take_part(node, limits, lambda status: None)[0]
             found[robot, "members"] = node.negotiator.epoch.own.members
 
     threads = [threading.Thread(target=be, args=(r, 0.3 if k else 3.0)) for k, r in enumerate(team.robots)]

@@ -13,18 +13,18 @@ from muster.allocation.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.plan import read_plan
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.participation import bundler_of, negotiator_of, plan_of, plan_of_bundles, plan_of_view, rules_of
 from muster.negotiation.robot_view import view_of
 
 ALL_TERMS = tuple(itertools.product(BIDS, PLACEMENTS, WINNERS))
 
 
-def network(problem, terms, **weather):
+def network(problem, terms, **conditions):
     def make(robot, incarnation):
         return negotiator_of(problem, terms, robot, incarnation=incarnation)
 
-    return MemoryNetwork(make, [robot.id for robot in problem.robots], weather=Weather(**weather))
+    return MemoryNetwork(make, [robot.id for robot in problem.robots], conditions=LinkConditions(**conditions))
 
 
 def settle(network, until_s=100.0):

@@ -8,14 +8,14 @@ import pytest
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
 from muster.negotiation.encryption import OVERHEAD, Seal
-from muster.negotiation.peer_sessions import KEPT, REST_S, STRANGERS, Acquaintance
+from muster.negotiation.peer_sessions import KEPT, REST_S, STRANGERS, PeerSessions
 
 KEY = bytes(32)
 ROOM = 1200
 
 
 def robot(name, key=KEY):
-    return Acquaintance(Seal(key, b"mission", name, 1))
+    return PeerSessions(Seal(key, b"mission", name, 1))
 
 
 def exchanged(robots, now, lost=lambda: False):
@@ -63,7 +63,7 @@ def test_all_meet_through_loss_when_they_go_on_speaking(seed):
     met = {(i, j) for i in range(5) for j in range(5) if i == j}
     for now in (0.2 * k for k in count()):
         for i, one in enumerate(robots):
-            said = one.close(b"beat")
+            said = one.close(b"heartbeat")
             met |= {(i, j) for j, other in enumerate(robots) if j != i and random.random() > 0.5 and other.open(said)}
         exchanged(robots, now, lost=lambda: random.random() < 0.5)
         if len(met) == 25:

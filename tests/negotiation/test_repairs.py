@@ -26,7 +26,7 @@ def test_in_a_large_team_about_as_many_ask_in_each_moment():
 
 def test_of_a_large_team_the_more_help():
     def helpers(robots):
-        """Robots that answer the first beat of one that heard no bids, one of the others being cut off."""
+        """Robots that answer the first heartbeat of one that heard no bids, one of the others being cut off."""
         names = NAMES[:robots]
         net = network(line_mission(robots=robots, tasks=2), delay_s=0.01)
         net.start()

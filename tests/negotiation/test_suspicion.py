@@ -1,13 +1,16 @@
-"""False suspicions: what is measured is what the chance of losing all beats for so long lets expect."""
+"""False suspicions: what is measured is what the chance of losing all heartbeats for so long lets expect."""
 
-from muster.negotiation.members import Patience
+from muster.negotiation.members import Timeouts
 from muster.negotiation.memory_network import TICK_S
 from muster_studies.negotiation import suspicion
 
 
-def expected(loss, beats):
+def expected(loss, heartbeats):
     """How often an hour so many words in a row are lost, when there is one every 0.2 to 0.25 s."""
-    return [3600 / gap_s * (1 - loss) * loss**beats for gap_s in (Patience().beat_s + TICK_S, Patience().beat_s)]
+    return [
+        3600 / gap_s * (1 - loss) * loss**heartbeats
+        for gap_s in (Timeouts().heartbeat_s + TICK_S, Timeouts().heartbeat_s)
+    ]
 
 
 def test_the_rate_is_that_of_runs_of_lost_beats():
@@ -22,4 +25,4 @@ def test_at_30_percent_loss_fewer_than_one_in_10000_pair_hours():
 
 
 def test_more_patience_fewer_suspicions():
-    assert suspicion.bound(0.3, Patience(suspect_s=6.0)) < suspicion.bound(0.3) / 1000
+    assert suspicion.bound(0.3, Timeouts(suspect_s=6.0)) < suspicion.bound(0.3) / 1000

@@ -16,8 +16,8 @@ from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.participation import plan_of_view
-from muster.negotiation.process_reports import TRANSPORTS, Order
-from muster.negotiation.team import Team, patience_here
+from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
+from muster.negotiation.team import Team, timeouts_for
 from muster_studies.uniform import uniform_mission
 
 GUARD_S = 60.0
@@ -28,8 +28,8 @@ def problem_of(robots, tasks, seed=1):
 
 
 def team_of(problem, **others):
-    others = {"terms": Parameters(), "key": new_key(), "patience": patience_here(len(problem.robots))} | others
-    return Team(Order(problem=problem, **others))
+    others = {"terms": Parameters(), "key": new_key(), "timeouts": timeouts_for(len(problem.robots))} | others
+    return Team(TeamSetup(problem=problem, **others))
 
 
 def until(team, true):
@@ -37,7 +37,7 @@ def until(team, true):
     guard_s = time.monotonic() + GUARD_S
     while not (result := true()):
         assert time.monotonic() < guard_s
-        team.hear(0.05)
+        team.poll(0.05)
     return result
 
 
@@ -77,12 +77,12 @@ def test_when_three_are_killed_in_the_middle_the_others_do_it_all(transport):
     problem = problem_of(20, 50)
     victims = ("r_0", "r_7", "r_13")
     with team_of(problem, transport=transport) as team:
-        until(team, lambda: any(news.status.round >= 10 for news in team.news.values()))
+        until(team, lambda: any(news.status.round >= 10 for news in team.progress.values()))
         for robot in victims:
             os.kill(team.pids[robot], signal.SIGKILL)
         views = until(team, team.agreement)
-        assert team.gone.keys() == set(victims)
-        assert set(team.gone.values()) == {"killed by SIGKILL"}
+        assert team.ended.keys() == set(victims)
+        assert set(team.ended.values()) == {"killed by SIGKILL"}
     assert len(views) == 17
     assert_agreed(problem, views)
 
@@ -125,9 +125,9 @@ from tests.negotiation.test_team import problem_of, team_of, until
 
 with team_of(problem_of(4, 400)) as team:
     until(team, lambda: team.began_s)
-    print(*team.pids.values(), team._nursery.pid, flush=True)
+    print(*team.pids.values(), team._factory.pid, flush=True)
     while True:
-        team.hear(1.0)
+        team.poll(1.0)
 """
 
 

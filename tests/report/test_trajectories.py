@@ -1,18 +1,18 @@
-"""Ways of robots: what is drawn."""
+"""MethodRun of robots: what is drawn."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from muster.report.trajectories import Ways, plot_ways
+from muster.report.trajectories import MethodRun, plot_trajectories
 
 pytest.importorskip("matplotlib")
 
 
 def ways(method):
     positions = np.array([[[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.5], [3.0, -0.5]], [[2.0, 0.0], [2.5, 0.0]]])
-    return Ways(
+    return MethodRun(
         method=method,
         robots=("r_0", "r_1"),
         goals=np.array([[2.0, 0.0], [2.5, 0.0]]),
@@ -26,7 +26,7 @@ def ways(method):
 
 
 def test_panels():
-    figure = plot_ways([ways("RVO"), ways("ORCA")], "a title")
+    figure = plot_trajectories([ways("RVO"), ways("ORCA")], "a title")
     assert len(figure.axes) == 8
     paths, distances, x, y = figure.axes[0], figure.axes[2], figure.axes[4], figure.axes[6]
     assert [ax.get_title() for ax in figure.axes[:2]] == ["RVO", "ORCA"]
@@ -41,7 +41,7 @@ def test_methods_are_drawn_to_one_scale():
     """Of two methods the second comes nearer and takes longer; its panels hold it, and the first's are like them."""
     slow = ways("ORCA")
     slow = replace(slow, least_distances_m=np.array([9.0, 0.1]), velocities=slow.velocities * 3, dt=2.0)
-    figure = plot_ways([ways("RVO"), slow], "a title")
+    figure = plot_trajectories([ways("RVO"), slow], "a title")
     for row in (2, 4, 6):
         first, second = figure.axes[row : row + 2]
         assert first.get_xlim() == second.get_xlim()

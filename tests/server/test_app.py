@@ -19,7 +19,7 @@ from tests.server.security.shielded import (
 )
 from tests.server.security.shielded import TestClient as Client
 
-from muster.exchange.mission_control import ForbiddenError, Who
+from muster.exchange.mission_control import ForbiddenError, User
 from muster.mission.errors import ParameterError
 from muster.server.app import make_app
 from muster.server.settings import Settings
@@ -161,9 +161,9 @@ def test_health_without_a_database(app, client, monkeypatch):
     def fails():
         raise StoreError("/data/muster.db: full; expected room")
 
-    desk = app.state.desk
+    services = app.state.services
     monkeypatch.setattr("muster.server.health._HOLDS_S", -1.0)
-    monkeypatch.setattr(type(desk.store), "check", lambda _: fails())
+    monkeypatch.setattr(type(services.store), "check", lambda _: fails())
     stranger, known = client.get("/healthz"), client.get("/healthz", headers=bearer(WATCHER))
     assert (stranger.status_code, stranger.json()) == (503, {"status": "not ok"})
     assert known.json()["reasons"] == ["database: /data/muster.db: full; expected room"]
@@ -173,7 +173,7 @@ def test_logins_and_refusals_are_in_the_audit_log(app, client):
     client.post("/login", data={"token": COMMANDER}, headers={"origin": "http://10.0.0.5:8117"})
     client.cookies.clear()
     assert client.get("/api/v1/me", headers=bearer(WATCHER) | FOREIGN | _from("10.0.1.1")).status_code == 403
-    client.portal.call(app.state.shield.audit.settle)
+    client.portal.call(app.state.guard_state.audit.settle)
     actions = client.get("/api/v1/actions", headers=bearer(WATCHER)).json()
     assert ("anna", "login") in {(action["who"], action["verb"]) for action in actions}
     assert ("10.0.1.1", "refused") in {(action["address"], action["verb"]) for action in actions}
@@ -200,7 +200,7 @@ def test_the_server_is_made_without_what_makes_it_large():
         "print([name for name in sys.argv[1:] if name in sys.modules])"
     )
     large = ("numpy", "scipy", "shapely", "matplotlib", "alembic", "aiohttp", "requests", "muster.core")
-    large += ("muster.simulation", "muster.allocation", "muster.verification", "muster.execution")
+    large += ("muster.simulation", "muster.allocation.problem", "muster.verification", "muster.execution")
     found = subprocess.run([sys.executable, "-c", program, *large], capture_output=True, text=True, check=True)
     assert found.stdout == "[]\n"
 
@@ -209,18 +209,18 @@ def test_who_tries_to_command_without_the_role_is_in_the_audit_log(app, client):
     text = "robots: [{id: r, position: [0, 0]}]"
     refused = client.post("/api/v1/missions", json={"text": text}, headers=bearer(WATCHER) | _from("10.0.2.1"))
     assert refused.status_code == 403
-    client.portal.call(app.state.shield.audit.settle)
+    client.portal.call(app.state.guard_state.audit.settle)
     noted = client.get("/api/v1/actions", headers=bearer(COMMANDER)).json()
     (action,) = (a for a in noted if (a["who"], a["verb"], a["address"]) == ("wall", "refused", "10.0.2.1"))
     assert action["data"] == {"why": "wall may only watch; expected the role command", "command": "mission.create"}
 
 
 def test_so_is_who_does_so_by_a_page_which_asks_no_route(app, client):
-    wall, runs = Who("wall", "watch", "10.0.3.1"), app.state.desk.runs
+    wall, runs = User("wall", "watch", "10.0.3.1"), app.state.services.runs
     for _ in range(3):
         with pytest.raises(ForbiddenError):
             client.portal.call(runs.act, wall, 1, "pause")
-    client.portal.call(app.state.shield.audit.settle)
+    client.portal.call(app.state.guard_state.audit.settle)
     noted = client.get("/api/v1/actions", headers=bearer(COMMANDER)).json()
     (action,) = (a for a in noted if a["address"] == "10.0.3.1")  # of one address, once in a while
     assert (action["verb"], action["data"]["command"]) == ("refused", "run.pause")

@@ -21,7 +21,7 @@ async def _app(scope, receive, send):
 
 
 async def _told(*pieces):
-    """What a server answers to these pieces, until it ends the connection or has answered nothing for a while."""
+    """What a server answers to these pieces, until it ends the connection or has completed nothing for a while."""
     config = uvicorn.Config(_app, http=PatientProtocol, log_config=None, lifespan="off")
     config.load()
     state = ServerState()

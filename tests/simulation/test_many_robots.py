@@ -11,7 +11,7 @@ from muster.mission.model import Map, Zone
 from muster.motion.map_world import World, body_of
 from muster.motion.path import Path
 from muster.motion.port import Waypoint
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive")
@@ -191,10 +191,10 @@ def test_random_crowds_touch_neither_each_other_nor_walls(seed):
 @pytest.mark.parametrize("name", ["floor", "yard"])
 def test_all_get_along_shortest_paths_of_a_shipped_map(name):
     team, random = muster.load(name), np.random.default_rng(0)
-    roads, world, planned = Roads.of(team), KinematicWorld(team), {}
+    robot_paths, world, planned = RobotPaths.of(team), KinematicWorld(team), {}
     for one in team.robots:
         places = [one.position, *(team.tasks[k].position for k in random.choice(len(team.tasks), 3, replace=False))]
-        found = [roads.path(body_of(one), a, b) for a, b in itertools.pairwise(places)]
+        found = [robot_paths.path(body_of(one), a, b) for a, b in itertools.pairwise(places)]
         paths = [path for path in found if isinstance(path, Path)]
         if len(paths) == len(found):
             corners = [point for path in paths for point in path.points[1:]]

@@ -11,7 +11,7 @@ from tests.simulation.scenes import mission, robot, states, until_idle
 
 from muster.motion.map_world import body_of
 from muster.motion.port import Waypoint
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")
@@ -151,7 +151,7 @@ def test_a_corner_that_was_cut_does_not_draw_a_robot_back_into_the_wall(start, g
     """Around the end of a wall at full speed; it took 500 s for the 2 m along the end."""
     pytest.importorskip("shapely")
     team = mission(robot(position=start, radius_m=0.3, speed_mps=2.0), map=ARENA)
-    way = Roads.of(team).path(body_of(team.robots[0]), start, goal).points[1:]
+    way = RobotPaths.of(team).path(body_of(team.robots[0]), start, goal).points[1:]
     world = KinematicWorld(team)
     world.ports["r"].send([Waypoint((*place, 0.0)) for place in way.tolist()])
     assert until_idle(world, 30.0).keys() == {"r"}

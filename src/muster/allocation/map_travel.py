@@ -16,7 +16,7 @@ from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
 from muster.motion.path import NoPath
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ class MapTravel:
 
     Parameters
     ----------
-    roads
+    robot_paths
         of the mission.
     bodies
         of each class of robots.
@@ -37,24 +37,26 @@ class MapTravel:
         (classes, p, 3) metres in the map frame: where places are left and entered; first the n tasks.
     """
 
-    roads: Roads
+    robot_paths: RobotPaths
     bodies: tuple[Body, ...]
     doings: Doings
     exits: Floats
     entries: Floats
 
     @classmethod
-    def of(cls, roads: Roads, robots: Sequence[Robot], doings: Doings, exits: Floats, entries: Floats) -> MapTravel:
-        return cls(roads, tuple(body_of(robots[i]) for i in doings.firsts), doings, exits, entries)
+    def of(
+        cls, robot_paths: RobotPaths, robots: Sequence[Robot], doings: Doings, exits: Floats, entries: Floats
+    ) -> MapTravel:
+        return cls(robot_paths, tuple(body_of(robots[i]) for i in doings.firsts), doings, exits, entries)
 
     @cached_property
     def costs(self) -> Floats:
         """(classes, n) metres along the way points of actions, else the typed costs; inf where there is no way."""
         costs = self.doings.costs.copy()
         for (k, j), doing in self.doings.moving.items():
-            costs[k, j] = sum(self.roads.leg_m(self.bodies[k], *leg) for leg in doing.legs)
+            costs[k, j] = sum(self.robot_paths.leg_m(self.bodies[k], *leg) for leg in doing.legs)
         for k, j in self._crossed:
-            if math.isinf(self.roads.leg_m(self.bodies[k], *self._across(k, j))):
+            if math.isinf(self.robot_paths.leg_m(self.bodies[k], *self._across(k, j))):
                 costs[k, j] = math.inf
         return costs
 
@@ -69,24 +71,24 @@ class MapTravel:
 
         There is none to a task whose own way points cannot all be passed.
         """
-        metres = self.roads.lengths(self.bodies[k], exits, self.entries[k], threads)
+        metres = self.robot_paths.lengths(self.bodies[k], exits, self.entries[k], threads)
         metres[:, np.flatnonzero(np.isinf(self.costs[k]))] = math.inf
         return metres
 
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
         k = int(self.doings.classes[i])
-        body, d = self.bodies[k], self.roads.world.dimensions
-        found = self.roads.path(body, self.exits[k, start, :d].tolist(), self.entries[k, end, :d].tolist())
+        body, d = self.bodies[k], self.robot_paths.world.dimensions
+        found = self.robot_paths.path(body, self.exits[k, start, :d].tolist(), self.entries[k, end, :d].tolist())
         if isinstance(found, NoPath):
             return f"{found.reason}: {found.detail}"
         doing = self.doings.moving.get((k, end))
         for leg in doing.legs if doing is not None else ():
-            found = self.roads.path(body, *leg)
+            found = self.robot_paths.path(body, *leg)
             if isinstance(found, NoPath):
                 return f"{found.reason} on the way of its action: {found.detail}"
         if (k, end) in self._crossed:
-            found = self.roads.path(body, *self._across(k, end))
+            found = self.robot_paths.path(body, *self._across(k, end))
             if isinstance(found, NoPath):
                 return f"{found.reason} on the way to its exit: {found.detail}"
         return "there is no way to it"
@@ -99,5 +101,5 @@ class MapTravel:
         return frozenset((int(k), int(j)) for k, j in np.argwhere(apart)) - self.doings.moving.keys()
 
     def _across(self, k: int, j: int) -> Leg:
-        d = self.roads.world.dimensions
+        d = self.robot_paths.world.dimensions
         return tuple(self.entries[k, j, :d].tolist()), tuple(self.exits[k, j, :d].tolist())

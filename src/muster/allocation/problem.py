@@ -27,7 +27,7 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
-    from muster.motion.robot_paths import Roads
+    from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -66,7 +66,7 @@ class Problem:
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
-    mapped: Roads | None = None  # over the mission's map, as far as they are known already
+    mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: str | Collection[str] = ()) -> Problem:
@@ -294,25 +294,25 @@ class Problem:
         return Doings.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
-    def roads(self) -> Roads:
+    def robot_paths(self) -> RobotPaths:
         """Over the mission's map."""
-        from muster.motion.robot_paths import Roads
+        from muster.motion.robot_paths import RobotPaths
 
-        return Roads.of(self.mission) if self.mapped is None else self.mapped
+        return RobotPaths.of(self.mission) if self.mapped is None else self.mapped
 
     @cached_property
     def _over_map(self) -> MapTravel:
         require_room(self.mission, self._exits.shape[1], "travel over a map")
-        return self.over(self.roads)
+        return self.over(self.robot_paths)
 
-    def over(self, roads: Roads) -> MapTravel:
-        """Travel between the places by roads, whatever the mission's rule."""
+    def over(self, robot_paths: RobotPaths) -> MapTravel:
+        """Travel between the places by paths over the map, whatever the mission's rule."""
         from muster.allocation.map_travel import MapTravel
 
         by_body = self.mission.travel_rule == "map"
         doings = self._doings if by_body else Doings.of(self.robots, self.tasks, by_body=True)
         exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
-        return MapTravel.of(roads, self.robots, doings, exits, entries)
+        return MapTravel.of(robot_paths, self.robots, doings, exits, entries)
 
     def why_no_way(self, i: int, j: int) -> str:
         """Why robot i cannot come to task j, which no way leads to, or along the way of its action."""

@@ -13,14 +13,14 @@ from muster.allocation.problem import Problem
 from muster.cli.auction_result import Agreement, by_kind
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster.negotiation.joining import node_of
 from muster.negotiation.keys import read_key
 from muster.negotiation.memory_file import kept_of
 from muster.negotiation.methods import Method
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.node import NodeStatus
-from muster.negotiation.one_robot import Staying, new_incarnation, take_part
+from muster.negotiation.node_factory import node_of
+from muster.negotiation.one_robot import StayLimits, new_incarnation, take_part
 from muster.negotiation.transport import Transport
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
@@ -38,12 +38,12 @@ def agree_with_others(
     quiet: bool,
     verbose: bool,
 ) -> Agreement:
-    """Be one robot until all that are there agree.
+    """Take part as one robot until all robots that take part agree.
 
     Raises
     ------
     ParameterError
-        if the options do not tell who it is, which key the team has, or where the others are.
+        if the options do not name the robot, the key of the team, or the addresses of the others.
     NetworkError
         as `one_robot.take_part`; or if the network cannot be used so.
     InputError
@@ -68,16 +68,16 @@ def agree_with_others(
 
     if forgot and node.negotiator.once:
         say(f"{len(node.negotiator.once)} tasks are for at most one robot: without --memory they may find none")
-    staying = Staying(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
+    limits = StayLimits(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
     with node:
         watch = _Watch(node.negotiator, say)
-        view, took_s = take_part(node, staying, watch)
+        view, took_s = take_part(node, limits, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
 
 
 class _Watch:
-    """Says who is there."""
+    """Prints which robots take part."""
 
     def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
         self._negotiator, self._say = negotiator, say
@@ -133,7 +133,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
 
 
 def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wait_s: float) -> Transport:
-    """A Zenoh session; where the robot only connects, it waits for somebody to be there."""
+    """A Zenoh session; a robot that only connects waits for another robot."""
     from muster.negotiation.zenoh_transport import ZenohTransport
 
     for option, text in (("--connect", connect), ("--listen", listen)):
@@ -151,7 +151,7 @@ def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wa
 
 
 def _peers(text: str, problem: Problem, robot: str) -> dict[str, tuple[str, int]]:
-    """By robot where it is; by address where the list names none, which works too, with more messages."""
+    """The addresses of the others by robot; by address where the list names no robots, which takes more messages."""
     peers = {}
     for item in _listed(text):
         name, equals, address = item.rpartition("=")

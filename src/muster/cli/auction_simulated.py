@@ -10,7 +10,7 @@ import click
 from muster.allocation.problem import Problem
 from muster.cli.auction_result import Agreement
 from muster.mission.errors import MusterError, ParameterError
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.methods import Method
 from muster.negotiation.robot_view import view_of
 
@@ -18,17 +18,17 @@ from muster.negotiation.robot_view import view_of
 def agree_in_memory(
     problem: Problem, terms: Any, method: Method, options: dict[str, Any], *, quiet: bool, verbose: bool
 ) -> Agreement:
-    """Let the robots agree in virtual time; the same seed and options give the same run.
+    """Run the auction in virtual time; the same seed and options give the same run.
 
     Raises
     ------
     ParameterError
         if more robots are to crash than may.
     MusterError
-        if those that live do not agree within the time limit, in virtual seconds.
+        if the robots that have not crashed do not agree within the time limit, in virtual seconds.
     """
     names = [robot.id for robot in problem.robots]
-    weather = Weather(
+    conditions = LinkConditions(
         loss=options["loss"] or 0.0,
         duplication=options["duplication"] or 0.0,
         delay_s=0.001 if options["delay"] is None else options["delay"],
@@ -38,7 +38,7 @@ def agree_in_memory(
     def make(robot: str, incarnation: int) -> Any:
         return method.negotiator(problem, terms, robot, incarnation=incarnation)
 
-    network = MemoryNetwork(make, names, options["network_seed"], weather)
+    network = MemoryNetwork(make, names, options["network_seed"], conditions)
     account = _Account(network, rounds=verbose, quiet=quiet)
     _plan_faults(network, account, names, options["crashes"] or 0, options["cut"] or 0.0, len(problem.tasks))
     network.start()
@@ -59,7 +59,7 @@ def agree_in_memory(
 
 
 class _Account:
-    """Tells what happens, as it happens."""
+    """Prints the events of the auction as they happen."""
 
     def __init__(self, network: MemoryNetwork, *, rounds: bool, quiet: bool) -> None:
         self._network, self._rounds, self._quiet = network, rounds, quiet
@@ -72,7 +72,7 @@ class _Account:
             click.echo(f"{self._network.now:9.3f} s  {what}", err=True)
 
     def look(self) -> None:
-        """Tell what is new: epochs entered and begun, rounds."""
+        """Print new epochs and rounds."""
         for robot, node in self._network.nodes.items():
             stage = node.stage
             where = stage.epoch, stage.base != b""
@@ -91,7 +91,9 @@ class _Account:
     def end(self) -> None:
         counts = self._network.counts
         nodes = self._network.nodes.values()
-        kinds = ", ".join(f"{sum(getattr(node.counts, k) for node in nodes)} {k}" for k in ("news", "repairs", "beats"))
+        kinds = ", ".join(
+            f"{sum(getattr(node.counts, k) for node in nodes)} {k}" for k in ("news", "repairs", "heartbeats")
+        )
         self.tell(
             f"all {len(self._network.nodes)} agree; {counts['sent']} messages ({kinds}), {counts['copies']} copies, "
             f"{counts['lost']} lost"
@@ -105,8 +107,8 @@ def _plan_faults(
     if crashes >= len(names):
         raise ParameterError(f"--crashes: {crashes}; expected less than the {len(names)} robots")
     random = Random(network.seed)
-    weather = network.weather
-    whole_s = (tasks + 2) * (weather.delay_s + weather.jitter_s) / (1 - weather.loss)
+    conditions = network.conditions
+    whole_s = (tasks + 2) * (conditions.delay_s + conditions.jitter_s) / (1 - conditions.loss)
 
     def fault(when_s: float, what: str, happen: Any) -> None:
         def strike() -> None:

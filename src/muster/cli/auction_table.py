@@ -24,7 +24,7 @@ _NAMES_SHOWN = 3
 
 @contextmanager
 def auction_table(problem: Problem, transport: str, *, wanted: bool) -> Iterator[Callable[[Team], None]]:
-    """A function that shows how far the team is; it does nothing where nothing is to be shown."""
+    """A function that shows the progress of the team; it does nothing without a terminal."""
     if not wanted or not sys.stderr.isatty():
         yield lambda team: None
         return
@@ -48,8 +48,8 @@ def auction_table(problem: Problem, transport: str, *, wanted: bool) -> Iterator
 
 
 def _note_sales(team: Team, sales: list[tuple[int, Sold]]) -> None:
-    """Keep the last rounds' winners, as far as robots told them."""
-    for news in team.news.values():
+    """Keep the last rounds' winners, as far as robots have reported them."""
+    for news in team.progress.values():
         status = news.status
         if status.last_sale is not None and (status.round, status.last_sale) not in sales:
             sales.append((status.round, status.last_sale))
@@ -80,11 +80,11 @@ def _picture(title: str, team: Team, sales: list[tuple[int, Sold]], room: int) -
 
 
 def _row(robot: str, team: Team) -> tuple[str, ...]:
-    if robot in team.gone:
-        return robot, "", "", "", "", "", team.gone[robot]
-    if robot not in team.news:
+    if robot in team.ended:
+        return robot, "", "", "", "", "", team.ended[robot]
+    if robot not in team.progress:
         return robot, "", "", "", "", "", "starts"
-    status = team.news[robot].status
+    status = team.progress[robot].status
     volume = sum(status.sent_bytes.values()) / 1000
     return (
         robot,

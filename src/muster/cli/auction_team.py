@@ -16,9 +16,9 @@ from muster.cli.tables import counted
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import Method
-from muster.negotiation.process_reports import Order
+from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.robot_view import View
-from muster.negotiation.team import Team, patience_here
+from muster.negotiation.team import Team, timeouts_for
 
 _LOOK_S = 0.05
 
@@ -26,32 +26,32 @@ _LOOK_S = 0.05
 def agree_here(
     problem: Problem, terms: Any, method: Method, transport: str, limit_s: float, *, quiet: bool, verbose: bool
 ) -> Agreement:
-    """Start a process for each robot, and wait until all that live agree.
+    """Start a process for each robot, and wait until all that have not crashed agree.
 
     Raises
     ------
     MusterError
         if they do not within the limit, or a robot cannot take part.
     """
-    order = Order(
+    setup = TeamSetup(
         problem=problem,
         terms=terms,
         key=new_key(),
         method=method.name,
         transport=transport,
-        patience=patience_here(len(problem.robots)),
+        timeouts=timeouts_for(len(problem.robots)),
     )
     until_s = time.monotonic() + limit_s
     told: set[str] = set()
-    with Team(order) as team, auction_table(problem, transport, wanted=not quiet) as show:
+    with Team(setup) as team, auction_table(problem, transport, wanted=not quiet) as show:
         views = None
         while views is None:
-            team.hear(_LOOK_S)
+            team.poll(_LOOK_S)
             show(team)
-            for robot in team.gone.keys() - told:
+            for robot in team.ended.keys() - told:
                 told.add(robot)
                 if not quiet:
-                    sys.stderr.write(f"{robot}: {team.gone[robot]}; the others go on\n")  # above the table
+                    sys.stderr.write(f"{robot}: {team.ended[robot]}; the others go on\n")  # above the table
             if time.monotonic() > until_s:
                 raise MusterError(f"no agreement within {limit_s:g} s: {_why_not(team)}")
             views = team.agreement()
@@ -65,10 +65,12 @@ def agree_here(
 def _why_not(team: Team) -> str:
     if team.began_s is None:
         return "not all processes had started"
-    unsettled = [robot for robot in team.living if robot not in team.news or not team.news[robot].status.settled]
+    unsettled = [
+        robot for robot in team.living if robot not in team.progress or not team.progress[robot].status.settled
+    ]
     if not unsettled:
         return "robots do not take the same ones for members"
-    status = team.news[unsettled[0]].status if unsettled[0] in team.news else None
+    status = team.progress[unsettled[0]].status if unsettled[0] in team.progress else None
     where = "" if status is None else f", the first in round {status.round} of epoch {status.epoch}"
     return f"{counted(len(unsettled), 'robot')} not done: {', '.join(unsettled[:5])}{where}"
 
@@ -76,7 +78,7 @@ def _why_not(team: Team) -> str:
 def _summary(team: Team, views: dict[str, View], took_s: float) -> str:
     sent, volume = Counter[str](), 0
     for robot in team.living:
-        status = team.news[robot].status
+        status = team.progress[robot].status
         sent.update(status.sent)
         volume += sum(status.sent_bytes.values())
     stage = next(iter(views.values())).stage

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE
 from muster.cli.options import (
     MissionFile,
@@ -15,7 +16,6 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.remote.server_option import server_option
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Mission
@@ -43,8 +43,9 @@ _NOT_MINIMAL = "some of them may already be too many: not without each of them a
     help="Seconds for finding out whether all tasks can be done in one plan.",
 )
 @quiet_option
-@server_option
+@server_option()
 def command(
+    backend: Backend,
     mission: MissionFile,
     ignore: tuple[str, ...],
     form: str,
@@ -57,18 +58,16 @@ def command(
 
     Where no plan can do all the others, name a smallest set of tasks of which one must be left out.
     """
-    from muster.planning.explaining import possible
-
     try:
         loaded = mission.load(verbose=verbose)
-        found = possible(loaded, ignored=ignore, time_limit=time_limit)
+        found = backend.check(loaded, ignore, time_limit)
     except (MissionError, NotSupportedError) as error:
-        return refused(form, error)
-    return checked(form, loaded, found, require_complete=require_complete)
+        return _refused(form, error)
+    return _checked(form, loaded, found, require_complete=require_complete)
 
 
-def refused(form: str, error: MissionError | NotSupportedError) -> int:
-    """Print what is wrong with a mission; the exit code."""
+def _refused(form: str, error: MissionError | NotSupportedError) -> int:
+    """Print what is wrong with a mission; returns the exit code."""
     from muster.planning.explaining import Possible
 
     if form == "json":
@@ -79,8 +78,8 @@ def refused(form: str, error: MissionError | NotSupportedError) -> int:
     return BAD_INPUT
 
 
-def checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
-    """Print what can be done of a mission that is right; the exit code."""
+def _checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
+    """Print which tasks can be done; returns the exit code."""
     lost, all_others = found.impossible, found.together
     if form == "json":
         click.echo(json_text({"errors": [], **found.as_dict()}), nl=False)

@@ -5,30 +5,18 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 from click.core import ParameterSource
 
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE
-from muster.cli.options import (
-    Finite,
-    MissionFile,
-    ignore_option,
-    load_plan,
-    mission_argument,
-    quiet_option,
-    require_admissible,
-)
+from muster.cli.options import Finite, MissionFile, ignore_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_folder, require_writable
-from muster.cli.remote.server_option import server_option
-from muster.exchange.export_request import FORMATS, Wishes
+from muster.exchange.export_request import FORMATS, Files, QgcOptions
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
-
-if TYPE_CHECKING:
-    from muster.verification import Verdict
 
 
 def _format(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -41,7 +29,14 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.command()
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
-@click.option("--to", "form", required=True, callback=_format, metavar="FORMAT", help=f"One of {', '.join(FORMATS)}.")
+@click.option(
+    "--to",
+    "form",
+    required=True,
+    callback=_format,
+    metavar="FORMAT",
+    help=f"One of {', '.join(FORMATS.shipped)}, or a format of an installed package.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="For qgc a folder.")
 @click.option(
     "--altitude",
@@ -70,19 +65,17 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 )
 @ignore_option
 @quiet_option
-@server_option
+@server_option()
 def command(
+    backend: Backend,
     mission: MissionFile,
     plan: Path,
     ignore: tuple[str, ...],
     form: str,
     output: Path | None,
-    altitude: float | None,
-    clearance: float,
-    tolerance: float,
-    firmware: str,
     quiet: bool,
     verbose: bool,
+    **options: Any,
 ) -> int:
     """Write a PLAN of a MISSION for other tools: ground stations, maps, spreadsheets.
 
@@ -98,17 +91,16 @@ def command(
         require_writable(None, (output,), mission.files, (plan,))
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    verdict = require_admissible(loaded, given, plan, ignore)
+    files = backend.export(loaded, given, form, ignore, QgcOptions(**options), str(plan))
     if form == "qgc":
         assert output is not None
-        wishes = Wishes(altitude, clearance, tolerance, firmware)
-        messages = _write_plan_files(loaded, verdict, output, (mission.name, plan), wishes)
-        for message in () if quiet else messages:
+        _write_plan_files(files, output, (mission.name, plan))
+        for message in () if quiet else files.messages:
             click.echo(message, err=True)
         return DONE
-    from muster.exchange.files import text_of
-
-    text = text_of(loaded, verdict, form)
+    if len(files.texts) != 1:
+        raise ParameterError(f"--to: {form} made {len(files.texts)} files; expected one")
+    (text,) = files.texts.values()
     if output is None:
         click.echo(text, nl=False)
     else:
@@ -117,29 +109,23 @@ def command(
 
 
 def _require_none_of_qgc(form: str) -> None:
-    """Refuse wishes of plan files for a format that does not know them."""
+    """Refuse options of plan files for another format."""
     context = click.get_current_context()
-    for field in fields(Wishes):
+    for field in fields(QgcOptions):
         if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
             raise ParameterError(f"--{field.name} given; expected it with --to qgc, not {form}")
 
 
-def _write_plan_files(
-    mission: Mission, verdict: Verdict, folder: Path, inputs: tuple[str | Path, ...], wishes: Wishes
-) -> tuple[str, ...]:
-    """Write a file for each robot that has tasks; returns what a person has to know before anything flies."""
-    from muster.exchange.files import plan_files
-
-    files = plan_files(mission, verdict, wishes)
+def _write_plan_files(files: Files, folder: Path, inputs: tuple[str | Path, ...]) -> None:
+    """Write a file for each robot that has tasks."""
     _require_free(folder, files.texts, inputs)
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    return files.messages
 
 
 def _require_free(folder: Path, files: Collection[str], inputs: tuple[str | Path, ...]) -> None:
-    """Refuse a folder in which something would be replaced that was read, or a plan of another mission be left."""
+    """Refuse a folder whose files were read, or that holds plan files of other robots."""
     read = {Path(name).resolve() for name in inputs}
     for name in files:
         if (folder / name).resolve() in read or folder.resolve() in read:

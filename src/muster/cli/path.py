@@ -1,4 +1,4 @@
-"""`muster path`: how one robot gets from one point to another over a mission's map."""
+"""`muster path`: a path for one robot from one point to another on a mission's map."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ def command(
     quiet: bool,
     verbose: bool,
 ) -> int:
-    """Find a way for one body over the map of a MISSION, from one point to another.
+    """Find a path for one robot on the map of a MISSION, from one point to another.
 
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
-    the reason, and no error. Without a map the way is straight.
+    the reason, and no error. Without a map the path is straight.
     """
     require_writable(None, (plot,), mission.files, ())
     require_drawable(plot)
@@ -89,13 +89,13 @@ def _found(
     import numpy as np
 
     from muster.motion.paths import planner_named
-    from muster.motion.robot_paths import Roads, with_heights
+    from muster.motion.robot_paths import RobotPaths, with_heights
 
     start, goal = ends
     if world is None:
         return Path(np.array(ends))
     if planner == "shortest":
-        return Roads(world).path(body, start, goal)
+        return RobotPaths(world).path(body, start, goal)
     found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
     return found if isinstance(found, NoPath) else with_heights(found, start, goal)
 
@@ -103,9 +103,9 @@ def _found(
 def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
     """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
     from muster.motion.curve import Curve
-    from muster.motion.robot_paths import Roads
+    from muster.motion.robot_paths import RobotPaths
 
-    curve = Curve.along(path) if world is None else Roads(world).curve(body, path)
+    curve = Curve.along(path) if world is None else RobotPaths(world).curve(body, path)
     return Path(curve.sample(_STEP_M)), curve.max_curvature
 
 

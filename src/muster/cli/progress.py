@@ -1,4 +1,4 @@
-"""The progress bar of a long run, on standard error and only on a terminal."""
+"""The progress bar of planning, on standard error and only on a terminal."""
 
 from __future__ import annotations
 
@@ -16,10 +16,8 @@ _QUIET_UNTIL_S = 0.5
 
 
 @contextmanager
-def progress_bar(
-    wanted: bool, mission: Mission, time_limit: float | None, iterations: int | None
-) -> Iterator[Callable[[Progress], None] | None]:
-    """A function that shows the progress it is called with; None where nothing is to be shown."""
+def progress_bar(wanted: bool, mission: Mission) -> Iterator[Callable[[Progress], None] | None]:
+    """A function that shows the progress it is called with; None without a terminal."""
     if not wanted or not sys.stderr.isatty():
         yield None
         return
@@ -41,12 +39,8 @@ def progress_bar(
         if progress.elapsed_s < _QUIET_UNTIL_S:
             return
         bar.start()
-        shares = [0.0]
-        if time_limit:
-            shares.append(progress.elapsed_s / time_limit)
-        if iterations:
-            shares.append(progress.iterations / iterations)
-        bar.update(line, completed=min(1.0, max(shares)), best=f"{progress.objective:.2f}", done=f"{progress.weight:g}")
+        share, best = progress.share or 0.0, f"{progress.objective:.2f}"
+        bar.update(line, completed=share, best=best, done=f"{progress.weight:g}")
 
     try:
         yield show

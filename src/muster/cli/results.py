@@ -1,4 +1,4 @@
-"""A plan as it leaves the command: judged, written, drawn, printed; and the book of an auction."""
+"""Output of a plan: file, pictures, table; and the book of an auction."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 
@@ -19,28 +18,16 @@ if TYPE_CHECKING:
 def show_plan(
     mission: Mission,
     plan: Plan,
-    ignored: tuple[str, ...],
-    objective: str | None,
+    verdict: Verdict,
     *,
     form: str,
     output: Path | None,
     plot: Path | None,
     gantt: Path | None,
 ) -> None:
-    """Judge a plan that was made for that objective, some rules ignored; then write and draw and print it.
-
-    Raises
-    ------
-    MusterError
-        if the judge rejects it.
-    """
+    """Write, draw and print a plan that was judged."""
     from muster.cli.plan_tables import print_plan
-    from muster.verification import verify
 
-    verdict = verify(mission, plan, ignored, objective)
-    if not verdict.valid:
-        details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:3])
-        raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
     if output is not None:
         plan.save(output)
     _draw(mission, plan, verdict, plot, gantt)
@@ -60,7 +47,7 @@ def _draw(mission: Mission, plan: Plan, verdict: Verdict, plot: Path | None, gan
 
 
 def write_book(plan: Plan, file: Path, quiet: bool) -> bool:
-    """Write every bid, which takes a while where there are many; whether all are written."""
+    """Write every bid; returns whether all are written. Many bids take a while."""
     if not quiet and sys.stderr.isatty():
         click.echo(f"writing {file} ...", err=True)
     try:

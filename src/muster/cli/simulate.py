@@ -1,4 +1,4 @@
-"""`muster simulate`: a plan carried out by moving robots, with what it cost beside what was planned."""
+"""`muster simulate`: carry a plan out in a simulated world; the report compares it with the plan."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options, terms_of, terms_options
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
-from muster.cli.interrupt import ctrl_c_halts
-from muster.cli.live_output import foxglove_option, shown_live, tell
+from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
     Finite,
     MissionFile,
@@ -26,23 +26,46 @@ from muster.cli.options import (
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
+from muster.cli.planning_options import ctrl_c_interrupts
 from muster.cli.record_output import drawing_options, kept_record, record_option
-from muster.cli.remote.server_option import server_option
 from muster.cli.report_tables import print_report
+from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text, read_plan
+from muster.planning.options import PlanningOptions
+from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster import Negotiation
-    from muster.report.camera_pictures import Looks
+    from muster.exchange.mission_control import World
+    from muster.report.camera_pictures import CameraPictures
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
 _OF_A_PLAN = ("plan", "ignore", "time_limit", "iterations")
 _OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
-_WORLDS = ("kinematic", "physics")
+_IN_THIS_PROCESS = (
+    *_OF_A_NEGOTIATION,
+    "negotiate",
+    "found",
+    "cameras",
+    "film",
+    "film_speed",
+    "still",
+    "foxglove",
+)
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+
+
+def _world(_: click.Context, __: click.Parameter, value: str) -> str:
+    from muster.running.worlds import WORLDS
+
+    if value not in WORLDS:
+        hint = did_you_mean(value, WORLDS)
+        raise click.BadParameter(f"{value!r} is not one of {', '.join(WORLDS)}{hint}", param_hint="'--world'")
+    return value
 
 
 @click.command()
@@ -50,7 +73,14 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
 @ignore_option
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
-@click.option("--world", type=click.Choice(_WORLDS), default="kinematic", show_default=True, help="Where.")
+@click.option(
+    "--world",
+    callback=_world,
+    default="kinematic",
+    show_default=True,
+    metavar="WORLD",
+    help="kinematic, physics, or a world of an installed package.",
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
 @click.option(
     "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."
@@ -64,7 +94,7 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
     "--speed",
     type=Finite(0.001, 1e6),
     metavar="X",
-    help="X times real time, telling events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
+    help="X times real time, printing events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
@@ -86,13 +116,14 @@ _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 @require_complete_option
 @format_option
 @quiet_option
-@server_option
+@server_option(*_IN_THIS_PROCESS)
 def command(
+    backend: Backend,
     mission: MissionFile,
     plan: Path | None,
     ignore: tuple[str, ...],
     negotiate: bool,
-    world: str,
+    world: World,
     seed: int,
     time_limit: float,
     iterations: int | None,
@@ -119,15 +150,13 @@ def command(
     verbose: bool,
     **others: Any,
 ) -> int:
-    """Carry out a plan of a MISSION with moving robots, in virtual time, and say what it took.
+    """Carry out a plan of a MISSION in a simulated world, in virtual time, and report its cost.
 
-    Robots keep their speeds and go around each other; the mission's events happen, and what is left is planned again.
+    Robots keep their speeds and avoid each other. The mission's events happen, and the tasks left are planned again.
 
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
-    each decides for itself what to do next. They talk in real time.
+    each decides for itself what to do next. They exchange messages in real time.
     """
-    from muster import simulate
-
     _check_together(negotiate)
     require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan,))
     require_drawable(plot, gantt, found)
@@ -137,28 +166,34 @@ def command(
     loaded = mission.load(verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
-    how: dict[str, Any] = {}
     if negotiate:
         planned, speed = _negotiation(method, transport, others, settings), speed or 1.0
+    elif plan is not None:
+        planned = read_plan(plan)
+        say_of_plan(planned, plan, loaded, ignore, quiet=quiet, verbose=verbose)
     else:
-        how["ignore"] = ignore
-        planned = _plan(loaded, plan, ignore, seed, time_limit, iterations)
-        if plan is not None:
-            say_of_plan(planned, plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    with kept_record(record, html, plot, gantt) as file:
-        how |= {
-            "seed": seed,
-            "world": world,
-            "dt_s": dt,
-            "avoidance": avoidance,
-            "noise": noise,
-            "speed": speed,
-            "on_look": looks,
-        }
-        footage = how["film"] = footage_of(loaded) if film is not None or still is not None else None
-        how["on_event"] = tell if speed is not None and not quiet else None
-        with shown_live(loaded, foxglove, quiet=quiet) as observers, ctrl_c_halts() as halt:
-            report = simulate(loaded, planned, record=file, observers=observers, halt=halt, **how)
+        limit = None if iterations is not None else time_limit
+        options = PlanningOptions(seed=seed, time_limit=limit, iterations=iterations, ignore=ignore)
+        planned = _plan(backend, Request.of(options, loaded), quiet=quiet)
+    footage = footage_of(loaded) if film is not None or still is not None else None
+    rules = {} if negotiate else {"ignore": ignore}
+    with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:
+        report, interrupted_s = backend.simulate(
+            loaded,
+            planned,
+            world=world,
+            seed=seed,
+            dt_s=dt,
+            avoidance=avoidance,
+            noise=noise,
+            speed=speed,
+            record=file,
+            on_line=print_event_line if speed is not None and not quiet else None,
+            observers=observers,
+            film=footage,
+            on_look=looks,
+            **rules,
+        )
     if found is not None and looks is not None:
         looks.plot(loaded, found)
     if form == "json":
@@ -167,14 +202,14 @@ def command(
         print_report(report.as_dict(), loaded, with_tasks=verbose)
     if footage is not None:
         draw_footage(footage, film, film_speed, still, quiet=quiet)
-    if halt.is_set():
-        click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission", err=True)
+    if interrupted_s is not None:
+        click.echo(f"interrupted at {interrupted_s:.1f} s of the mission", err=True)
         return INTERRUPTED
     return INCOMPLETE if require_complete and report.tasks_lost else DONE
 
 
 def _check_together(negotiate: bool) -> None:
-    """Options that mean something with --negotiate, or without it, alone."""
+    """Refuse options that go only with --negotiate, or only without it."""
     context = click.get_current_context()
     given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     wrong = given.intersection(_OF_A_PLAN if negotiate else _OF_A_NEGOTIATION)
@@ -183,11 +218,11 @@ def _check_together(negotiate: bool) -> None:
         raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
 
 
-def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> Looks | None:
-    """Who keeps what cameras see, where that is wanted."""
+def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> CameraPictures | None:
+    """What collects the pictures of cameras; None where no option asks for them."""
     if found is None and cameras is None:
         return None
-    from muster.report.camera_pictures import Looks
+    from muster.report.camera_pictures import CameraPictures
 
     option = "--found" if cameras is None else "--cameras"
     if not mission.tags:
@@ -197,7 +232,7 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     if cameras is not None and world != "physics":
         raise ParameterError(f"--cameras: no pictures in the {world} world; expected --world physics")
     require_folder(cameras, "--cameras")
-    return Looks(cameras)
+    return CameraPictures(cameras)
 
 
 def _negotiation(method: str, transport: str, others: Mapping[str, Any], settings: tuple[str, ...]) -> Negotiation:
@@ -208,24 +243,29 @@ def _negotiation(method: str, transport: str, others: Mapping[str, Any], setting
     return Negotiation(method=method, transport=transport, params=terms)
 
 
-def _plan(
-    mission: Mission,
-    file: Path | None,
-    ignore: tuple[str, ...],
-    seed: int,
-    time_limit: float,
-    iterations: int | None,
-) -> Plan:
-    from muster import solve
+def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
+    """A plan of the default allocator.
 
-    if file is not None:
-        return read_plan(file)
-    limit = None if iterations is not None else time_limit
-    return solve(mission, seed=seed, time_limit=limit, iterations=iterations, ignore=ignore)
+    Raises
+    ------
+    KeyboardInterrupt
+        if Ctrl-C ended planning: nothing is carried out then.
+    """
+    from muster.allocation.stop import Stop
+    from muster.cli.progress import progress_bar
+
+    interrupt = Stop()
+    with ctrl_c_interrupts(interrupt), progress_bar(not quiet, request.mission) as on_progress:
+        plan = backend.plan(request, on_progress, interrupt).plan
+    if interrupt.interrupted:
+        kept = f"plan {plan.id} is kept at the server; " if isinstance(plan, ServerPlan) else ""
+        click.echo(f"interrupted: {kept}nothing was started", err=True)
+        raise KeyboardInterrupt
+    return plan
 
 
 def noise_of(noises: tuple[str, ...]) -> Noise:
-    """What `--noise KIND=AMOUNT` gives."""
+    """The noise of `--noise KIND=AMOUNT`."""
     from muster.simulation import Noise
 
     kinds = [field.name for field in fields(Noise)]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, REJECTED
 from muster.cli.options import (
     MissionFile,
@@ -16,7 +17,6 @@ from muster.cli.options import (
     objective_option,
     quiet_option,
 )
-from muster.cli.remote.server_option import server_option
 from muster.mission.plan import json_text
 
 
@@ -27,8 +27,9 @@ from muster.mission.plan import json_text
 @ignore_option
 @format_option
 @quiet_option
-@server_option
+@server_option()
 def command(
+    backend: Backend,
     mission: MissionFile,
     plan: Path,
     objective: str | None,
@@ -43,11 +44,10 @@ def command(
     whatever the plan says of itself.
     """
     from muster.cli.plan_tables import print_verdict
-    from muster.verification import verify
 
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    verdict = verify(loaded, given, ignore, objective)
+    verdict = backend.verify(loaded, given, ignore, objective)
     if form == "json":
         click.echo(json_text(verdict.as_dict()), nl=False)
     else:

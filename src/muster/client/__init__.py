@@ -1,4 +1,4 @@
-"""A server of mission control seen from Python.
+"""A client of mission control.
 
 ```python
 from muster.client import Client
@@ -13,13 +13,18 @@ with Client("http://127.0.0.1:8117") as control:
 
 | part | what it does |
 |---|---|
-| `client` | the server, its missions, plans and records |
-| `handles` | a job and a run that can be followed |
+| `client` | the server: jobs and runs |
+| `resources` | its missions, plans and records |
+| `handles` | a job and a run under way |
+| `server_plan` | a plan with its number at the server |
+| `uploads` | a mission as it is sent, with the files that it names |
 | `connection` | requests, streams, and the server's errors as Muster's exceptions |
-| `reading` | answers as the words of `muster.exchange.mission_control` |
+| `reading` | answers as dataclasses |
+| `backend` | the work of the command's verbs, done by a server |
 """
 
 from muster.client.client import Client
 from muster.client.handles import RunningJob, RunningRun
+from muster.client.server_plan import ServerPlan
 
-__all__ = ["Client", "RunningJob", "RunningRun"]
+__all__ = ["Client", "RunningJob", "RunningRun", "ServerPlan"]

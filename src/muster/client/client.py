@@ -2,35 +2,23 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from datetime import datetime
+from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 from muster.client.connection import Connection
 from muster.client.handles import RunningJob, RunningRun
 from muster.client.reading import read
-from muster.exchange.mission_control import Action, Job, JobState, MissionEntry, PlanEntry, Run, World
-from muster.mission.errors import NetworkError
+from muster.client.resources import Missions, MissionText, Plans, Records, number_of, path_part
+from muster.client.server_plan import ServerPlan
+from muster.exchange.mission_control import Action, Job, JobState, Run, World
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.planning.options import options_from
 
 API = 1
 """What this client speaks."""
 _TIMEOUT_S = 150.0  # explanations may take two minutes
-
-
-@dataclass(frozen=True, kw_only=True)
-class MissionText:
-    """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
-
-    mission: str
-    version: int
-    text: str
-    author: str
-    at: datetime | None
-    note: str
-    files: Mapping[str, int]
 
 
 class Client:
@@ -94,24 +82,57 @@ class Client:
         found: list[dict[str, Any]] = self._connection.get("/allocators")
         return found
 
-    def plan(self, mission: str | MissionText, **how: Any) -> RunningJob:
+    def plan(
+        self,
+        mission: Mission | MissionText | str | Path,
+        *,
+        start: int | Plan | None = None,
+        fixed: int | Plan | None = None,
+        **options: Any,
+    ) -> RunningJob:
         """Have a mission planned.
 
         Parameters
         ----------
         mission
-            its id (its newest version is planned), or one version of it.
-        how
-            `allocator`, `objective`, `time_limit` (s), `iterations`, `seed`, `ignore`, `bound`, `start` (the id of a
-            plan), `parameters` (of the allocator, by name).
+            a mission, or a mission file, which is sent with the files that it names; the id of a mission of the server,
+            of which the newest version is planned; or one version of it.
+        start, fixed
+            plans, or the numbers of plans of the server: a plan to go on from, and a plan whose routes stay as the
+            beginnings of the new ones.
+        options
+            as `muster.planning.options.PlanningOptions` has them: `allocator`, `parameters`, `objective`, `time_limit`,
+            `iterations`, `seed`, `ignore`, `bound`, `rewire`.
+
+        Raises
+        ------
+        ParameterError
+            for an unknown option or a value out of range, before anything is sent.
         """
-        if isinstance(mission, MissionText):
-            how |= {"version": mission.version or None}
-            mission = mission.mission
-        given = {name: value for name, value in how.items() if value is not None}
-        return RunningJob(
-            self._connection, read(Job, self._connection.post_once(f"/missions/{_in(mission)}/plans", given))
-        )
+        plain = {name: value for name, value in options.items() if value is not None}
+        if not isinstance(options_from(plain).allocator, str):
+            raise ParameterError("allocator: a function; expected the name of an allocator of the server")
+        there = self._mission(mission)
+        address = there.mission if isinstance(there, MissionText) else there
+        if isinstance(there, MissionText) and there.version:
+            plain["version"] = there.version
+        for name, plan in (("start", start), ("fixed", fixed)):
+            if plan is not None:
+                plain[name] = plan if isinstance(plan, int) else self._number(address, plan)
+        job = self._connection.post_once(f"/missions/{path_part(address)}/plans", plain)
+        return RunningJob(self._connection, read(Job, job))
+
+    def _mission(self, mission: Mission | MissionText | str | Path) -> MissionText | str:
+        """A mission as the server has it: sent where it is a mission or a file."""
+        if isinstance(mission, str | Path) and (isinstance(mission, Path) or Path(mission).is_file()):
+            from muster.planning.loading import load
+
+            mission = load(mission)
+        return self.missions.keep(mission) if isinstance(mission, Mission) else mission
+
+    def _number(self, mission: str, plan: Plan) -> int:
+        """The number of a plan at the server: sent where the server does not have it."""
+        return plan.id if isinstance(plan, ServerPlan) else self.plans.upload(mission, plan).id
 
     def job(self, job: int) -> RunningJob:
         """A job that was asked for before."""
@@ -123,21 +144,20 @@ class Client:
         return [read(Job, job) for job in found]
 
     def start(
-        self, plan: int | PlanEntry, *, world: World = "kinematic", speed: float | None = 1.0, **settings: Any
+        self, plan: int | ServerPlan, *, world: World = "kinematic", speed: float | None = 1.0, **settings: Any
     ) -> RunningRun:
-        """Have a plan carried out.
+        """Have a plan of the server carried out.
 
         Parameters
         ----------
         plan
-            or its id.
+            or its number.
         speed
-            times real time; None: as fast as it goes.
+            times real time; None: as fast as possible.
         settings
             `seed`, `dt_s`, `avoidance`, `noise`; of a bridge what it needs.
         """
-        number = plan.id if isinstance(plan, PlanEntry) else plan
-        body = {"plan": number, "world": world, "speed": speed, "settings": settings}
+        body = {"plan": number_of(plan), "world": world, "speed": speed, "settings": settings}
         return RunningRun(self._connection, read(Run, self._connection.post_once("/runs", body)))
 
     def run(self, run: int) -> RunningRun:
@@ -151,131 +171,3 @@ class Client:
     def actions(self, run: int | None = None) -> list[Action]:
         """Who commanded what; newest first."""
         return [read(Action, action) for action in self._connection.get("/actions", run=run)]
-
-
-class Missions:
-    """The missions of a server. Files are those that a mission names, by their names."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-
-    def list(self) -> Sequence[MissionEntry]:
-        """Those that ship with Muster, and those made there."""
-        return [read(MissionEntry, entry) for entry in self._connection.get("/missions")]
-
-    def get(self, mission: str, version: int | None = None) -> MissionText:
-        """The newest version, or another."""
-        return read(MissionText, self._connection.get(f"/missions/{_in(mission)}", version=version))
-
-    def file(self, mission: str, name: str) -> bytes:
-        """A file that it names."""
-        return self._connection.file(f"/missions/{_in(mission)}/files/{_in(name)}")[1]
-
-    def create(self, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None) -> MissionText:
-        """Have a mission (YAML) kept."""
-        body = {"text": text, "files": _packed(files or {})} | ({} if name is None else {"name": name})
-        return read(MissionText, self._connection.post("/missions", body))
-
-    def save(
-        self, mission: str, text: str, base_version: int, files: Mapping[str, bytes] | None = None, note: str = ""
-    ) -> MissionText:
-        """Have a new version kept, made from `base_version`; without `files` they stay.
-
-        Raises
-        ------
-        ConflictError
-            if another has saved one since.
-        """
-        body = {"text": text, "base_version": base_version, "note": note}
-        body |= {} if files is None else {"files": _packed(files)}
-        return read(MissionText, self._connection.put(f"/missions/{_in(mission)}", body))
-
-    def check(
-        self,
-        text: str,
-        files: Mapping[str, bytes] | None = None,
-        *,
-        ignore: Sequence[str] = (),
-        time_limit: float | None = None,
-    ) -> dict[str, Any]:
-        """What is wrong with a mission, and which tasks can never be done; nothing is kept.
-
-        With a `time_limit`, in seconds, also whether one plan can do all of them.
-        """
-        asked = {"text": text, "files": _packed(files or {}), "ignore": list(ignore), "time_limit": time_limit}
-        found: dict[str, Any] = self._connection.post("/missions/check", asked)
-        return found
-
-    def delete(self, mission: str) -> None:
-        """List it no more."""
-        self._connection.delete(f"/missions/{_in(mission)}")
-
-
-class Plans:
-    """The plans of a server."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-
-    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> Sequence[PlanEntry]:
-        """Without their routes; of one mission, or of all; newest first, with ids below `before`, if given."""
-        found = self._connection.get("/plans", mission=mission, limit=limit, before=before)
-        return [read(PlanEntry, entry) for entry in found]
-
-    def get(self, plan: int) -> PlanEntry:
-        return read(PlanEntry, self._connection.get(f"/plans/{plan}"))
-
-    def upload(self, mission: str, plan: Mapping[str, Any]) -> PlanEntry:
-        """Have a plan kept: what a plan file holds."""
-        return read(PlanEntry, self._connection.post(f"/missions/{_in(mission)}/plans/upload", plan))
-
-    def verdict(self, plan: int, ignore: Sequence[str] | None = None, objective: str | None = None) -> dict[str, Any]:
-        """What the judge says, some rules ignored; by default those without which the server made the plan."""
-        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/verdict", ignore=ignore, objective=objective)
-        return found
-
-    def explain(self, plan: int, task: str | None = None, ignore: Sequence[str] | None = None) -> dict[str, Any]:
-        """Why tasks are left out; of one task, why this robot does it. `ignore` is as for `verdict`."""
-        found: dict[str, Any] = self._connection.get(f"/plans/{plan}/explain", task=task, ignore=ignore)
-        return found
-
-    def export(self, plan: int, to: str, ignore: Sequence[str] | None = None, **options: Any) -> tuple[str, bytes]:
-        """The name and the bytes of a file for other tools; of qgc with several robots a ZIP."""
-        return self._connection.file(f"/plans/{plan}/export", to=to, ignore=ignore, **options)
-
-    def picture(self, plan: int, what: str = "routes", form: str = "svg") -> bytes:
-        """Routes on the map, or the time chart (`gantt`); png or svg."""
-        return self._connection.file(f"/plans/{plan}/picture", what=what, format=form)[1]
-
-
-class Records:
-    """What happened in the runs of a server that are over."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-
-    def list(self) -> Sequence[Run]:
-        """Newest first."""
-        return [read(Run, run) for run in self._connection.get("/records")]
-
-    def page(self, run: int) -> str:
-        """A page to look at in a browser, offline."""
-        return self._connection.file(f"/records/{run}/page.html")[1].decode()
-
-    def mcap(self, run: int) -> bytes:
-        """The record, for `muster replay`."""
-        return self._connection.file(f"/records/{run}/record.mcap")[1]
-
-    def flown(self, run: int) -> dict[str, Any]:
-        """What was flown beside what was planned."""
-        found: dict[str, Any] = self._connection.get(f"/records/{run}/flown")
-        return found
-
-
-def _in(part: str) -> str:
-    """A part of a path."""
-    return quote(part, safe="/")
-
-
-def _packed(files: Mapping[str, bytes]) -> dict[str, str]:
-    return {name: b64encode(data).decode("ascii") for name, data in files.items()}

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.client.connection import Connection
 from muster.client.reading import read
-from muster.exchange.mission_control import JOB_OVER, OVER, Action, Entry, Job, PlanEntry, Run
+from muster.client.server_plan import ServerPlan
+from muster.exchange.mission_control import JOB_OVER, OVER, Action, Entry, Job, Run
 from muster.mission.errors import MusterError
+
+if TYPE_CHECKING:
+    from muster.execution import Report
 
 _FIRST_LOOK_S, _LONGEST_LOOK_S = 0.02, 0.5
 _AT_ONCE = 1000
@@ -36,13 +40,19 @@ class RunningJob:
         self.seen = read(Job, self._connection.get(f"/jobs/{self.id}"))
         return self.seen
 
-    def wait(self, on_progress: Callable[[Mapping[str, Any]], None] | None = None) -> PlanEntry:
+    def wait(
+        self,
+        on_progress: Callable[[Mapping[str, Any]], None] | None = None,
+        on_look: Callable[[], None] | None = None,
+    ) -> ServerPlan:
         """The plan, when it is made.
 
         Parameters
         ----------
         on_progress
             is called with the job's progress whenever there is a newer one.
+        on_look
+            is called before each look at the job, at least twice a second; it may stop or cancel the job.
 
         Raises
         ------
@@ -51,6 +61,8 @@ class RunningJob:
         """
         shown, pause_s = None, _FIRST_LOOK_S
         while not self.over:
+            if on_look is not None:
+                on_look()
             time.sleep(pause_s)
             pause_s = min(1.5 * pause_s, _LONGEST_LOOK_S)
             progress = self.look().progress
@@ -59,7 +71,7 @@ class RunningJob:
                 shown = progress
         if self.seen.state != "done" or self.seen.result is None:
             raise MusterError(self.seen.error or f"job {self.id} was {self.seen.state}")
-        return read(PlanEntry, self._connection.get(f"/plans/{self.seen.result['plan']}"))
+        return ServerPlan.of(self._connection.get(f"/plans/{self.seen.result['plan']}"))
 
     def stream(self) -> Iterator[Job]:
         """Each change, until it is over."""
@@ -133,13 +145,20 @@ class RunningRun:
     def cancel(self) -> Action:
         return self.act("cancel")
 
-    def report(self) -> dict[str, Any]:
-        """What it took; as `muster simulate --format json` prints it.
+    def report(self) -> Report:
+        """What it took; its `as_dict()` is what `muster simulate --format json` prints.
 
         Raises
         ------
         ConflictError
             as long as it goes on.
         """
-        found: dict[str, Any] = self._connection.get(f"/runs/{self.id}/report")
-        return found
+        return report_from(self._connection.get(f"/runs/{self.id}/report"))
+
+
+def report_from(data: Mapping[str, Any]) -> Report:
+    """The report of a run in plain data."""
+    from muster.execution import Report
+
+    lost = [(item["task"], item["reason"]) for item in data["tasks_lost"]]
+    return read(Report, {**data, "tasks_lost": lost})

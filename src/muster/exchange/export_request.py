@@ -1,15 +1,30 @@
-"""What can be asked for of a plan as files of other tools: as data, for faces that do not load what makes them."""
+"""The formats of exported plans, their options, and the files that come out: data, without what makes the files."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypedDict
 
-FORMATS = ("qgc", "geojson", "gpx", "kml", "csv")
+from muster.mission.errors import ParameterError
+from muster.mission.plugins import Registry
+
+if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.verification import Verdict
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """What can be asked for of QGroundControl's plan files.
+class Files:
+    """Texts by the names of their files, and what a person has to know of them."""
+
+    texts: Mapping[str, str]
+    messages: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class QgcOptions:
+    """The options of QGroundControl's plan files.
 
     Parameters
     ----------
@@ -27,3 +42,37 @@ class Wishes:
     clearance: float = 0.0
     tolerance: float = 0.1
     firmware: str = "px4"
+
+
+class QgcKeywords(TypedDict, total=False):
+    """The options of `QgcOptions`, for type checkers."""
+
+    altitude: float | None
+    clearance: float
+    tolerance: float
+    firmware: str
+
+
+Exporter = Callable[["Mission", "Verdict"], "str | Files"]
+"""Writes an admissible plan as the text of one file, or as several files."""
+
+
+def _checked(name: str, found: object) -> Exporter:
+    if not callable(found):
+        raise ParameterError(f"it is a {type(found).__name__}; expected a function of a mission and a verdict")
+    return found
+
+
+FORMATS: Registry[Exporter] = Registry(
+    "format",
+    "muster.formats",
+    {
+        "qgc": "muster.exchange.files:plan_files",
+        "geojson": "muster.exchange.files:geojson_file",
+        "gpx": "muster.exchange.files:gpx_file",
+        "kml": "muster.exchange.files:kml_file",
+        "csv": "muster.exchange.files:csv_file",
+    },
+    _checked,
+)
+"""By name, those of installed packages included."""

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from functools import partial
 
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import Wishes
+from muster.exchange.export_request import FORMATS, Files, QgcOptions
 from muster.exchange.fence import Fence
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import Survey, survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, itineraries
@@ -23,34 +22,57 @@ from muster.exchange.thinning import thinned
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
 
 
-@dataclass(frozen=True)
-class Files:
-    """Texts by the names of their files, and what a person has to know of them."""
+def exported(mission: Mission, verdict: Verdict, form: str, options: QgcOptions) -> Files:
+    """An admissible plan as files of a format: of qgc a file for each robot, of the others that ship one file.
 
-    texts: Mapping[str, str]
-    messages: tuple[str, ...]
-
-
-def text_of(mission: Mission, verdict: Verdict, form: str) -> str:
-    """An admissible plan as one file: geojson, gpx, kml or csv.
+    Parameters
+    ----------
+    options
+        for qgc alone.
 
     Raises
     ------
     MissionError
         if the format needs a place on Earth and the mission has none.
+    ParameterError
+        if there is no such format, or drones have no height to fly at.
     """
-    if form == "csv":
-        return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
+    if form == "qgc":
+        return plan_files(mission, verdict, options)
+    made = FORMATS.named(form)(mission, verdict)
+    return made if isinstance(made, Files) else Files({f"plan.{form}": made})
+
+
+def csv_file(mission: Mission, verdict: Verdict) -> str:
+    """The stops as a table; with places on Earth where the mission has its own."""
+    return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
+
+
+def geojson_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as GeoJSON."""
+    return geojson_text(_surveyed(mission, verdict, "geojson"))
+
+
+def gpx_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as GPX."""
+    return gpx_text(_surveyed(mission, verdict, "gpx"))
+
+
+def kml_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as KML."""
+    return kml_text(_surveyed(mission, verdict, "kml"))
+
+
+def _surveyed(mission: Mission, verdict: Verdict, form: str) -> Survey:
     earth = Earth.of(mission, f"--to {form}")
-    writer = {"geojson": geojson_text, "gpx": gpx_text, "kml": kml_text}[form]
-    return writer(survey(mission, verdict, itineraries(mission, verdict), earth))
+    return survey(mission, verdict, itineraries(mission, verdict), earth)
 
 
-def plan_files(mission: Mission, verdict: Verdict, wishes: Wishes) -> Files:
+def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = None) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 
     Raises
@@ -60,31 +82,32 @@ def plan_files(mission: Mission, verdict: Verdict, wishes: Wishes) -> Files:
     ParameterError
         if drones have no height to fly at.
     """
+    options = options or QgcOptions()
     earth = Earth.of(mission, "--to qgc")
-    roads = Roads.of(mission) if mission.travel_rule == "map" else None
-    whole = itineraries(mission, verdict, roads)
-    _require_heights(mission, whole, wishes.altitude)
-    team = [_as_wished(itinerary, roads, wishes) for itinerary in whole]
+    robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+    whole = itineraries(mission, verdict, robot_paths)
+    _require_heights(mission, whole, options.altitude)
+    team = [_adapted(itinerary, robot_paths, options) for itinerary in whole]
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
     files = dict(zip(_file_names([i.robot.id for i in busy]), busy, strict=True))
-    plans = PlanFiles(mission, earth, team, wishes.firmware)
+    plans = PlanFiles(mission, earth, team, options.firmware)
     texts = {name: json.dumps(plans.plan(i), indent=4, sort_keys=True) + "\n" for name, i in files.items()}
     messages = [f"{i.robot.id}: no tasks, no file" for i in team if i not in busy]
     messages += [message for i in busy for message in _notes(plans, i)]
     if mission.map is not None and mission.map.boundary is None:
         messages.append("warning: the map is an image; expected a boundary for a fence, the files have none")
-    messages += [f"warning: {meeting}" for meeting in meetings(team, wishes.clearance)]
+    messages += [f"warning: {meeting}" for meeting in meetings(team, options.clearance)]
     return Files(texts, tuple(messages))
 
 
-def _as_wished(itinerary: Itinerary, roads: Roads | None, wishes: Wishes) -> Itinerary:
+def _adapted(itinerary: Itinerary, robot_paths: RobotPaths | None, options: QgcOptions) -> Itinerary:
     """With fewer bends around corners, and a drone no lower than it may fly."""
-    if roads is not None and wishes.tolerance:
-        clear = partial(roads.clear, body_of(itinerary.robot))
-        itinerary = thinned(itinerary, wishes.tolerance, clear)
-    if wishes.altitude is None or itinerary.robot.kind == "ground":
+    if robot_paths is not None and options.tolerance:
+        clear = partial(robot_paths.clear, body_of(itinerary.robot))
+        itinerary = thinned(itinerary, options.tolerance, clear)
+    if options.altitude is None or itinerary.robot.kind == "ground":
         return itinerary
-    return itinerary.at_least(wishes.altitude)
+    return itinerary.at_least(options.altitude)
 
 
 def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:

@@ -13,7 +13,7 @@ from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
 from muster.motion.port import Place
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.verification import RouteFigures, Verdict, Visit
 
 
@@ -68,14 +68,14 @@ class Itinerary:
         return replace(self, passages=(self.start, *raised, *(self.passages[-1:] if self.has_end else ())))
 
 
-def itineraries(mission: Mission, verdict: Verdict, roads: Roads | None = None) -> tuple[Itinerary, ...]:
+def itineraries(mission: Mission, verdict: Verdict, robot_paths: RobotPaths | None = None) -> tuple[Itinerary, ...]:
     """The itinerary of every robot, in mission order; a robot without tasks stays at its start.
 
     Parameters
     ----------
     verdict
         of a plan that is admissible.
-    roads
+    robot_paths
         over the mission's map, if they are known.
 
     Raises
@@ -83,9 +83,9 @@ def itineraries(mission: Mission, verdict: Verdict, roads: Roads | None = None) 
     PlanError
         if there is no way over the map where the plan has a leg.
     MissionError, MissingExtraError
-        for travel over a map, as `Roads.of`.
+        for travel over a map, as `RobotPaths.of`.
     """
-    way = way_of(mission, roads)
+    way = way_of(mission, robot_paths)
     tasks = {task.id: task for task in mission.tasks}
     pairs = zip(mission.robots, verdict.routes, strict=True)
     return tuple(_itinerary(mission, robot, figures, tasks, way) for robot, figures in pairs)

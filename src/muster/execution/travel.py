@@ -16,7 +16,7 @@ from muster.mission.model import Mission, Robot, TravelTable
 from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
 from muster.motion.port import Place
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 
 
 @dataclass(frozen=True)
@@ -58,30 +58,30 @@ class Travel(Protocol):
         ...
 
 
-def travel_of(mission: Mission, roads: Roads | None = None) -> Travel:
-    """Travel by the mission's rule; `roads` over its map, if they are known.
+def travel_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Travel:
+    """Travel by the mission's rule; `robot_paths` over its map, where they are known.
 
     Raises
     ------
     MissionError, MissingExtraError
-        as `Roads.of`.
+        as `RobotPaths.of`.
     """
     if mission.travel_rule == "map":
-        return OverMap(Roads.of(mission) if roads is None else roads)
+        return OverMap(RobotPaths.of(mission) if robot_paths is None else robot_paths)
     return ByTable(mission.travel_tables) if mission.travel_rule == "matrix" else Straight()
 
 
-def way_of(mission: Mission, roads: Roads | None = None) -> Way:
-    """The ways that robots go: the shortest over the mission's map, which `roads` may hold already, or straight.
+def way_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Way:
+    """The ways that robots go: the shortest over the mission's map, which `robot_paths` may hold already, or straight.
 
     Raises
     ------
     MissionError, MissingExtraError
-        as `Roads.of`.
+        as `RobotPaths.of`.
     """
     if mission.travel_rule != "map":
         return straight
-    over = Roads.of(mission) if roads is None else roads
+    over = RobotPaths.of(mission) if robot_paths is None else robot_paths
 
     def shortest(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
         d = mission.dimensions
@@ -105,13 +105,13 @@ class Straight:
 class OverMap:
     """Shortest paths over a map. A robot that stands where it cannot goes by way of its refuge."""
 
-    roads: Roads
+    robot_paths: RobotPaths
 
     def knows(self, name: str) -> bool:
         return True
 
     def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
-        over = problem.over(self.roads)
+        over = problem.over(self.robot_paths)
         found = over.measured(1)
         here = {problem.task_index[name]: spot for name, spot in past.items()}
         here |= {problem.start(i): robots[robot.id] for i, robot in enumerate(problem.robots)}

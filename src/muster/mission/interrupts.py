@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
@@ -20,6 +21,20 @@ def on_ctrl_c(do: Callable[[], None], signals: Iterable[signal.Signals] = CTRL_C
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def ctrl_c_halts(signals: Iterable[signal.Signals] = CTRL_C) -> Iterator[threading.Event]:
+    """The event that the first Ctrl-C sets, or another of these signals; the second raises KeyboardInterrupt."""
+    halt = threading.Event()
+
+    def interrupt() -> None:
+        if halt.is_set():
+            raise KeyboardInterrupt
+        halt.set()
+
+    with on_ctrl_c(interrupt, signals):
+        yield halt
 
 
 @contextmanager

@@ -14,7 +14,6 @@ from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.html_tables import html_line, html_table
-from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 __all__ = [
-    "IGNORABLE",
     "OBJECTIVES",
     "SCHEMA",
     "Action",

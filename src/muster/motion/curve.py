@@ -74,7 +74,7 @@ class Curve:
         return self.curvature_at(*self.parameters(s))
 
     def sample(self, step_m: float) -> Floats:
-        """(k, d): the ends of all segments and, evenly between them, places at most `step_m` of way apart."""
+        """(k, d): the ends of all segments and, evenly between them, points at most `step_m` of arc length apart."""
         which, parts = self.even_parameters(step_m)
         return self.points_at(which, parts)
 
@@ -109,7 +109,7 @@ class Curve:
         return speed / np.where(length > 0, length, 1.0)
 
     def curvature_at(self, which: npt.NDArray[np.intp], parts: Floats) -> Floats:
-        """As `curvature`, at parameters of segments."""
+        """Like `curvature`, at parameters of segments."""
         first, second = self._velocity(which, parts), self._second(which, parts)
         speed = np.linalg.norm(first, axis=1)
         safe = np.where(speed > 0, speed, 1.0) ** 3
@@ -120,7 +120,7 @@ class Curve:
         return np.where((speed > 0) & ~self.straight[which], bend / safe, 0.0)
 
     def turning_at(self, which: npt.NDArray[np.intp], parts: Floats) -> Floats:
-        """(n,) rad/m: how fast the heading over ground turns along the way, positive to the left."""
+        """(n,) rad/m: the rate at which the heading over ground turns along the path, positive to the left."""
         first, second = self._velocity(which, parts), self._second(which, parts)
         over_ground = np.sum(first[:, :2] ** 2, axis=1) * np.linalg.norm(first, axis=1)
         bend = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
@@ -140,7 +140,7 @@ class Curve:
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
     def _way(self, which: npt.NDArray[np.intp], start: Floats, end: Floats) -> Floats:
-        """Arc length between two parameters of one segment, by Gauss's quadrature."""
+        """The arc length between two parameters of one segment, by Gauss's quadrature."""
         half = (end - start) / 2
         at = (start + end)[:, None] / 2 + half[:, None] * _NODES
         many = np.repeat(which, len(_NODES))

@@ -1,8 +1,8 @@
-"""Frames: where a thing is, seen from another ([tcf-thesis] (4.1)-(4.4) and (5.1)-(5.6); axes by REP-103).
+"""Frames: transforms between reference frames ([tcf-thesis] (4.1)-(4.4) and (5.1)-(5.6); axes by REP-103).
 
 A transform is a (4, 4) matrix, or a stack (..., 4, 4); the transform *from a to b* is b's pose in a, and takes points
-of b to points of a. In the plane it is (3, 3). Transforms follow on each other by `@`. A quaternion is (x, y, z, w) of
-length 1, as in ROS. Angles are radians, anticlockwise; the map frame is ENU, a body's frame FLU (forward, left, up).
+of b to points of a. In the plane it is (3, 3). Transforms are chained by `@`. A quaternion is (x, y, z, w) of length 1,
+as in ROS. Angles are radians, anticlockwise; the map frame is ENU, a body's frame FLU (forward, left, up).
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def pose_of(matrix: Floats) -> Floats:
 
 
 def inverse(matrix: Floats) -> Floats:
-    """The transform the other way round, in the plane and in space."""
+    """The inverse transform, in the plane and in space."""
     size = matrix.shape[-1] - 1
     back = np.swapaxes(matrix[..., :size, :size], -1, -2)
     return transform(-(back @ matrix[..., :size, size, None])[..., 0], back)

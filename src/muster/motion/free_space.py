@@ -1,4 +1,4 @@
-"""Where the centre of a body may be: what a map leaves free for a robot of some radius and kind."""
+"""Where the centre of a body may be: the free space of a map for a robot's radius and kind."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The port of a robot: the one way to reach it, be it simulated or real, whatever carries the plan out."""
+"""The port of a robot: the one interface to a robot, simulated or real."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Waypoint:
-    """Where a robot goes, and what it does there.
+    """A place that a robot goes to, and what it does there.
 
     Parameters
     ----------
     position
-        where it goes, straight from where it is or from the way point before.
+        the place, reached straight from the robot's position or from the way point before.
     heading
-        radians from east, anticlockwise, to which it turns there; None: as it arrives.
+        radians from east, anticlockwise, to which it turns there; None: it keeps the heading with which it arrives.
     hold_s
         seconds for which it stays.
     label
-        given back by telemetry when it is passed; the sender's own affair.
+        returned by telemetry when the way point is passed; it has a meaning for the sender only.
     """
 
     position: Place
@@ -34,17 +34,17 @@ class Waypoint:
 
 @dataclass(frozen=True)
 class Inertial:
-    """What a robot's inertial unit felt since the last report, as its autopilot gives it: levelled, gravity taken off.
+    """Measurements of a robot's inertial unit since the last report: levelled, and without gravity.
 
     Parameters
     ----------
     seconds
-        for how long: what follows are means.
+        the duration over which the other values are means.
     acceleration_mps2
-        ahead, to the left, up: by how much the velocity of this time differs from that of as long a time before, a
-        second.
+        ahead, to the left, up: the difference between the mean velocity of this duration and that of the same duration
+        before, per second.
     turning_radps
-        how fast the heading grows.
+        the rate of change of the heading.
     """
 
     seconds: float
@@ -54,24 +54,24 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Telemetry:
-    """What a robot last said of itself.
+    """What a robot last reported of itself.
 
     Parameters
     ----------
     time_s
-        when, in seconds of the mission's clock.
+        the time of the report, in seconds of the mission's clock.
     position, heading, velocity
-        map frame: metres, radians, m/s, as its odometry has them.
+        map frame: metres, radians, m/s, by its odometry.
     odometry_m
         metres travelled since the beginning of the mission.
     order, passed
-        the number of the last `send` that it took, and how many of its way points it has passed, holds included.
+        the number of the last `send` that it accepted, and how many of its way points it has passed, holds included.
     inertial
         of its inertial unit; None where it has none, or has not moved yet.
     charge
-        share of its work capacity that its battery leaves, 0 to 1; None where it says nothing of it.
+        the share of its work capacity that its battery has left, 0 to 1; None where it does not report that.
     refused
-        why it will not get to the next way point of this order, as its own navigation says; empty while it goes on.
+        why it cannot reach the next way point of this order, by its own navigation; empty while it goes on.
     """
 
     time_s: float
@@ -87,7 +87,7 @@ class Telemetry:
 
 
 class RobotPort(Protocol):
-    """One robot."""
+    """The interface to one robot."""
 
     @property
     def robot(self) -> str:
@@ -95,29 +95,29 @@ class RobotPort(Protocol):
         ...
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
-        """Give it way points in place of those that it still has; returns the number of this order, from 1."""
+        """Replace the way points that are left by these; return the number of this order, from 1."""
         ...
 
     def cancel(self) -> int:
-        """Let it stop where it is, without way points; returns the number of this order."""
+        """Stop the robot where it is, without way points; return the number of this order."""
         ...
 
     def telemetry(self) -> Telemetry | None:
-        """What it last said; None before it has said anything. Of a silent robot the times do not go on."""
+        """The last report; None before the first one. The report of a silent robot keeps its time."""
         ...
 
 
-class RetoldPort:
-    """A port whose telemetry is told in other words; orders go through as they are.
+class TranslatedPort:
+    """A port that changes each telemetry report; orders pass unchanged.
 
     Parameters
     ----------
-    retell
-        what becomes of each report.
+    translate
+        returns the changed report.
     """
 
-    def __init__(self, port: RobotPort, retell: Callable[[Telemetry], Telemetry]) -> None:
-        self._port, self._retell = port, retell
+    def __init__(self, port: RobotPort, translate: Callable[[Telemetry], Telemetry]) -> None:
+        self._port, self._retell = port, translate
 
     @property
     def robot(self) -> str:

@@ -1,4 +1,4 @@
-"""The ways of a mission's robots over its map: the shortest paths, as they will be driven and as they are paid for."""
+"""The shortest paths of a mission's robots over its map, as they are driven and as they are paid for."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from muster.motion.curve import Curve
 from muster.motion.free_space import PrismSpace, Space
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
-from muster.motion.paths import WayFinder
+from muster.motion.paths import PathFinder
 from muster.motion.smoothing import smoothed
 from muster.motion.unreachable_places import checked_world, why_blocked
 
@@ -23,8 +23,8 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Roads:
-    """Shortest paths for each body over one map. Where a way is in the plane, the height changes evenly along it.
+class RobotPaths:
+    """Shortest paths for each body over one map. Along a path in the plane the height changes evenly.
 
     Parameters
     ----------
@@ -33,16 +33,16 @@ class Roads:
     """
 
     world: World
-    _finders: dict[Body, WayFinder] = field(default_factory=dict, init=False, repr=False)
+    _finders: dict[Body, PathFinder] = field(default_factory=dict, init=False, repr=False)
     _legs: dict[tuple[Body, Point, Point], float] = field(default_factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: the map and the legs that are known; where ways are looked for is made again."""
+        """What is pickled: the map and the lengths found so far; path finders are made again."""
         return {**self.__dict__, "_finders": {}}
 
     @classmethod
-    def of(cls, mission: Mission) -> Roads:
-        """The roads of a mission with a map.
+    def of(cls, mission: Mission) -> RobotPaths:
+        """The paths over the map of a mission.
 
         Raises
         ------
@@ -54,14 +54,14 @@ class Roads:
         return cls(checked_world(mission))
 
     def path(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
-        """The shortest path between two points of the map frame; or why there is none."""
+        """The shortest path between two points of the map frame, or the reason why there is none."""
         found = self._finder(body).path(start, goal)
         if isinstance(found, NoPath):
             return self._told(found, body, tuple(start), tuple(goal))
         return with_heights(found, start, goal)
 
     def leg_m(self, body: Body, start: Point, goal: Point) -> float:
-        """Metres of the shortest path, inf where there is none; kept, for legs of actions are asked for again."""
+        """The length of the shortest path, metres; inf where there is none. Cached: actions ask for legs repeatedly."""
         leg = (body, start, goal)
         if leg not in self._legs:
             found = self.path(body, start, goal)
@@ -74,11 +74,11 @@ class Roads:
         return smoothed(path, finder.clear)
 
     def clear(self, body: Body, points: Sequence[Sequence[float]]) -> bool:
-        """Whether a body can go straight from each of some points of the map frame, (k, d) metres, to the next."""
+        """Whether a body can move straight from each point of the map frame, (k, d) metres, to the next."""
         return self._finder(body).clear(np.array(points, dtype=np.float64))
 
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
-        """With what is in the way of a body that cannot stand where it is to, or how wide one is that has no way."""
+        """The same reason with what blocks an end of the path, or with the width of the body that has no path."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):
             if found.reason == blocked:
                 place = ", ".join(f"{c:g}" for c in point)
@@ -86,15 +86,15 @@ class Roads:
         return NoPath(found.reason, f"{found.detail}, radius {body.radius_m:g} m") if body.radius_m else found
 
     def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
-        """Metres (n, m) from exits (n, 3) to entries (m, 3), inf where there is no path."""
+        """The lengths (n, m), metres, from exits (n, 3) to entries (m, 3); inf where there is no path."""
         metres = self._finder(body).lengths(exits, entries, threads=threads)
         if isinstance(self._space(body), PrismSpace):
             return metres
         return np.hypot(metres, exits[:, None, 2] - entries[None, :, 2])
 
-    def _finder(self, body: Body) -> WayFinder:
+    def _finder(self, body: Body) -> PathFinder:
         if body not in self._finders:
-            self._finders[body] = WayFinder(self._space(body))
+            self._finders[body] = PathFinder(self._space(body))
         return self._finders[body]
 
     def _space(self, body: Body) -> Space:
@@ -102,7 +102,7 @@ class Roads:
 
 
 def with_heights(found: Path, start: Sequence[float], goal: Sequence[float]) -> Path:
-    """A path in the plane as one in space, where its ends are: its height changes evenly."""
+    """A planar path in space, between ends with heights: its height changes evenly."""
     if found.points.shape[1] == len(start):
         return found
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(found.points, axis=0), axis=1))])

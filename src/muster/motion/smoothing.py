@@ -28,7 +28,7 @@ _REVERSAL = 1e-6  # a turn so near to a half one has no direction that halves it
 
 
 def clear_by_points(free: Callable[[Floats], Bools], step_m: float) -> Clear:
-    """Test points at most `step_m` apart with `free`, (n, d) to (n,): what is thinner than that may be missed."""
+    """Test points at most `step_m` apart with `free`, (n, d) to (n,); thinner obstacles may be missed."""
     if not step_m > 0:
         raise ParameterError(f"step_m: {step_m}; expected metres above 0")
 

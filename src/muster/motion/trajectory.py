@@ -1,4 +1,4 @@
-"""A motion in time: where a robot is, whither it looks, how fast it goes and turns, at every moment."""
+"""A motion in time: a robot's place, heading, velocity and yaw rate at every moment."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Moments in order; between two of them place and heading are the cubics that fit both moments and their rates.
+    """Moments in order. Between two of them place and heading are the cubics that fit both moments and their rates.
 
-    So velocities are continuous, but where two moments have one time: there they jump.
+    So velocities are continuous, except where two moments have the same time: there they jump.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ class TransformTree:
         return chain
 
     def _ways(self, target: str, source: str) -> tuple[list[str], list[str]]:
-        """The frames from each of the two up to, and without, the first that is over both."""
+        """The frames from each of the two up to, and without, their first common ancestor."""
         for name in (target, source):
             if name not in self._frames:
                 raise UnknownFrameError(f"frame {name}: unknown; expected one of {', '.join(self.frames) or 'none'}")

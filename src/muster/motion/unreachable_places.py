@@ -1,4 +1,4 @@
-"""Which places of a mission its robots cannot stand at, and why."""
+"""Places of a mission at which its robots cannot stand, and the reasons."""
 
 from __future__ import annotations
 
@@ -51,9 +51,8 @@ class BlockedPlace:
 def blocked_places(world: World, mission: Mission) -> tuple[BlockedPlace, ...]:
     """Every place that is blocked for a body that has to be there.
 
-    Starts and ends are looked at for their robot; entries and exits of tasks, and the way points of their actions, for
-    every radius and kind of the robots that the task allows (`only_robots`, or all), each once. Events are not looked
-    at.
+    Starts and ends are checked for their robot; entries and exits of tasks, and the way points of their actions, for
+    every radius and kind of the robots that the task allows (`only_robots`, or all), each once. Events are not checked.
     """
     found: list[BlockedPlace] = []
     for k, robot in enumerate(mission.robots):
@@ -67,7 +66,7 @@ def blocked_places(world: World, mission: Mission) -> tuple[BlockedPlace, ...]:
 def place_faults(world: World, mission: Mission) -> list[Fault]:
     """Faults of a mission: robots that start or end where they cannot stand.
 
-    A task where no robot can stand is none: it is impossible, and the others can be planned.
+    A task at which no robot can stand is no fault: it is impossible, and the other tasks can be planned.
     """
     return [
         Fault(place.path, f"{shown(list(place.point))}, {place.detail}", _expected(place.body))
@@ -133,7 +132,7 @@ def _blocked(world: World, places: Iterable[tuple[Path, Point, Body]], owner: st
 
 
 def why_blocked(world: World, point: Point, body: Body) -> str:
-    """Why a point is blocked for a body: what it lies in, else what is too near."""
+    """Why a point is blocked for a body: the obstacle that contains it, or one that is too near."""
     import shapely
 
     foot, three_d = shapely.Point(point[:2]), world.dimensions == 3

@@ -152,7 +152,7 @@ def _driven(
 
 
 def _places(curve: Curve, leg: Indices, step_m: float) -> tuple[Indices, Floats]:
-    """Segments and parameters at which speeds are found: the ends of straight segments, and all along bends."""
+    """Segments and parameters at which speeds are computed: the ends of straight segments, and all along bends."""
     dense = np.linspace(0.0, 1.0, 129)
     parts = []
     for k in leg:
@@ -236,7 +236,7 @@ def _with_cruising(straight: npt.NDArray[np.bool_], places: Places, limits: Limi
 
 
 def _excess(motion: Trajectory, bent: npt.NDArray[np.bool_], limits: Limits) -> float:
-    """By which factor the motion is too fast on bends, where its cubics are not quite the motion that was planned."""
+    """The factor by which the motion is too fast on bends, where its cubics differ from the motion that was planned."""
     spans = np.diff(motion.times)
     k = np.flatnonzero(bent & (spans > 0))
     if not len(k):

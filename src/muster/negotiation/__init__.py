@@ -1,1 +1,1 @@
-"""Who does what, agreed without a centre: one process a robot, a protocol over a transport."""
+"""Task allocation without a central auctioneer: one process per robot, a protocol over an unreliable transport."""

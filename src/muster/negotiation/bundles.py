@@ -1,10 +1,10 @@
-"""CBBA on the rounds of an epoch: the consensus-based bundle algorithm, held by one of its robots.
+"""CBBA on the rounds of an epoch: one robot's part in the consensus-based bundle algorithm.
 
-[choi2009]; see `allocation.consensus_bundle`, which holds it in one process. A round is one of the
-paper's: each robot adds to its bundle and publishes what it added, then all read each other. What comes of reading
-follows from what was published, so every robot keeps the beliefs of all, and nothing else is sent. Where nobody adds
-any more and all agree, one round asks who could take one more than bundles may hold, and one tells in which order
-robots are going to do what they won, which only they themselves know.
+Choi, Brunet and How, 2009; `allocation.consensus_bundle` runs it in one process. A round is one of the paper's: each
+robot adds to its bundle and publishes what it added, then all read each other. The result of reading follows from what
+was published. So every robot keeps the beliefs of all, and nothing else is sent. When nobody adds a task and all agree,
+one round asks who could take more than bundles may hold, and one publishes the order in which robots do what they won,
+which only they know.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ class _Phase(Enum):
 
 
 class BundleValuer(TeamValuer):
-    """One robot's part in CBBA; `params` are the same for all, but for the topology, which does not count.
+    """One robot's part in CBBA. `params` are the same for all robots; their topology is ignored.
 
-    The network is complete, or the protocol's relays make it so.
+    The network counts as complete, since the protocol relays messages.
     """
 
-    told_by_sales = False
+    sales_suffice = False
 
     def __init__(self, problem: Problem, params: Parameters, robot: str) -> None:
         super().__init__(problem, robot)
@@ -54,7 +54,7 @@ class BundleValuer(TeamValuer):
         self._next_layer()
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
-        """What the robot publishes in this round: what it adds, or that it could take more, or its order."""
+        """What the robot publishes in this round: what it adds, whether it could take more, or its order."""
         self._bidder.refuse([self._tasks[task] for task in refused if task in self._tasks])
         if self._phase is _Phase.TELLING:
             mine = self._beliefs.z[self._me] == self._me
@@ -67,7 +67,7 @@ class BundleValuer(TeamValuer):
         return tuple(self._bid(j) for j in self._bidder.bundle[before:])
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
-        """What comes of a round in which all members published this."""
+        """The result of a round in which all members published this."""
         members = [self._robots[said.robot] for said in bids]
         if self._phase is _Phase.TELLING:
             return self._settle(bids)
@@ -90,7 +90,7 @@ class BundleValuer(TeamValuer):
         return [self.problem.tasks[j].id for j in self._routes[self._robots[robot]]]
 
     def _next_layer(self) -> bool:
-        """Offer the tasks of the next layer of which all prerequisites are owned; whether there is one."""
+        """Offer the tasks of the next layer whose prerequisites are all owned; return whether there is a layer."""
         m, n = len(self.problem.robots), len(self.problem.tasks)
         self._beliefs, self._phase = Beliefs(m, n), _Phase.BUILDING
         self._bundles: list[list[int]] = [[] for _ in range(m)]  # of others: its own its bidder has
@@ -103,7 +103,7 @@ class BundleValuer(TeamValuer):
         return bool(layer)
 
     def _take_in(self, bids: Sequence[RoundBids]) -> None:
-        """Note what others have added; this robot's own is noted already."""
+        """Note what the others have added; this robot's own additions are noted already."""
         for said in bids:
             i = self._robots[said.robot]
             for task, bid in said.bids if i != self._me else ():
@@ -125,7 +125,7 @@ class BundleValuer(TeamValuer):
         return bool((z == z[0]).all() and (y == y[0]).all())
 
     def _settle(self, bids: Sequence[RoundBids]) -> Resolution:
-        """Give the layer's tasks to their robots, in their order, and go on to the next."""
+        """Assign the layer's tasks to their robots, in their order, and go on to the next layer."""
         sold = [Sold(said.robot, task, price) for said in bids for task, price in said.bids]
         for one in sold:
             self._done.add(self._tasks[one.task])

@@ -1,12 +1,12 @@
-"""Messages as bytes: MessagePack, one table of forms, small.
+"""Encodes messages as bytes: compact MessagePack, defined by one table of fields.
 
-The first byte is the version of the protocol. Then follows one MessagePack array, of arrays, numbers, texts and byte
-strings alone. Robots and tasks of the mission are their numbers in it; others are texts. Rows (claims, bids, pulses)
-have no brackets of their own. What has its default value is left out: after the fields that every message has come
-pairs of a field's number and its value, in ascending order.
+The first byte is the version of the protocol. Then follows one MessagePack array of arrays, numbers, texts and byte
+strings. Robots and tasks of the mission are encoded as their numbers, others as texts. Rows (claims, bids, heartbeats)
+are flattened. Fields with their default value are left out: after the fields that every message has come pairs of a
+field's number and its value, in ascending order.
 
-A message of another version is refused, and so is a field that is not in the table: robots that understand half of what
-is said would find different bases and never agree. Whoever changes the table, or what a robot bids, raises PROTOCOL.
+Messages of another version are refused, and so are fields that are not in the table: robots that understand part of a
+message would find different bases and never agree. A change of the table, or of what a robot bids, raises PROTOCOL.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
-from muster.negotiation.messages import Claim, Declaration, Fact, Message, Pulse, RoundBids, Sold, Stage
+from muster.negotiation.messages import Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
 from muster.negotiation.optional_parts import require_net
 from muster.negotiation.plain_values import (
     COUNT,
@@ -23,7 +23,7 @@ from muster.negotiation.plain_values import (
     FLAG,
     NUMBER,
     Form,
-    Garbled,
+    MalformedError,
     array,
     choice,
     count,
@@ -37,16 +37,16 @@ PROTOCOL = 2
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
-class OtherVersion(Garbled):
+class OtherVersionError(MalformedError):
     """A message of another version of the protocol."""
 
 
 FACTS = ("done", "begun", "waived", "added", "moved", "cancelled")
-"""Kinds of facts."""
+"""The kinds of facts."""
 
 
 def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
-    """The table: the form of each field of a message, in the order of `Message`."""
+    """The table: the encoding of each field of a message, in the order of `Message`."""
     claim = record(Claim, task=task, price=NUMBER, round=COUNT, begun=FLAG)
     fact = record(Fact, task=task, robot=robot, kind=choice(*FACTS), order=COUNT, content=DATA)
     sold = record(Sold, robot=robot, task=task, price=NUMBER)
@@ -72,16 +72,16 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "sales": rows(sold, 3),
         "sales_from": COUNT,
         "lacks": many(robot),
-        "pulses": _pulses(robot),
+        "heartbeats": _heartbeats(robot),
         "agreed": many(robot),
         "facts": rows(fact, 5),
         "known": COUNT,
-        "misses": many(robot),
+        "unheard": many(robot),
     }
 
 
-PARTED = ("declarations", "bids", "sales", "pulses", "facts")
-"""Fields of which a message may say one part, and another message the rest."""
+PARTED = ("declarations", "bids", "sales", "heartbeats", "facts")
+"""Fields that can be divided between several messages."""
 
 
 def _pair(first: Form, second: Form) -> Form:
@@ -92,7 +92,7 @@ def _pair(first: Form, second: Form) -> Form:
 
 
 def _incarnations() -> Form:
-    """Incarnations, as in pulses; nil for none (-1)."""
+    """Incarnations, as offsets from the least; nil for none (-1)."""
 
     def pack(incarnations: Sequence[int]) -> list[int | None]:
         least = min((k for k in incarnations if k >= 0), default=0)
@@ -100,31 +100,31 @@ def _incarnations() -> Form:
 
     def unpack(plain: Any) -> tuple[int, ...]:
         if not array(plain):
-            raise Garbled("not incarnations")
+            raise MalformedError("not incarnations")
         least = count(plain[0])
         return tuple([-1 if k is None else count(least + count(k)) for k in plain[1:]])
 
     return Form(pack, unpack)
 
 
-def _pulses(robot: Form) -> Form:
-    """Pulses: the least incarnation, then rows with what is above it, as robots that start together have like ones."""
+def _heartbeats(robot: Form) -> Form:
+    """Heartbeats: the least incarnation, then rows with offsets, which are small for robots that start together."""
     number_of, name = robot.pack, robot.unpack
 
-    def pack(pulses: Sequence[Pulse]) -> list[Any]:
-        least = min((pulse.incarnation for pulse in pulses), default=0)
+    def pack(heartbeats: Sequence[Heartbeat]) -> list[Any]:
+        least = min((heartbeat.incarnation for heartbeat in heartbeats), default=0)
         plain: list[Any] = [least]
-        for pulse in pulses:
-            plain += number_of(pulse.robot), pulse.incarnation - least, pulse.number
+        for heartbeat in heartbeats:
+            plain += number_of(heartbeat.robot), heartbeat.incarnation - least, heartbeat.number
         return plain
 
-    def unpack(plain: Any) -> tuple[Pulse, ...]:
+    def unpack(plain: Any) -> tuple[Heartbeat, ...]:
         if len(array(plain)) % 3 != 1:
-            raise Garbled("not pulses")
+            raise MalformedError("not heartbeats")
         least = count(plain[0])
         return tuple(
             [
-                Pulse(name(plain[k]), count(least + count(plain[k + 1])), count(plain[k + 2]))
+                Heartbeat(name(plain[k]), count(least + count(plain[k + 1])), count(plain[k + 2]))
                 for k in range(1, len(plain), 3)
             ]
         )
@@ -133,7 +133,7 @@ def _pulses(robot: Form) -> Form:
 
 
 class Codec:
-    """Messages of one mission.
+    """Encodes and decodes messages of one mission.
 
     Parameters
     ----------
@@ -169,45 +169,45 @@ class Codec:
         return bytes((PROTOCOL,)) + packed
 
     def decode(self, data: bytes) -> Message:
-        """The message that bytes are.
+        """The message encoded in bytes.
 
         Raises
         ------
-        OtherVersion
-            if they are of another version.
-        Garbled
-            if they are no message.
+        OtherVersionError
+            if it is of another version.
+        MalformedError
+            if the bytes are no message.
         """
         if not data:
-            raise Garbled("nothing")
+            raise MalformedError("nothing")
         if data[0] != PROTOCOL:
-            raise OtherVersion(f"version {data[0]}")
+            raise OtherVersionError(f"version {data[0]}")
         try:
             plain = self._unpackb(memoryview(data)[1:], raw=False)
         except (ValueError, TypeError) as error:
-            raise Garbled(str(error)) from None
+            raise MalformedError(str(error)) from None
         return Message(**self._said(array(plain)))
 
     def _said(self, plain: list[Any]) -> dict[str, Any]:
         """The fields of a message, checked."""
         always = len(self._always)
         if len(plain) < always or (len(plain) - always) % 2:
-            raise Garbled("not the fields of a message")
+            raise MalformedError("not the fields of a message")
         said = {name: form.unpack(plain[k]) for k, (name, form) in enumerate(self._forms[:always])}
         last = always - 1
         for k in range(always, len(plain), 2):
             number = count(plain[k])
             if not last < number < len(self._forms):
-                raise Garbled(f"field {number}")
+                raise MalformedError(f"field {number}")
             name, form = self._forms[number]
             said[name], last = form.unpack(plain[k + 1]), number
         return said
 
     def parts(self, message: Message, room: int) -> list[bytes]:
-        """The message, in pieces of at most `room` bytes: several messages that say together what it says.
+        """The message in pieces of at most `room` bytes: several messages that together contain it.
 
-        Each piece is of use without the others, so that a loss costs one piece, not all. What cannot be parted (one
-        declaration, with all its claims) stays whole, and is longer.
+        Each piece is useful without the others, so that a loss costs one piece. What cannot be divided (one declaration
+        with all its claims) stays whole and is longer.
         """
         data = self.encode(message)
         if len(data) <= room:
@@ -222,7 +222,7 @@ _DEFAULTS = {f.name: f.default for f in fields(Message)}
 
 
 def halves(message: Message) -> tuple[Message, Message | None]:
-    """Two messages that say what one says; None: it cannot be parted."""
+    """Two messages that together contain one; (message, None) if it cannot be divided."""
     middle = {name: (len(getattr(message, name)) + 1) // 2 for name in PARTED}
     first = {name: getattr(message, name)[:half] for name, half in middle.items()}
     rest = {name: getattr(message, name)[half:] for name, half in middle.items()}

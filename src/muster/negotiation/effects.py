@@ -1,4 +1,4 @@
-"""What a negotiator tells its process: messages to send, what happened, what to remember, and counts."""
+"""The outputs of a negotiator for its process: messages to send, notices, the memory to store, message counts."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from muster.negotiation.messages import Claim, Fact, Message
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """A message to one robot; None: to all."""
+    """A message and the robot that it is for; None: all robots."""
 
     message: Message
     to: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Happening:
+class Notice:
     """Something that a robot noticed.
 
     Parameters
     ----------
     kind
-        "silent": robots take part no longer. "back": they do again. "anew": one has started anew. "mute": one is heard,
-        but keeps the others waiting, and is left out. "rival": another process has this robot's name. "renumbered":
-        this robot has taken a higher incarnation, as the others knew a later one than its clock gave it. "dropped": the
-        robot has lost a task that it owned, as another owns it, or it cannot be done any more. "twice": the robots have
-        all begun or done the task.
+        "silent": robots no longer take part. "back": robots take part again. "restarted": a robot has restarted.
+        "unresponsive": a robot is heard but delays the others, and is excluded. "rival": another process uses this
+        robot's id. "renumbered": this robot has taken a higher incarnation, as the others knew a later one than its
+        clock gave it. "dropped": the robot has lost a task that it owned, as another robot owns it or it cannot be done
+        any more. "twice": these robots have all begun or done the task.
     robots, task
-        whose and what; without a task "".
+        the robots and the task concerned; "" without a task.
     """
 
     kind: str
@@ -37,40 +37,40 @@ class Happening:
     task: str = ""
 
 
-class Diary(list[Happening]):
-    """What a robot noticed, in order."""
+class Notices(list[Notice]):
+    """The notices of one robot, in order."""
 
     def tell(self, kind: str, robots: Collection[str]) -> None:
-        """Of these robots, if there are any."""
+        """Add one notice about these robots, unless there are none."""
         if robots:
-            self.append(Happening(kind, tuple(robots)))
+            self.append(Notice(kind, tuple(robots)))
 
     def tell_each(self, kind: str, robots: Collection[str]) -> None:
-        self.extend(Happening(kind, (robot,)) for robot in robots)
+        self.extend(Notice(kind, (robot,)) for robot in robots)
 
     def tell_twice(self, twice: Mapping[str, tuple[str, ...]]) -> None:
-        """Tasks that several have begun or done, with these; each is told once."""
-        for happening in (Happening("twice", robots, task) for task, robots in twice.items()):
+        """Add a notice for each task that several robots have begun or done, once."""
+        for happening in (Notice("twice", robots, task) for task, robots in twice.items()):
             if happening not in self:
                 self.append(happening)
 
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What a robot keeps to start again where it stopped.
+    """What a robot stores to continue after a restart.
 
     Parameters
     ----------
     claims, facts
-        what it owns, and what it knows for good.
+        the tasks that it owns, and all facts that it knows.
     epoch
-        the last that it has entered: it never declares in it again.
+        the last epoch that it has entered; it never declares in that epoch again.
     knows
-        whether it knows all that it ever said.
+        whether it knows everything that it has ever stated.
     refused
         tasks for which it does not bid.
     reserved
-        facts by which it has said that it is going to begin tasks for good.
+        the facts by which it has announced that it is going to begin at-most-once tasks.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -83,8 +83,8 @@ class Memory:
 
 @dataclass
 class Counts:
-    """What a robot has sent: messages with something new of its own, repairs of what others lacked, idle beats."""
+    """Numbers of messages sent: with news of the sender, repairs of what others lacked, idle heartbeats."""
 
     news: int = 0
     repairs: int = 0
-    beats: int = 0
+    heartbeats: int = 0

@@ -1,28 +1,26 @@
-"""Messages that no stranger can make or read: ChaCha20-Poly1305 (RFC 8439) under the key that the team shares.
+"""Encryption and authentication of messages: ChaCha20-Poly1305 (RFC 8439) under the key that the team shares.
 
 A sealed message is
 
-    version (1) | tag of the context (8) | session (12) | counter (4) | what was sealed, enciphered | authenticator (16)
+    version (1) | tag of the context (8) | session (12) | counter (4) | ciphertext | authenticator (16)
 
-in which everything is authenticated, and all but the 25 bytes at the front enciphered. The form of this header never
-changes, whatever the version, so that a peer with the right key and another version, or another mission, is told apart
-from a stranger, by proof.
+All of it is authenticated, and all but the first 25 bytes are encrypted. The form of this header never changes with the
+version. So a peer with the right key and another version or mission is told apart from a stranger, by proof.
 
-Nonces. Under one key of the cipher no nonce may serve twice, or what was sent with it can be read and forged. Each
-process has a session: 96 bits, the digest of 32 random bytes with the robot's name, its incarnation and the process's
-number. What it seals is enciphered under a key of its own, derived from the team's key and the session by keyed BLAKE2b
-(RFC 7693), and the nonce is a counter that begins at 0. So two messages meet in key and nonce only if two processes
-drew the same session. A restart draws a new one, so that nothing needs to be remembered; two processes of one robot's
-name, or of one incarnation, draw different ones; a process that was forked draws its own before it seals anything; a
-session ends after 2^32 messages. For n sessions under one key the probability of a collision is below n^2 / 2^97: 6e-18
-for a million. It rests on the machine's random numbers alone; for a virtual machine that is copied while it runs it
-does not hold.
+Nonces. Under one key of the cipher no nonce may be used twice, or the messages could be read and forged. Each process
+has a session: 96 bits, the digest of 32 random bytes with the robot's id, its incarnation and the process number. Its
+messages are encrypted under a key of their own, derived from the team's key and the session by keyed BLAKE2b (RFC
+7693), and the nonce is a counter that begins at 0. So two messages share key and nonce only if two processes drew the
+same session. A restart draws a new one, so that nothing has to be remembered; two processes with one robot id, or of
+one incarnation, draw different ones; a forked process draws its own before it seals anything; a session ends after 2^32
+messages. For n sessions under one key the probability of a collision is below n^2 / 2^97: 6e-18 for a million. This
+rests on the machine's random numbers alone; it does not hold for a virtual machine that is copied while it runs.
 
-Replays. Of each session a window of counters is kept: a message is taken once, in whatever order, unless it comes later
-than WINDOW others of its sender. A receiver that has just started has no windows yet: against what somebody recorded in
-an earlier run under the same key `acquaintance` helps.
+Replays. For each session a window of counters is kept: a message is accepted once, in whatever order, unless it comes
+after more than WINDOW later ones of its sender. A receiver that has just started has no windows yet: `peer_sessions`
+protects it from messages recorded in an earlier run under the same key.
 
-All who have the key trust each other: it does not prove which robot it was that sent something.
+All owners of the key trust each other: a message does not prove which robot sent it.
 """
 
 from __future__ import annotations
@@ -45,28 +43,28 @@ if TYPE_CHECKING:
 __all__ = ["OVERHEAD", "SESSION", "WINDOW", "Seal", "mission_digest", "new_key", "read_key", "write_key"]
 
 WINDOW = 1024
-"""How many messages of a sender may overtake one that is still taken."""
+"""The number of later messages of a sender after which a message is no longer accepted."""
 
 SESSION = 12
-"""Bytes of the name of a session."""
+"""The length of a session's name in bytes."""
 
 _TAG, _COUNTER, _AUTHENTICATOR = 8, 4, 16
 _HEADER = 1 + _TAG + SESSION + _COUNTER
 _LAST = 2 ** (8 * _COUNTER) - 1
 
 OVERHEAD = _HEADER + _AUTHENTICATOR
-"""By how many bytes a message grows when it is sealed."""
+"""The number of bytes that sealing adds to a message."""
 
 
 @dataclass
 class Window:
-    """Which of the last counters of a session have come: bit k of `seen` is `highest` - k."""
+    """The last counters of a session that have arrived: bit k of `seen` is `highest` - k."""
 
     highest: int = -1
     seen: int = 0
 
     def take(self, counter: int) -> bool:
-        """Note a counter; whether it comes for the first time, and not too late."""
+        """Note a counter; return whether it is new and not too old."""
         ahead = counter - self.highest
         if ahead > 0:
             self.seen = self.seen << min(ahead, WINDOW) & ((1 << WINDOW) - 1) | 1
@@ -88,7 +86,7 @@ class _Session:
 
 
 class Seal:
-    """Closes what one process of a robot sends, and opens what it receives.
+    """Seals the messages of one process, and opens those that it receives.
 
     Parameters
     ----------
@@ -97,15 +95,16 @@ class Seal:
     context
         what peers must have in common: `mission_digest`.
     robot, incarnation
-        whose process it is.
+        the identity of the process.
 
     Attributes
     ----------
     session
-        of this process; a new one when it has been forked, or has said all that one may hold.
+        of this process; replaced after a fork, and when its counter is used up.
     counts
-        of what was not opened, by why: `foreign` (made without the key, or changed on the way), `replayed` (or later
-        than WINDOW others), `other_mission`, `other_version`; and `own`, which came back from a multicast group.
+        messages that were not opened, by reason: `foreign` (made without the key, or changed on the way), `replayed`
+        (or older than WINDOW others), `other_mission`, `other_version`; and `own`, which came back from a multicast
+        group.
 
     Raises
     ------
@@ -123,7 +122,7 @@ class Seal:
         self._begin_session()
 
     def close(self, data: bytes) -> bytes:
-        """What is to be sent of this."""
+        """The bytes to send for a message."""
         if self._counter > _LAST or os.getpid() != self._process:
             self._begin_session()
         header = bytes((PROTOCOL,)) + self._tag + self.session + self._counter.to_bytes(_COUNTER, "big")
@@ -131,12 +130,12 @@ class Seal:
         return header + self._cipher.encrypt(_nonce(header), data, header)
 
     def open(self, data: bytes) -> bytes | None:
-        """What was sealed; None where it is not for this robot (see `counts`)."""
+        """The message in sealed bytes; None if it is not for this robot (see `counts`)."""
         opened = self.open_from(data)
         return None if opened is None else opened[1]
 
     def open_from(self, data: bytes) -> tuple[bytes, bytes] | None:
-        """The session of the process that sealed it, and what that is; None where it is not for this robot."""
+        """The sender's session and the message in sealed bytes; None if it is not for this robot."""
         from cryptography.exceptions import InvalidTag
 
         header = data[:_HEADER]

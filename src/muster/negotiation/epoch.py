@@ -1,8 +1,9 @@
-"""One epoch: all members declare what they own, then sell what nobody owns, round by round.
+"""One epoch: all members declare what they own, then the remaining tasks are auctioned round by round.
 
-[auction-thesis], section 4.2.3 and Algorithm 1: each robot publishes one bid a round under its own name, listens to the
-others, finds the winner itself, and takes the task out of its list. All that members do in an epoch follows from their
-declarations and from bids that follow from these, so what one has resolved is what another would, and can be told.
+Auction thesis, section 4.2.3 and Algorithm 1: each robot publishes one bid per round under its own id, receives the
+others' bids, finds the winner itself, and removes the task from its list. Everything that members do in an epoch
+follows from their declarations and from bids that follow from these. So all members resolve a round alike, and results
+can be relayed.
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ class Epoch:
     own
         the member's declaration, with the epoch's number and members.
     rules, valuer
-        of the mission.
+        the rules of the mission, and the computation of bids.
     refused
         tasks for which this member does not bid.
     stage
-        how far it is.
+        its progress.
     """
 
     own: Declaration
@@ -58,7 +59,7 @@ class Epoch:
         return self.stage.ended
 
     def hear_declaration(self, declaration: Declaration) -> bool:
-        """Take in what a member declared; whether the robot can go on now."""
+        """Note a member's declaration; return whether the epoch can go on now."""
         robot = declaration.robot
         if self.base is not None or declaration.epoch != self.own.epoch or robot == self.own.robot:
             return False
@@ -72,7 +73,7 @@ class Epoch:
         return not self._waits_for
 
     def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
-        """Take in what a member bid on a base; whether the robot can go on now."""
+        """Note a member's bids on a base; return whether the epoch can go on now."""
         if self.base is None:
             self._early.append((digest, bids))
             return False
@@ -85,22 +86,22 @@ class Epoch:
         return bids.round == self.stage.round and len(heard) == len(self.own.members)
 
     def learn(self, stage: Stage, sales: Sequence[Sold], sales_from: int) -> bool:
-        """Take in what another member has resolved on the same base; whether the robot can go on now."""
+        """Take over what another member has resolved on the same base; return whether the epoch can go on now."""
         if self.base is None or stage.base != self.base.digest:
             return False
-        if not (self.valuer.told_by_sales or (stage.ended and sales)):
+        if not (self.valuer.sales_suffice or (stage.ended and sales)):
             return False  # it has to go through the rounds itself, or take over all that came of them
         before, known = self.stage, len(self.sales)
         for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
             self._sell(sold)
-            self._reach(self.round + self.valuer.told_by_sales)
-        complete = self.round == stage.round if self.valuer.told_by_sales else sales_from <= known
+            self._reach(self.round + self.valuer.sales_suffice)
+        complete = self.round == stage.round if self.valuer.sales_suffice else sales_from <= known
         if stage.ended and complete and not self.ended:
             self._reach(stage.round, ended=True)
         return self.stage is not before
 
     def advance(self) -> list[RoundBids]:
-        """Go on as far as what was heard allows; returns what this member bids for the first time."""
+        """Advance as far as the received messages allow; return this member's new bids."""
         published: list[RoundBids] = []
         if self.base is None and not self._begin():
             return published
@@ -128,7 +129,7 @@ class Epoch:
         return tuple(robot for robot in self.own.members if robot not in heard)
 
     def published(self) -> tuple[tuple[RoundBids, ...], ...]:
-        """What members bid, by round, up to the first round that was not heard whole."""
+        """The bids of all members by round, up to the first round that was not heard completely."""
         rounds = []
         for number in range(self.round):
             heard = self._bids.get(number, {})
@@ -139,7 +140,7 @@ class Epoch:
 
     @property
     def declarations(self) -> list[Declaration]:
-        """What members have declared, as far as it was heard."""
+        """The declarations of members that were heard."""
         return [self._declared[robot] for robot in self.own.members if robot in self._declared]
 
     def declaration_of(self, robot: str) -> Declaration | None:
@@ -150,7 +151,7 @@ class Epoch:
 
     @property
     def rounds(self) -> int:
-        """How many rounds were seen in all, counted by what was sold: awards are numbered so."""
+        """The number of rounds seen in all, counted by sales: awards are numbered so."""
         return (self.own.rounds if self.base is None else self.base.rounds) + len(self.sales)
 
     def route(self) -> tuple[Claim, ...]:
@@ -166,7 +167,7 @@ class Epoch:
         return (*(claim for claim in owned if claim.begun), *ahead)
 
     def _begin(self) -> bool:
-        """Find the base, if all members have declared the same members."""
+        """Find the base if all members have declared the same members; return whether it was found."""
         if self._waits_for:
             return False
         base = agreed(self.declarations, self.rules)
@@ -187,7 +188,7 @@ class Epoch:
 
 
 def opening_of(base: Base) -> Opening:
-    """How things stand on a base; a task that several have done or begun counts for the first of them."""
+    """The state of the mission on a base. A task that several have done or begun counts for the first of them."""
     past: dict[str, list[str]] = {}
     counted: set[str] = set()
     done = [(fact.robot, fact.task) for fact in base.done]

@@ -1,6 +1,7 @@
-"""The base of an epoch: who owns what when its auction begins, by what all members declared.
+"""The base of an epoch: who owns what when its auction begins, computed from the declarations of all members.
 
-A pure function of the declarations: members that have the same ones find the same base, and drop the same claims.
+It is a pure function of the declarations: members with the same declarations find the same base and drop the same
+claims.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ Routes = dict[str, list[Claim]]
 
 @dataclass(frozen=True)
 class Rules:
-    """What a base must hold.
+    """The rules of the mission that a base has to respect.
 
     Parameters
     ----------
@@ -30,7 +31,7 @@ class Rules:
     once
         tasks that must not be begun twice, whatever happens to the network.
     linked
-        whether tasks that are added may wait for others.
+        whether prerequisites of added tasks count.
     """
 
     robots: Mapping[str, int]
@@ -41,11 +42,11 @@ class Rules:
 
     @property
     def majority(self) -> int:
-        """Any two groups of so many robots of the mission have one in common."""
+        """The size of a majority: any two groups of this many robots of the mission have one in common."""
         return len(self.robots) // 2 + 1
 
     def with_added(self, added: Sequence[Fact]) -> Rules:
-        """The rules when these tasks belong to the mission; those that are elsewhere now do anyway."""
+        """The rules with these added tasks; a task that has moved belongs to the mission anyway."""
         tasks = [task_of(fact.content) for fact in added if fact.task not in self.tasks]
         if not tasks:
             return self
@@ -64,24 +65,24 @@ class Base:
     Parameters
     ----------
     routes
-        claims of each member, in the order of its route; what it has begun stands first.
+        claims of each member, in the order of its route; tasks that were begun come first.
     facts
-        all that any member knows for good.
+        all facts that any member knows.
     done, added
-        of them what was done, in order, and those by which there are more tasks, in tie order, or tasks are elsewhere.
+        of these the tasks done, in order, and those that add a task, in tie order, or move one.
     closed
         tasks that are not for sale, whoever owns them.
     held
-        tasks that nobody may begin on this base: those that nobody may begin twice, if too few robots are here to know,
-        and what waits for them.
+        tasks that nobody may begin on this base: at-most-once tasks, if the members that remember are no majority, and
+        tasks that wait for these.
     dropped
-        (robot, task) that were declared, and are not kept.
+        (robot, task) that were declared and are not kept.
     twice
-        tasks begun by several members, with these: both go on, as work under way is never broken off.
+        tasks begun by several members, with these. All of them continue: work under way is never broken off.
     rounds
-        rounds seen in all.
+        the number of rounds seen in all.
     digest
-        eight bytes; members whose digests are equal have the same base.
+        eight bytes; members with equal digests have the same base.
     """
 
     routes: Mapping[str, tuple[Claim, ...]]
@@ -96,7 +97,7 @@ class Base:
     digest: bytes
 
     def keeping(self, kept: Mapping[str, Sequence[str]]) -> Base:
-        """The base in which of what waits to be begun only this is kept: the rest does not fit any more."""
+        """The base that keeps of tasks not begun only these; the others no longer fit into their robots' routes."""
         lost = {
             (robot, claim.task)
             for robot, claims in self.routes.items()
@@ -112,10 +113,10 @@ class Base:
 def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     """The base that follows from the declarations of all members, in any order.
 
-    A task that several claim stays with the one that has begun it; if nobody has, with the lowest price, then with the
-    first in tie order. Who claims one without knowing that it is elsewhere now loses it, unless it has begun it. What
-    waits for a task that nobody owns or has done is dropped, and of routes that wait for each other for ever the tasks
-    that come last in tie order; work that was begun never.
+    A task that several robots claim stays with the one that has begun it; if nobody has, with the lowest price, then
+    with the first in tie order. A robot that claims a task without knowing that it has moved loses it, unless it has
+    begun it. Tasks that wait for a task that nobody owns or has done are dropped. Where routes wait for each other in a
+    cycle the tasks that come last in tie order are dropped. Tasks that were begun are never dropped.
     """
     declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
@@ -155,10 +156,10 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
 
 
 def tasks_added(facts: Collection[Fact], rules: Rules) -> tuple[Fact, ...]:
-    """The facts by which there are more tasks, of several of one name the first, or they are elsewhere, the last.
+    """The facts that add tasks or move them: the first of several tasks with one id, and the last move of each task.
 
-    Facts may arrive in any order and in parts. An added task waits until all tasks that it waits for are known. A move
-    of an added task with other prerequisites belongs to another task of that name, and does not count.
+    Facts may arrive in any order and in parts. An added task waits until all its prerequisites are known. A move of an
+    added task with other prerequisites belongs to another task with that id, and does not count.
     """
     first: dict[str, Fact] = {}
     last: dict[str, Fact] = {}
@@ -176,9 +177,10 @@ def _is_same_task(added: Fact | None, moved: Fact) -> bool:
 
 
 def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:
-    """By task that a robot may have begun for good that robot; nobody (the empty name) where that is not clear.
+    """For each at-most-once task that may have been begun the robot that may continue; "" where that is unknown.
 
-    Of several it is clear if all are here to tell: then it is the one that has begun, or else the first to say so.
+    Of several robots it is known if all of them are members: then it is the one that has begun, else the first to
+    announce.
     """
     claims = {(d.robot, claim.task): claim for d in declarations for claim in d.route}
     reserved = {}
@@ -193,7 +195,7 @@ def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> di
 
 
 def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
-    """Leave each task to one robot, or to all that have begun it; these tasks, and their robots."""
+    """Leave each task to one robot, or to all that have begun it; return the latter tasks with their robots."""
     owners: dict[str, list[tuple[bool, float, int, str]]] = {}
     for robot, claims in routes.items():
         for claim in claims:
@@ -212,7 +214,7 @@ def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
 
 
 def _drop_orphans(routes: Routes, done: set[str], rules: Rules) -> None:
-    """Drop tasks that wait for one that nobody owns or has done."""
+    """Drop tasks that wait for a task that nobody owns or has done."""
     while True:
         there = done.union(claim.task for claims in routes.values() for claim in claims)
         orphans = {
@@ -228,7 +230,7 @@ def _drop_orphans(routes: Routes, done: set[str], rules: Rules) -> None:
 
 
 def _last_of_a_cycle(routes: Routes, rules: Rules) -> str | None:
-    """A task that waits for itself, by routes and prerequisites; None if there is none that has not been begun."""
+    """A task not begun that waits for itself, by routes and prerequisites; None if there is none."""
     graph: dict[str, set[str]] = {}
     begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
     for claims in routes.values():
@@ -247,7 +249,7 @@ def _last_of_a_cycle(routes: Routes, rules: Rules) -> str | None:
 
 
 def _with_followers(tasks: frozenset[str], routes: Routes, rules: Rules) -> frozenset[str]:
-    """These tasks and those that wait for them, but for what has been begun."""
+    """These tasks and those that wait for them, except for those that were begun."""
     begun = {claim.task for claims in routes.values() for claim in claims if claim.begun}
     found = tasks - begun
     while more := {t for t, needs in rules.prerequisites.items() if found.intersection(needs)} - begun - found:

@@ -1,27 +1,27 @@
-"""Who a robot is to the others: its name and incarnation, the numbers of its messages, and who else has its name."""
+"""The identity of one robot process: robot id, incarnation, message number, and other processes with the same id."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from muster.negotiation.messages import Pulse
+from muster.negotiation.messages import Heartbeat
 
 
 @dataclass
 class Identity:
-    """Of one robot, in one life.
+    """The identity of one process of a robot.
 
     Parameters
     ----------
     robot, incarnation
-        its id, and how often it has started.
+        the robot's id, and the number of this start of the robot; later starts have higher numbers.
     number
-        of its last message.
+        the number of the last message that was sent.
     rivals
-        incarnations of others under this robot's name.
+        incarnations of other processes that use this robot's id.
     superseded
-        whether one of them is later: this one is silent, and owns nothing.
-    may_rise
+        whether one of them is later. A superseded process sends nothing and owns nothing.
+    may_renumber
         whether this process may still take a higher incarnation, once, when it hears of a later one.
     """
 
@@ -30,28 +30,28 @@ class Identity:
     number: int = 0
     rivals: set[int] = field(default_factory=set)
     superseded: bool = False
-    may_rise: bool = True
+    may_renumber: bool = True
 
     @property
-    def pulse(self) -> Pulse:
-        return Pulse(self.robot, self.incarnation, self.number)
+    def heartbeat(self) -> Heartbeat:
+        return Heartbeat(self.robot, self.incarnation, self.number)
 
-    def rise_above(self, pulse: Pulse) -> bool:
-        """Take an incarnation above one that others have heard of; whether this process may, and has to.
+    def renumber_above(self, heartbeat: Heartbeat) -> bool:
+        """Take an incarnation above one that others have heard of; return whether that was allowed and necessary.
 
-        The process that started last has the name. Its incarnation is lower than that of its past life if it has no
-        memory and its clock was set back.
+        The process that started last keeps the id. Its incarnation is lower than that of an earlier process if it has
+        no memory and its clock was set back.
         """
-        if not self.may_rise or pulse.incarnation <= self.incarnation:
+        if not self.may_renumber or heartbeat.incarnation <= self.incarnation:
             return False
-        self.may_rise, self.incarnation = False, pulse.incarnation + 1
+        self.may_renumber, self.incarnation = False, heartbeat.incarnation + 1
         return True
 
-    def hear(self, pulse: Pulse) -> bool:
-        """Take in what was heard of this name; whether it is new, and of another life that is not long past."""
+    def hear(self, heartbeat: Heartbeat) -> bool:
+        """Note a heartbeat under this robot's id; return whether it shows another process that was not known yet."""
         mine = self.incarnation, self.number
-        if (pulse.incarnation, pulse.number) <= mine or pulse.incarnation in self.rivals:
+        if (heartbeat.incarnation, heartbeat.number) <= mine or heartbeat.incarnation in self.rivals:
             return False
-        self.rivals.add(pulse.incarnation)
-        self.superseded |= pulse.incarnation > self.incarnation
+        self.rivals.add(heartbeat.incarnation)
+        self.superseded |= heartbeat.incarnation > self.incarnation
         return True

@@ -1,4 +1,4 @@
-"""The key that a team shares, and its file: 64 hexadecimal digits that only their owner may read."""
+"""The team's shared key and its file: 64 hexadecimal digits that only the file's owner may read."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ _FORM = f"{2 * KEY_BYTES} hexadecimal digits"
 
 
 def new_key() -> bytes:
-    """A key that nobody else has."""
+    """A random key."""
     return secrets.token_bytes(KEY_BYTES)
 
 
 def write_key(path: str | Path, key: bytes) -> None:
-    """Write a key to a new file, which its owner alone can read.
+    """Write a key to a new file that only its owner can read.
 
     Raises
     ------
     InputError
-        if there is such a file already, or it cannot be made.
+        if the file exists, or cannot be made.
     """
     try:
         file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -39,12 +39,12 @@ def write_key(path: str | Path, key: bytes) -> None:
 def read_key(path: str | Path) -> bytes:
     """The key of a file.
 
-    A file that others may read is refused: they have had the key, and it must be made anew.
+    A file that others may read is refused: the key may have leaked and must be replaced.
 
     Raises
     ------
     InputError
-        if it cannot be read, others may read it, or it holds no key.
+        if the file cannot be read, others may read it, or it holds no key.
     """
     try:
         with Path(path).open("rb") as file:

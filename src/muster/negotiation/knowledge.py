@@ -1,6 +1,6 @@
-"""What a robot knows for good: tasks done, begun for good, added, cancelled. It only grows, and order does not matter.
+"""The set of facts that a robot knows: tasks done, begun at most once, added, moved, cancelled. It only grows.
 
-Robots whose digests are equal know the same; the digest is of the facts alone, not of the way in which they came.
+Sets are joined in any order. Robots with equal digests know the same facts.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from hashlib import blake2b
 from muster.negotiation.messages import Fact
 
 AT_ONCE = 40
-"""So many facts go into a message at most; who lacks more asks again, and gets others."""
+"""The largest number of facts in a repair. A robot that lacks more asks again and receives others."""
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Knowledge:
     digest: int = 0
 
     def learn(self, facts: Iterable[Fact]) -> list[Fact]:
-        """Take in facts; returns those that are new."""
+        """Add facts; return those that were new."""
         new = [fact for fact in facts if fact not in self.facts]
         for fact in new:
             if fact not in self.facts:
@@ -32,14 +32,14 @@ class Knowledge:
         return new
 
     def say(self, task: str, robot: str, kind: str, content: bytes = b"") -> tuple[Fact, bool]:
-        """Add a fact of the robot itself, unless it has said so before; the fact, and whether it is new."""
+        """Add a fact that the robot itself states, once; return the fact and whether it is new."""
         for fact in in_order(self.facts):
             if (fact.task, fact.robot, fact.kind, fact.content) == (task, robot, kind, content):
                 return fact, False
         return self.add(task, robot, kind, content), True
 
     def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> Fact:
-        """Add a fact of the robot itself, which follows from all that it knows."""
+        """Add a fact stated by the robot itself, ordered after all facts that it knows."""
         said = Fact(task, robot, kind, 1 + max((fact.order for fact in self.facts), default=0), content)
         self.learn([said])
         return said
@@ -50,7 +50,7 @@ class Knowledge:
 
     @property
     def doers(self) -> dict[str, tuple[str, ...]]:
-        """By task that was done those that have done it, the first one first."""
+        """For each task that was done the robots that have done it, the first one first."""
         doers: dict[str, tuple[str, ...]] = {}
         for fact in in_order(self.facts):
             if fact.done:
@@ -58,7 +58,7 @@ class Knowledge:
         return doers
 
     def some(self, number: int) -> tuple[Fact, ...]:
-        """At most AT_ONCE facts, others for the next number."""
+        """At most AT_ONCE facts; another number gives other facts."""
         facts = in_order(self.facts)
         if len(facts) <= AT_ONCE:
             return facts
@@ -67,14 +67,15 @@ class Knowledge:
 
 
 def in_order(facts: Iterable[Fact]) -> tuple[Fact, ...]:
-    """Facts so that what follows from another comes after it."""
+    """Facts in causal order: a fact comes after all facts that its author knew."""
     return tuple(sorted(facts, key=lambda fact: (fact.order, fact.robot, fact.task, fact.kind)))
 
 
 def holders(facts: Iterable[Fact]) -> dict[str, tuple[str, ...]]:
-    """By task that nobody may begin twice the robots that may have begun it, the first one first.
+    """For each at-most-once task the robots that may have begun it, the first one first.
 
-    What a robot waives it waives for the life in which it said that it was going to begin: it may have forgotten that.
+    A robot waives a task for the incarnation that announced it, since a later incarnation may not know what that one
+    did.
     """
     waived = {(fact.task, fact.robot, fact.content) for fact in facts if fact.kind == "waived"}
     may: dict[str, dict[str, None]] = {}

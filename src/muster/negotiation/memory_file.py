@@ -1,7 +1,7 @@
-"""What a robot's process keeps to start again where it stopped: a file of JSON.
+"""The JSON file from which a robot's process continues after a restart.
 
-It is written before anything is sent, and before work begins. So a robot that starts again never says in the same epoch
-something else than it has said before, and never waives what it has begun.
+It is written before anything is sent and before work begins. So a restarted robot never contradicts in an epoch what it
+has stated in it before, and never waives a task that it has begun.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ _SCHEMA = "muster-memory/1"
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """What is kept of a robot.
+    """The contents of the file.
 
     Parameters
     ----------
     auction
-        the digest of the mission and terms, in hexadecimal digits.
+        the digest of mission and terms, in hexadecimal digits.
     robot, incarnation
-        whose it is, and how it was numbered when it started last; 0: it never has.
+        the robot, and the number of its last start; 0: it has never started.
     memory
         what it knew; None: nothing yet.
     """
@@ -41,7 +41,7 @@ class Kept:
     memory: Memory | None = None
 
     def save(self, file: Path) -> None:
-        """Write it, so that after a loss of power the file holds this or what it held before."""
+        """Write the file so that after a loss of power it holds either the new or the old contents."""
         beside = file.with_name(file.name + ".new")
         with beside.open("w", encoding="utf-8") as out:
             json.dump({"schema": _SCHEMA} | asdict(self), out, default=_plain)
@@ -52,17 +52,17 @@ class Kept:
 
 
 def kept_of(file: Path | None, digest: bytes, robot: str) -> Kept:
-    """What was kept of a robot in the auction of this digest; raises as `kept_in`. None: it has no file."""
+    """What a robot has stored in the auction of this digest; raises as `kept_in`. None: it has no file."""
     return Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
 
 
 def kept_in(file: Path, auction: str, robot: str) -> Kept:
-    """What a file holds; where there is none, nothing was kept.
+    """The contents of a file; empty if there is none.
 
     Raises
     ------
     InputError
-        if the file cannot be read, or is of another auction or robot.
+        if the file cannot be read, or belongs to another auction or robot.
     """
     nothing = Kept(auction=auction, robot=robot)
     try:
@@ -84,7 +84,7 @@ def kept_in(file: Path, auction: str, robot: str) -> Kept:
 
 
 def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
-    """Keeps what the robot knows in a file, when that has changed."""
+    """A function that stores what the robot knows in a file if that has changed."""
 
     def keep() -> None:
         nonlocal kept

@@ -1,4 +1,4 @@
-"""A network in memory, on a virtual clock: loss, delay, reordering, duplication, partitions, crashes, all by a seed."""
+"""A simulated network on a virtual clock: loss, delay, reordering, duplication, partitions and crashes, by seed."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from muster.negotiation.messages import Message
 from muster.negotiation.negotiator import Negotiator
 
 TICK_S = 0.05
-"""How often robots look at their clocks."""
+"""The time between two calls of a robot's `tick`, seconds."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Weather:
+class LinkConditions:
     """What the network does to each copy of a message.
 
     Parameters
@@ -26,7 +26,7 @@ class Weather:
     loss, duplication
         probabilities.
     delay_s, jitter_s
-        least time on the way, and the most that is added to it, evenly; so messages overtake each other.
+        the least delay, and the largest that is added to it, uniformly; so messages overtake each other.
     """
 
     loss: float = 0.0
@@ -42,21 +42,21 @@ class MemoryNetwork:
     Parameters
     ----------
     make
-        makes a robot's negotiator, by id and incarnation; called again when it restarts.
+        makes a robot's negotiator from its id and incarnation; called again when it restarts.
     robots
         the team.
     links
-        who hears whom directly; None: everybody everybody.
+        (speaker, listener) -> whether a message gets through directly; None: always.
     watch
-        is told of a robot after each moment in which it did something.
+        called with a robot after each moment in which it did something.
     sent
-        is told of each message that is sent, to whomever.
+        called with each message that is sent.
     """
 
     make: Callable[[str, int], Negotiator]
     robots: Sequence[str]
     seed: int = 0
-    weather: Weather = field(default_factory=Weather)
+    conditions: LinkConditions = field(default_factory=LinkConditions)
     links: Callable[[str, str], bool] | None = None
     watch: Callable[[str], None] = lambda robot: None
     sent: Callable[[Message], None] = lambda message: None
@@ -85,28 +85,28 @@ class MemoryNetwork:
             self.watch(robot)
 
     def crash(self, robot: str) -> Negotiator:
-        """A robot is gone, in the middle of whatever it did; returns what it was."""
+        """End a robot at once; return its negotiator."""
         node = self.nodes.pop(robot)
         self.incarnations[robot] = max(node.incarnation, self.incarnations[robot])
         return node
 
     def cut(self, *groups: Collection[str]) -> None:
-        """Only robots of one group hear each other."""
+        """Let only robots of one group hear each other."""
         self._side = {robot: k for k, group in enumerate(groups) for robot in group}
 
-    def deafen(self, links: Collection[tuple[str, str]]) -> None:
-        """Nothing gets through from the first of two robots to the second."""
+    def block(self, links: Collection[tuple[str, str]]) -> None:
+        """Let nothing get through from the first to the second robot of these pairs."""
         self._dead_links = links
 
     def heal(self) -> None:
         self._side, self._dead_links = {}, ()
 
     def at(self, when_s: float, what: Callable[[], None]) -> None:
-        """Let something happen at a time."""
+        """Call a function at a time."""
         heapq.heappush(self._later, (when_s, next(self._order), what))
 
     def run(self, until_s: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let time go by, at most until then; returns whether `until` came true."""
+        """Let time pass until then at most; return whether `until` came true."""
         while not until():
             upcoming = min(self._later[0][0] if self._later else until_s, self._queue[0][0] if self._queue else until_s)
             if upcoming >= until_s:
@@ -154,16 +154,18 @@ class MemoryNetwork:
         return (one, other) not in self._dead_links and (self.links is None or self.links(one, other))
 
     def _post(self, to: Sequence[str], message: Message) -> None:
-        """Send copies; those that arrive at the same time arrive as one."""
-        weather, draw = self.weather, self._random.random
+        """Send copies; those that arrive at the same time are one entry of the queue."""
+        conditions, draw = self.conditions, self._random.random
         arriving: dict[float, list[str]] = {}
         lost = 0
         for robot in to:
-            for _ in range(1 + (weather.duplication > 0 and draw() < weather.duplication)):
-                if weather.loss > 0 and draw() < weather.loss:
+            for _ in range(1 + (conditions.duplication > 0 and draw() < conditions.duplication)):
+                if conditions.loss > 0 and draw() < conditions.loss:
                     lost += 1
                     continue
-                late_s = weather.delay_s + (self._random.uniform(0, weather.jitter_s) if weather.jitter_s else 0.0)
+                late_s = conditions.delay_s + (
+                    self._random.uniform(0, conditions.jitter_s) if conditions.jitter_s else 0.0
+                )
                 arriving.setdefault(late_s, []).append(robot)
         for late_s, robots in arriving.items():
             heapq.heappush(self._queue, (self.now + late_s, next(self._order), robots, message))

@@ -1,6 +1,6 @@
-"""What robots tell each other. One kind of message: what a sender knows, and what it lacks.
+"""The protocol's message and its parts: what the sender knows, and what it lacks.
 
-Robots and tasks are named by their ids. Nothing in a message is a time: clocks of robots need not agree.
+Robots and tasks are named by their ids. A message contains no times: the clocks of robots need not agree.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ Bid = tuple[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A task that a robot owns: what it won it for, in which round, and whether it has begun it."""
+    """A task that a robot owns: the price and the round in which it won the task, and whether it has begun it."""
 
     task: str
     price: float
@@ -23,21 +23,21 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Something that is true for ever once it is said.
+    """A statement that stays true.
 
     Parameters
     ----------
     task, robot
-        of which task, and who says so.
+        the task, and the robot that states the fact.
     kind
-        "done": the robot has done it. "begun": the robot has begun a task that nobody may begin twice, or is going to.
-        "waived": it has not, and is never going to, in the life that said so. "added": the task belongs to the mission
-        from now on. "moved": it is elsewhere. "cancelled": nobody need do it.
+        "done": the robot has done the task. "begun": the robot has begun an at-most-once task or is going to. "waived":
+        it has not and never will, in the incarnation that announced it. "added": the task belongs to the mission from
+        now on. "moved": it has another position. "cancelled": it need not be done.
     order
-        above that of all facts that the robot knew: what follows from another fact comes after it.
+        above that of all facts that the robot knew, so that a fact comes after those that it follows from.
     content
-        of "added" and "moved": the task, as `tasks.content_of` writes it. Of "begun" and "waived": the incarnation of
-        the robot that was going to begin.
+        of "added" and "moved": the task, as `new_tasks.content_of` writes it. Of "begun" and "waived": the incarnation
+        that announced the task.
     """
 
     task: str
@@ -53,22 +53,23 @@ class Fact:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """What a robot says of itself at the beginning of an epoch; made once for each epoch.
+    """What a robot declares at the beginning of an epoch, once per epoch.
 
     Parameters
     ----------
     members
-        the robots with which it is going to hold this epoch's auction, itself included, in tie order.
+        the robots that take part in this epoch's auction as this robot sees it, itself included, in tie order.
     route
-        the tasks that it owns, in the order in which it is going to do them; what it has done is not among them.
+        the tasks that it owns and has not done, in the order of execution.
     facts
-        all that it knows, of others too, in order.
+        all facts that it knows, in causal order.
     rounds
-        how many rounds it has seen in all.
+        the number of rounds that it has seen in all.
     incarnations
-        of each member the last that was heard of it; -1: nothing.
+        for each member the highest incarnation heard of; -1: none.
     knows
-        whether it remembers all that it ever said: False from a start without memory until others have told it.
+        whether it remembers everything that it has ever stated; False after a start without memory until others have
+        told it.
     """
 
     robot: str
@@ -84,7 +85,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class RoundBids:
-    """What a robot bids in a round of an epoch: nothing, its lowest bid, or all, as the winner rule asks."""
+    """The bids of a robot in one round of an epoch: none, its lowest, or all, depending on the winner rule."""
 
     robot: str
     round: int
@@ -93,7 +94,7 @@ class RoundBids:
 
 @dataclass(frozen=True, slots=True)
 class Sold:
-    """What came of a round: a task went to a robot at a price."""
+    """The result of a round: a task went to a robot at a price."""
 
     robot: str
     task: str
@@ -102,9 +103,9 @@ class Sold:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """How far a robot is: which epoch, what all declared in it (empty: not known yet), how many rounds are resolved.
+    """The progress of a robot: its epoch, the digest of the epoch's base (empty: not known yet), rounds resolved.
 
-    `ended` tells that nobody bid any more.
+    `ended`: nobody bids any more.
     """
 
     epoch: int
@@ -114,8 +115,8 @@ class Stage:
 
 
 @dataclass(frozen=True, slots=True)
-class Pulse:
-    """The last that was heard of a robot, by whatever way: its incarnation, and the number of its message."""
+class Heartbeat:
+    """The last sign of life of a robot, direct or relayed: its incarnation and the number of its message."""
 
     robot: str
     incarnation: int
@@ -124,28 +125,28 @@ class Pulse:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """How far a robot is, what it says, what it passes on, and what it lacks.
+    """The sender's progress, its own statements, what it relays, and what it lacks.
 
     Parameters
     ----------
     sender, incarnation, number
-        who sends it; how often that robot has started, as it knows itself; a number that grows from message to message.
+        the sender; the number of its start; the number of the message, which grows.
     stage
-        how far the sender is. Declarations, bids and sales are of its epoch, bids and sales of its base.
+        the sender's progress. Declarations, bids and sales belong to its epoch, bids and sales to its base.
     declarations, bids
-        the sender's own, and those of others that somebody lacks.
+        the sender's own, and those of others that a robot lacks.
     sales, sales_from
-        what came of rounds, the first of which is `sales_from`.
+        results of rounds, and the number of the first of these.
     lacks
         robots whose declaration, or bids in this round, the sender waits for.
-    pulses
-        of a beat: its own, those of robots that others miss, and that of another one, in turn.
-    misses
-        robots that the sender has not heard for a while, or never, but from others.
+    heartbeats
+        in a heartbeat: its own, those of robots that others do not hear, and one other in turn.
     agreed
-        members of which it knows that they are at the same stage, which has ended.
+        members that are known to be at the same ended stage.
     facts, known
-        facts that others may not know yet, and a digest of all that the sender knows; 0: none.
+        facts that others may lack, and a digest of all facts that the sender knows; 0: none.
+    unheard
+        robots that the sender has not heard directly for a while, or never.
     """
 
     sender: str
@@ -157,18 +158,18 @@ class Message:
     sales: tuple[Sold, ...] = ()
     sales_from: int = 0
     lacks: tuple[str, ...] = ()
-    pulses: tuple[Pulse, ...] = ()
+    heartbeats: tuple[Heartbeat, ...] = ()
     agreed: tuple[str, ...] = ()
     facts: tuple[Fact, ...] = ()
     known: int = 0
-    misses: tuple[str, ...] = ()
+    unheard: tuple[str, ...] = ()
 
     @property
-    def pulse(self) -> Pulse:
-        """That its sender lived."""
-        return Pulse(self.sender, self.incarnation, self.number)
+    def heartbeat(self) -> Heartbeat:
+        """The sign of life that the message is."""
+        return Heartbeat(self.sender, self.incarnation, self.number)
 
     @property
     def is_idle(self) -> bool:
-        """Whether it is a beat: it tells nothing new, but that the sender lives, and what it lacks."""
-        return bool(self.pulses) and not self.facts
+        """Whether it is a mere heartbeat, without news of the sender."""
+        return bool(self.heartbeats) and not self.facts

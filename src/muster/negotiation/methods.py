@@ -1,4 +1,4 @@
-"""How robots can agree without a centre: the methods, by name. All go through the same network and command."""
+"""The methods by which robots agree without a central auctioneer, by name. All use the same protocol and command."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from muster.negotiation.robot_view import View
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A way to agree.
+    """A method of agreement.
 
     Parameters
     ----------
     name, summary
         for the command.
     allocator
-        that does the same in one process; robots have its parameters in common.
+        the same method in one process; robots share its parameters.
     negotiator
-        makes a robot's part, as `taking_part.negotiator_of`.
+        makes a robot's negotiator, as `participation.negotiator_of`.
     plan
-        makes the plan of a view, as `taking_part.plan_of_view`.
+        makes the plan of a view, as `participation.plan_of_view`.
     """
 
     name: str
@@ -62,12 +62,12 @@ METHODS = {method.name: method for method in _IMPLEMENTATIONS}
 
 
 def method_named(name: str) -> Method:
-    """The method.
+    """The method of a name.
 
     Raises
     ------
     ParameterError
-        if there is none of this name.
+        if there is none.
     """
     if name not in METHODS:
         raise ParameterError(f"method: {name}; expected {' or '.join(METHODS)}{did_you_mean(name, METHODS)}")

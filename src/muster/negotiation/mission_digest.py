@@ -1,4 +1,4 @@
-"""What robots must have in common to agree: the mission, with its tables and maps, and the terms of the auction."""
+"""A digest of what robots must have in common to agree: the mission with its tables and maps, and the terms."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ DIGEST_BYTES = 16
 
 
 def mission_digest(problem: Problem, terms: Any) -> bytes:
-    """Sixteen bytes that are equal where robots hold the same auction.
+    """Sixteen bytes that are equal where robots take part in the same auction.
 
-    It holds what the mission says, not how its file is written: the order of robots, tasks and keys does not count, nor
-    where the file is. Of files that it names the contents count: travel tables, and the cells of a map.
+    The digest covers the meaning of the mission, not the form of its file: the order of robots, tasks and keys and the
+    file's location do not count. Of files that it names the contents count: travel tables, and the cells of a map.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def mission_digest(problem: Problem, terms: Any) -> bytes:
 
 
 def _numbers_alike(value: Any) -> Any:
-    """Plain data in which 1 is 1.0, as they are equal."""
+    """Plain data in which integers are floats, as 1 equals 1.0."""
     if isinstance(value, Mapping):
         return {key: _numbers_alike(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -57,7 +57,7 @@ def _numbers_alike(value: Any) -> Any:
 
 
 def _terms(problem: Problem, terms: Any) -> dict[str, Any]:
-    """The parameters of the way to agree, with its name; no bid is that of the objective."""
+    """The method's parameters, with its module's name; no bid stands for that of the objective."""
     said = {f.name: getattr(terms, f.name) for f in fields(terms)}
     if isinstance(terms, Terms):
         said["bid"] = terms.bid or problem.objective

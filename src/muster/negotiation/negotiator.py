@@ -1,7 +1,7 @@
-"""A robot's part in an auction without a centre: what it may do with its tasks, and says of them.
+"""The interface of one robot's negotiation to the code that carries tasks out: begin, finish, announce, release, ...
 
-How it agrees with the others who owns which is told in `participant`. What is said here is sent with what `handle` or
-`tick` returns next.
+`participant` holds the protocol by which robots agree. What is stated here is sent with the next messages that `handle`
+or `tick` returns.
 """
 
 from __future__ import annotations
@@ -17,72 +17,73 @@ from muster.negotiation.participant import Participant
 
 
 class Negotiator(Participant):
-    """One robot: it takes part, and carries out what it owns. Parameters are those of `Participant`."""
+    """One robot, which takes part and carries out what it owns. Parameters as for `Participant`."""
 
     @property
     def rivals(self) -> set[int]:
-        """Incarnations of other processes under this robot's name."""
+        """Incarnations of other processes that use this robot's id."""
         return self._identity.rivals
 
     @property
     def superseded(self) -> bool:
-        """Whether a later process has this robot's name: this one is silent, and owns nothing."""
+        """Whether a later process uses this robot's id. Then this one sends nothing and owns nothing."""
         return self._identity.superseded
 
     @property
     def facts(self) -> frozenset[Fact]:
-        """What it knows for good."""
-        return frozenset(self._work.known.facts)
+        """All facts that the robot knows."""
+        return frozenset(self._owned.known.facts)
 
     @property
     def known(self) -> int:
         """A digest of `facts`."""
-        return self._work.known.digest
+        return self._owned.known.digest
 
     @property
     def once(self) -> frozenset[str]:
-        """Tasks that nobody may begin twice."""
+        """Tasks that must not be begun twice."""
         return self._rules.once
 
     @property
     def held(self) -> frozenset[str]:
-        """Tasks that nobody who is here may begin, until more are here that know."""
+        """At-most-once tasks, and tasks that wait for them, that nobody may begin until more robots are here."""
         base = self._base
         return base.held if base else frozenset()
 
     @property
     def route(self) -> tuple[Claim, ...]:
-        """What this robot owns, in the order in which it is going to do it; nothing before it has heard the others."""
-        return self._work.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()
+        """The tasks that this robot owns, in the order of execution; empty before it has heard the other robots."""
+        return self._owned.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()
 
     @property
     def memory(self) -> Memory:
-        """What to keep to start again where it stopped; to be kept before what was returned last is sent."""
-        return self._work.memory(self.epoch.route(), self.stage.epoch, knows=self.knows)
+        """What to store for the next start; to be stored before the messages returned last are sent."""
+        return self._owned.memory(self.epoch.route(), self.stage.epoch, knows=self.knows)
 
     def may_begin(self, task: str) -> bool:
         """Whether the robot may begin a task now.
 
-        It must own it, by an auction that has ended, and what the task waits for must be done. Of a task that nobody
-        may begin twice a majority of the mission's robots must know, too, that this robot is going to: see `begin`.
+        It must own the task by an auction that has ended, and all prerequisites must be done. For an at-most-once task
+        a majority of the mission's robots must also know that this robot is going to begin it: see `begin`.
         """
-        return bool(self.route) and self._work.may_begin(task, self.epoch, self._agreement.shown, self.rules)
+        return bool(self.route) and self._owned.may_begin(task, self.epoch, self._peer_progress.shown, self.rules)
 
     def begin(self, task: str) -> bool:
-        """Begin a task, if the robot may; whether it has begun.
+        """Begin a task if that is allowed; return whether it has begun.
 
-        For a task that nobody may begin twice the first call tells the others; once enough know, a later call begins.
+        For an at-most-once task the first call announces the intention; a later call begins once enough robots know of
+        it.
         """
         if self.may_begin(task):
-            self._work.begin(task)
+            self._owned.begin(task)
             return True
         if task in self._rules.once and any(claim.task == task for claim in self.route):
-            self._work.reserve(task)
+            self._owned.reserve(task)
         return False
 
     def finish(self, task: str) -> None:
-        """Tell that the robot has done a task."""
-        self._work.finish(task)
+        """State that the robot has done a task."""
+        self._owned.finish(task)
 
     def announce(self, task: Task) -> None:
         """Add a task to the mission: it is auctioned at once.
@@ -95,10 +96,12 @@ class Negotiator(Participant):
         if task.id in {*self.rules.tasks, *(fact.task for fact in self.facts if fact.kind == "added")}:
             raise ParameterError(f"new task: {shown(task.id)}; expected an id that no task has")
         self._check(task)
-        self._work.say(task.id, "added", content_of(task))
+        self._owned.say(task.id, "added", content_of(task))
 
     def move(self, task: Task) -> None:
-        """Tell that a task is elsewhere: who has it and has not begun it gives it back, and it is auctioned again.
+        """State that a task has another position.
+
+        A robot that owns it and has not begun it gives it back for a new auction.
 
         Parameters
         ----------
@@ -108,38 +111,38 @@ class Negotiator(Participant):
         Raises
         ------
         MissionError, ParameterError
-            if it does not fit into the mission, or there is none of its name.
+            if the task does not fit into the mission, or no task has its id.
         """
         if task.id not in self._rules.tasks:
             raise ParameterError(f"moved task: {shown(task.id)}; expected the id of a task")
         self._check(task)
-        self._work.say_again(task.id, "moved", content_of(task))
+        self._owned.say_again(task.id, "moved", content_of(task))
 
     def cancel(self, task: str) -> None:
-        """Take a task out of the mission; who has begun it goes on."""
-        self._work.say(task, "cancelled")
+        """Take a task out of the mission. A robot that has begun it continues."""
+        self._owned.say(task, "cancelled")
 
     def abandon(self, task: str) -> None:
-        """Stop with a task that is cancelled, if it was begun: nobody waits any more for what waits for it."""
-        self._work.abandon(task)
+        """Stop a cancelled task that was begun, so that no robot waits for what depends on it."""
+        self._owned.abandon(task)
 
     def release(self, task: str) -> None:
-        """Give a task back, also one that was begun: others may have it, this robot does not bid for it any more.
+        """Give a task back, even one that was begun. Others may take it; this robot does not bid for it any more.
 
         Raises
         ------
         ParameterError
-            if it was begun and nobody may begin it twice.
+            if the task was begun and must not be begun twice.
         """
-        self._work.release(task, self._rules)
+        self._owned.release(task, self._rules)
 
     def withdraw(self) -> None:
-        """The robot is out: it gives back all that it has not begun, and does not bid any more."""
-        self._work.withdraw()
+        """Give back all tasks that were not begun, and do not bid any more."""
+        self._owned.withdraw()
 
     def come_back(self) -> None:
-        """The robot that was out takes part again."""
-        self._work.out, self._work.restless = False, True
+        """Take part again after `withdraw`."""
+        self._owned.withdrawn, self._owned.epoch_due = False, True
 
     def _check(self, task: Task) -> None:
         """Raise MissionError unless a task fits into the mission with all tasks that this robot has heard of."""

@@ -1,4 +1,4 @@
-"""Tasks that appear or move while a mission goes on: as bytes that all robots keep, and as a part of their problem."""
+"""Tasks that are added or moved during a mission: their encoding in facts, and the mission with them."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from muster.mission.yaml_writer import plain
 
 
 def content_of(task: Task) -> bytes:
-    """The task as bytes; equal tasks, equal bytes."""
+    """The task as bytes; equal tasks have equal bytes."""
     return json.dumps(plain(task), sort_keys=True, separators=(",", ":")).encode()
 
 
 @cache
 def task_of(content: bytes) -> Task:
-    """The task of these bytes.
+    """The task encoded in these bytes.
 
     Raises
     ------
     MissionError
-        if they are no task.
+        if they encode no task.
     """
     faults: list[Fault] = []
     try:
@@ -43,9 +43,9 @@ def task_of(content: bytes) -> Task:
 
 
 def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:
-    """The problem with more tasks, behind all that it has: ties go to those that were there before.
+    """The problem with more tasks after its own: ties go to the tasks that were there before.
 
-    A task of a name that there is takes that one's place: it is elsewhere now.
+    A task whose id exists replaces that task: it has moved.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A robot's process: its negotiator, what carries its messages, and a clock. No threads."""
+"""Runs a negotiator: connects it with codec, seal, transport and clock. No threads."""
 
 from __future__ import annotations
 
@@ -9,43 +9,44 @@ from types import TracebackType
 from typing import Self
 
 from muster.mission.clock import Clock, SystemClock
-from muster.negotiation.codec import Codec, OtherVersion
+from muster.negotiation.codec import Codec, OtherVersionError
 from muster.negotiation.effects import Outgoing
 from muster.negotiation.encryption import OVERHEAD, Seal
 from muster.negotiation.messages import RoundBids, Sold
 from muster.negotiation.negotiator import Negotiator
-from muster.negotiation.peer_sessions import Acquaintance
-from muster.negotiation.plain_values import Garbled
+from muster.negotiation.peer_sessions import PeerSessions
+from muster.negotiation.plain_values import MalformedError
 from muster.negotiation.transport import Transport
 
 _LOOK_S = 0.25
-"""How often at least `run` looks whether it is to end."""
+"""The longest time between two evaluations of the end condition of `run`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class NodeStatus:
-    """What a robot knows at a moment, for a table of the team.
+    """The state of a robot's negotiation at one moment, for tables.
 
     Parameters
     ----------
     robot, members, silent
-        its id; with whom it holds the auction; who does not take part.
+        its id; the members of its epoch; robots of the team that do not take part.
     epoch, round
-        how far it is: number of the epoch, rounds resolved in it.
+        the number of the epoch, and of the rounds resolved in it.
     bid
-        what it bids in this round, or bid in the last; None before that.
+        its bid in this round, or else in the last one; None before that.
     last_sale
-        what came of the last round; None before that.
+        the result of the last round; None before that.
     settled
         whether all members are known to agree, and nobody bids any more.
     sent, sent_bytes, received
-        messages sent by kind (`news`, `repairs`, `beats`, `greetings`), their bytes as they travel, messages taken in.
+        messages sent by kind (`news`, `repairs`, `heartbeats`, `greetings`), their bytes on the network, messages
+        received.
     refused
-        what was not taken in, by why: as `Acquaintance.counts`, and `garbled`.
+        messages that were not accepted, by reason: as `PeerSessions.counts`, and `malformed`.
     lost_here
         as `Transport.lost_here`.
     rivals, superseded
-        incarnations of other processes that run under this robot's name; whether one is later, so that this is silent.
+        incarnations of other processes under this robot's id; whether one is later, so that this one is silent.
     """
 
     robot: str
@@ -66,24 +67,24 @@ class NodeStatus:
 
 
 class Node:
-    """Drives a negotiator. A context manager: entering it starts the robot's part, leaving it closes the transport.
+    """Runs a negotiator. A context manager: entering it starts the negotiation, leaving it closes the transport.
 
     Parameters
     ----------
     negotiator
-        not started yet: the node does that.
+        not started yet: the node starts it.
     transport, codec, seal
-        what its messages go through. Without a seal they travel open: for tests alone.
+        what carries, encodes and encrypts messages. Without a seal messages are not encrypted: for tests only.
     clock
-        the machine's by default.
+        by default that of the machine.
 
     Attributes
     ----------
     in_reach
-        whether messages come through, both ways: not while the radio of a simulated robot is cut.
+        whether messages come through, in both directions; False while the radio of a simulated robot is off.
     keep
-        keeps what the robot knows for its next life; by default it does not. The node calls it before it sends
-        anything, who carries work out before that begins.
+        stores what the robot needs after a restart; by default it does nothing. The node calls it before it sends
+        anything; a caller that carries tasks out calls it before work begins.
     """
 
     def __init__(
@@ -95,7 +96,7 @@ class Node:
         self.sent: Counter[str] = Counter()
         self.sent_bytes: Counter[str] = Counter()
         self.received = 0
-        self._codec, self._met = codec, None if seal is None else Acquaintance(seal)
+        self._codec, self._met = codec, None if seal is None else PeerSessions(seal)
         self._clock = clock or SystemClock()
         self._garbled: Counter[str] = Counter()
         self._room = transport.room - (0 if seal is None else OVERHEAD + 1)
@@ -108,14 +109,14 @@ class Node:
         self.transport.close()
 
     def start(self) -> None:
-        """Send what the negotiator says first; comes before all else."""
+        """Send the first messages of the negotiator; to be called before anything else."""
         self._send(self.negotiator.start(self._clock.now()))
 
     def step(self, wait_s: float) -> None:
-        """Wait until something comes, the negotiator is due, or so long; take in all that came, then let time go by.
+        """Wait for a message, until the negotiator is due, or for `wait_s`; process all messages, then let time pass.
 
-        What came while the robot was busy counts before its absence does: nobody is taken for silent whose messages
-        wait in the queue.
+        Messages that arrived while the robot was busy are processed before time passes: no robot counts as silent whose
+        messages wait in the queue.
         """
         if not self.negotiator.superseded:  # or it is never due again
             wait_s = max(0.0, min(wait_s, self.negotiator.due_s - self._clock.now()))
@@ -127,7 +128,7 @@ class Node:
         self._send(self.negotiator.tick(self._clock.now()))
 
     def run(self, until: Callable[[Node], bool], at_most_s: float | None = None) -> bool:
-        """Step until something is true; whether it came true in time."""
+        """Step until a condition holds; return whether it did in time."""
         end_s = None if at_most_s is None else self._clock.now() + at_most_s
         while not until(self):
             left_s = _LOOK_S if end_s is None else end_s - self._clock.now()
@@ -137,7 +138,7 @@ class Node:
         return True
 
     def status(self) -> NodeStatus:
-        """How things stand."""
+        """The current state."""
         negotiator, epoch = self.negotiator, self.negotiator.epoch
         stage, members = epoch.stage, epoch.own.members
         bids = (epoch.bids_of(negotiator.robot, number) for number in (stage.round, stage.round - 1))
@@ -162,22 +163,22 @@ class Node:
     def _take_in(self, data: bytes) -> None:
         try:
             message = self._codec.decode(data)
-        except OtherVersion:
+        except OtherVersionError:
             self._garbled["other_version"] += 1
-        except Garbled:
-            self._garbled["garbled"] += 1
+        except MalformedError:
+            self._garbled["malformed"] += 1
         else:
             self.received += 1
             self._send(self.negotiator.handle(message, self._clock.now()))
 
     def _greet(self) -> None:
-        """Ask those for a proof that speak and are not known, and answer those that ask."""
+        """Ask unknown processes for a proof, and answer those that ask."""
         for greeting in [] if self._met is None else self._met.greetings(self._clock.now(), self.transport.room):
             self._transmit("greetings", [greeting], None)
 
     def _send(self, out: Iterable[Outgoing]) -> None:
         for outgoing in out:
-            kind = "repairs" if outgoing.to is not None else "beats" if outgoing.message.is_idle else "news"
+            kind = "repairs" if outgoing.to is not None else "heartbeats" if outgoing.message.is_idle else "news"
             pieces = self._codec.parts(outgoing.message, self._room)
             self._transmit(kind, pieces if self._met is None else map(self._met.close, pieces), outgoing.to)
 

@@ -1,4 +1,4 @@
-"""One robot's process in a team that runs elsewhere: for how long it stays, and when it gives up."""
+"""One robot of a team that runs on other machines: how long its process stays, and when it gives up."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from muster.negotiation.robot_view import View, view_of
 _STEP_S = 0.05
 _NAMES_SHOWN = 5
 _HEARD_S = 3.0
-"""Until then somebody may speak up who understands this robot."""
+"""The time within which a robot that understands this one should answer, seconds."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Staying:
-    """How long a robot stays, seconds.
+class StayLimits:
+    """How long a robot's process stays, seconds.
 
     Parameters
     ----------
     wait_s
-        for robots of the team that are not there; then it agrees with those that are.
+        for robots of the team that are missing; then it agrees with those that are present.
     linger_s
-        when all agree, so that all others hear of it.
+        after agreement, so that all others learn of it.
     limit_s
         in all; then it gives up.
     """
@@ -39,21 +39,21 @@ class Staying:
 
 def take_part(
     node: Node,
-    staying: Staying,
-    on_look: Callable[[NodeStatus], None],
+    limits: StayLimits,
+    on_status: Callable[[NodeStatus], None],
     clock: Clock | None = None,
 ) -> tuple[View, float]:
-    """Take part until all that are there agree; what the robot knows then, and how long agreement took, seconds.
+    """Take part until all robots that are present agree; return the robot's view, and the time to agreement in seconds.
 
-    When the whole team has agreed, that holds, though robots leave, or fall silent, while this one stays for others.
+    An agreement of the whole team holds even if robots leave or fall silent while this one lingers.
 
-    `on_look` is told, about twenty times a second, how far the robot is.
+    `on_status` receives the robot's status about twenty times a second.
 
     Raises
     ------
     NetworkError
-        if another process runs under its name, nobody of the team is there, all that are have another mission or
-        version, or there is no agreement in time.
+        if another process uses its id, no other robot is present, all others have another mission or version, or there
+        is no agreement in time.
     """
     clock, negotiator = clock or SystemClock(), node.negotiator
     began_s = clock.now()
@@ -62,23 +62,23 @@ def take_part(
     while True:
         node.step(_STEP_S)
         status, passed_s = node.status(), clock.now() - began_s
-        on_look(status)
+        on_status(status)
         _check_name(status, negotiator)
-        _check_company(status, negotiator, passed_s, staying)
+        _check_company(status, negotiator, passed_s, limits)
         whole = len(status.members) == len(negotiator.rules.robots)
-        if status.settled and (whole or (passed_s >= staying.wait_s and not by_all)):
+        if status.settled and (whole or (passed_s >= limits.wait_s and not by_all)):
             if agreed is None or agreed[0].stage != negotiator.stage:
                 agreed, by_all = (view_of(negotiator), passed_s), whole
         elif not by_all:
             agreed = None
-        if agreed is not None and passed_s >= agreed[1] + staying.linger_s:
+        if agreed is not None and passed_s >= agreed[1] + limits.linger_s:
             return agreed
-        if agreed is None and passed_s > staying.limit_s:
-            raise NetworkError(f"{status.robot}: no agreement within {staying.limit_s:g} s; {_how_far(status)}")
+        if agreed is None and passed_s > limits.limit_s:
+            raise NetworkError(f"{status.robot}: no agreement within {limits.limit_s:g} s; {_how_far(status)}")
 
 
 def new_incarnation(before: int = 0) -> int:
-    """A number above all that the robot had: by the machine's clock, or one more than the last that is remembered."""
+    """A number above all earlier ones: from the machine's clock, or one more than the last that is remembered."""
     return max(before + 1, time.time_ns() // 1_000_000)
 
 
@@ -89,12 +89,12 @@ def _check_name(status: NodeStatus, negotiator: Negotiator) -> None:
         )
 
 
-def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, staying: Staying) -> None:
-    """Say why nobody can be understood."""
+def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, limits: StayLimits) -> None:
+    """Raise NetworkError with the reason if no other robot is understood."""
     if status.received or len(negotiator.rules.robots) == 1:
         return
     refused = status.refused
-    if passed_s < min(_HEARD_S, staying.wait_s, staying.limit_s):
+    if passed_s < min(_HEARD_S, limits.wait_s, limits.limit_s):
         return
     if refused["other_version"]:
         raise NetworkError(f"{status.robot}: the others speak another version; expected the same Muster everywhere")
@@ -102,7 +102,7 @@ def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, 
         raise NetworkError(
             f"{status.robot}: the others hold another auction; expected everywhere the same mission and terms"
         )
-    if passed_s < min(staying.wait_s, staying.limit_s):
+    if passed_s < min(limits.wait_s, limits.limit_s):
         return
     if refused["foreign"]:
         raise NetworkError(

@@ -1,4 +1,4 @@
-"""The optional parts that a network asks for."""
+"""The check that the extra `net` is installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot does with the tasks that it owns: begin them, finish them, give them back; and what it says of that."""
+"""The tasks that a robot owns: begin, reserve, finish and release them, and the facts that it states about that."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from muster.negotiation.messages import Claim, Fact
 
 
 @dataclass
-class Work:
-    """The work of one robot.
+class OwnedTasks:
+    """The tasks of one robot.
 
     Parameters
     ----------
     robot, incarnation
-        its id, and how often it has started.
+        its id, and the number of its start.
     known
-        what it knows for good.
+        the facts that it knows.
     begun, refused
-        tasks that it has begun; for which it does not bid.
+        tasks that it has begun; tasks for which it does not bid.
     reserved
-        by task that it has said it is going to begin for good the fact that tells so.
-    fresh
+        for each at-most-once task that it has announced to begin the fact that says so.
+    unsent
         facts that have not been sent yet.
-    out
-        whether it takes no tasks any more.
-    restless
-        whether the others must hear of a change at once: a new epoch is due.
+    withdrawn
+        whether it takes no more tasks.
+    epoch_due
+        whether the others have to learn of a change at once, in a new epoch.
     """
 
     robot: str
@@ -42,12 +42,12 @@ class Work:
     begun: set[str] = field(default_factory=set)
     refused: set[str] = field(default_factory=set)
     reserved: dict[str, Fact] = field(default_factory=dict)
-    fresh: list[Fact] = field(default_factory=list)
-    out: bool = False
-    restless: bool = False
+    unsent: list[Fact] = field(default_factory=list)
+    withdrawn: bool = False
+    epoch_due: bool = False
 
     @classmethod
-    def remembered(cls, robot: str, incarnation: int, memory: Memory) -> Work:
+    def remembered(cls, robot: str, incarnation: int, memory: Memory) -> OwnedTasks:
         begun = {claim.task for claim in memory.claims if claim.begun}
         reserved = {fact.task: fact for fact in memory.reserved}
         work = cls(robot, incarnation, begun=begun, refused=set(memory.refused), reserved=reserved)
@@ -59,27 +59,27 @@ class Work:
         return Memory(self.left_of(claims), facts, epoch, knows, frozenset(self.refused), reserved)
 
     def left_of(self, claims: Iterable[Claim]) -> tuple[Claim, ...]:
-        """The claims that still hold, with what has been begun first."""
+        """The claims that still hold; tasks that were begun come first."""
         done = self.known.done
         mine = [replace(c, begun=c.task in self.begun) for c in claims if c.task not in done or c.task in self.begun]
-        kept = [claim for claim in mine if claim.begun or not (self.out or claim.task in self.refused)]
+        kept = [claim for claim in mine if claim.begun or not (self.withdrawn or claim.task in self.refused)]
         return (*(claim for claim in kept if claim.begun), *(claim for claim in kept if not claim.begun))
 
     def up_to_date(self, epoch: Epoch) -> tuple[Claim, ...]:
-        """What is left of an epoch's route without tasks that were heard to be elsewhere since it began."""
+        """The claims of an epoch that still hold, without tasks that are known since then to have moved."""
         knew = epoch.own.facts if epoch.base is None else epoch.base.facts
         moved = {fact.task for fact in self.known.facts.difference(knew) if fact.kind == "moved"}
         return tuple(claim for claim in self.left_of(epoch.route()) if claim.begun or claim.task not in moved)
 
     def say(self, task: str, kind: str, content: bytes = b"") -> Fact:
-        """Say something that is true for good, once."""
+        """State a fact once."""
         fact, is_new = self.known.say(task, self.robot, kind, content)
-        self.fresh += [fact] if is_new else []
+        self.unsent += [fact] if is_new else []
         return fact
 
     def say_again(self, task: str, kind: str, content: bytes) -> None:
-        """The same of what may be said of a task more than once."""
-        self.fresh.append(self.known.add(task, self.robot, kind, content))
+        """State a fact of a kind that may be stated several times of one task."""
+        self.unsent.append(self.known.add(task, self.robot, kind, content))
 
     def may_begin(self, task: str, epoch: Epoch, shown: Iterable[str], rules: Rules) -> bool:
         """Whether the robot may begin a task that it owns in this epoch; `shown` are members that have its base."""
@@ -97,7 +97,7 @@ class Work:
         self.begun.add(task)
 
     def reserve(self, task: str) -> None:
-        """Say that the robot, in this incarnation, is going to begin a task that nobody may begin twice."""
+        """Announce that the robot, in this incarnation, is going to begin an at-most-once task."""
         if task not in self.reserved:
             self.reserved[task] = self.say(task, "begun", str(self.incarnation).encode())
 
@@ -108,7 +108,7 @@ class Work:
     def abandon(self, task: str) -> None:
         if task in self.begun:
             self.begun.discard(task)
-            self.restless = True
+            self.epoch_due = True
 
     def release(self, task: str, rules: Rules) -> None:
         if task in rules.once and task in self.begun:
@@ -117,26 +117,26 @@ class Work:
         self.give_up(task)
 
     def give_up(self, task: str) -> None:
-        """Never bid for a task again."""
+        """Do not bid for a task any more."""
         if task in self.reserved:
             self.say(task, "waived", self.reserved.pop(task).content)
         self.refused.add(task)
-        self.restless = True
+        self.epoch_due = True
 
     def withdraw(self) -> None:
-        """Take no tasks any more, and give back all that has not been begun."""
+        """Take no more tasks, and give back all that were not begun."""
         for task in self.reserved.keys() - self.begun:
             self.give_up(task)
-        self.restless |= not self.out
-        self.out = True
+        self.epoch_due |= not self.withdrawn
+        self.withdrawn = True
 
     def give_up_lost(self, kept: Sequence[Claim]) -> None:
-        """Give up what was reserved and went to another before it was begun."""
+        """Give up tasks that were reserved and went to another robot before they were begun."""
         for task in self.reserved.keys() - self.begun - self.known.done - {claim.task for claim in kept}:
             self.give_up(task)
 
     def _is_reserved(self, task: str, base: Base, epoch: Epoch, shown: Iterable[str], rules: Rules) -> bool:
-        """Whether a majority of the mission's robots knows that this one is going to begin the task."""
+        """Whether a majority of the mission's robots knows that this robot is going to begin the task."""
         tell = [declared for robot in shown if (declared := epoch.declaration_of(robot)) is not None]
         said = self.reserved.get(task) in base.facts
         return said and sum(declared.knows for declared in tell) >= rules.majority

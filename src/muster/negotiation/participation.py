@@ -1,4 +1,4 @@
-"""What takes a robot into an auction, its negotiator, and what comes out of it: the plan as the robot sees it."""
+"""Entry into the auction and its result: makes the negotiator of a robot, and the plan as one robot sees it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from muster.mission.plan import Plan
 from muster.negotiation.bundles import BundleValuer
 from muster.negotiation.effects import Memory
 from muster.negotiation.epoch_base import Rules
-from muster.negotiation.members import Patience
+from muster.negotiation.members import Timeouts
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import with_tasks
 from muster.negotiation.robot_book import book_of_bundles, book_of_view
@@ -28,7 +28,7 @@ from muster.negotiation.valuation import AuctionValuer, Valuer
 
 
 def rules_of(problem: Problem) -> Rules:
-    """What the robots' agreement must hold."""
+    """The rules of a mission that the agreement has to respect."""
     linked = problem.holds("prerequisite")
     return Rules(
         robots=problem.robot_index,
@@ -46,21 +46,20 @@ def negotiator_of(
     *,
     incarnation: int,
     valuer: Callable[[Problem, Any, str], Valuer] = AuctionValuer,
-    patience: Patience = Patience(),  # noqa: B008 - frozen
+    timeouts: Timeouts = Timeouts(),  # noqa: B008 - frozen
     remembered: Memory | None = None,
     forgot: bool = False,
     absent: Collection[str] = (),
 ) -> Negotiator:
     """A robot that takes part, in the auction by default.
 
-    `params` are those of the `valuer`; `incarnation` is above all that it had before; `remembered`, `forgot` and
-    `absent` are as the negotiator has them.
+    `params` are those of the `valuer`. The other arguments are as for `Participant`.
     """
     return Negotiator(
         robot=robot,
         rules=rules_of(problem),
         valuer=valuer(problem, params, robot),
-        patience=patience,
+        timeouts=timeouts,
         incarnation=incarnation,
         remembered=remembered,
         forgot=forgot,
@@ -75,7 +74,7 @@ bundler_of = partial(negotiator_of, valuer=BundleValuer)
 def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
     """The plan as a robot sees it, with its book.
 
-    Where nothing failed it is, seconds aside, that of the auction in one process.
+    Without faults it equals that of the auction in one process, except for seconds.
     """
     valuer = negotiator.valuer
     assert isinstance(valuer, AuctionValuer)
@@ -83,12 +82,12 @@ def plan_of(problem: Problem, negotiator: Negotiator) -> Plan:
 
 
 def plan_of_view(problem: Problem, terms: Terms, view: View, elapsed_s: float | None = None) -> Plan:
-    """The plan in a view; `elapsed_s` is how long the robots took to agree, seconds."""
+    """The plan in a view; `elapsed_s` is the time until the robots agreed, seconds."""
     return _plan(problem, view, book_of_view(problem, terms, view), AUCTION.name, elapsed_s)
 
 
 def plan_of_bundles(problem: Problem, params: BundleParameters, view: View, elapsed_s: float | None = None) -> Plan:
-    """The same of CBBA; where nothing failed it is that of CBBA in one process on a complete network."""
+    """The plan of CBBA in a view; without faults it equals that of CBBA in one process on a complete network."""
     return _plan(problem, view, book_of_bundles(problem, params, view), CONSENSUS_BUNDLE.name, elapsed_s)
 
 

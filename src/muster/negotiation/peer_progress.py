@@ -1,4 +1,4 @@
-"""What a robot knows of how far the others are: which members have found its base, and have ended with it."""
+"""How far the other members are: which of them have found this robot's base, and which have ended with it."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from muster.negotiation.messages import Message, Stage
 
 
 @dataclass
-class Agreement:
-    """What one robot knows of that.
+class PeerProgress:
+    """The progress of the other members, as one robot knows it.
 
     Parameters
     ----------
     robot
-        its id.
+        the robot's id.
     shown
         members that have shown the base of its epoch, itself included.
     agreed
-        members of which it knows that they are at the stage at which it ended.
+        members that are known to be at the stage at which the robot ended.
     """
 
     robot: str
@@ -28,7 +28,7 @@ class Agreement:
     _on: Stage = field(default_factory=lambda: Stage(0))
 
     def enter(self) -> None:
-        """The robot goes into another epoch."""
+        """The robot enters another epoch."""
         self.shown = set()
 
     def find_base(self) -> None:
@@ -36,14 +36,14 @@ class Agreement:
         self.shown = {self.robot}
 
     def end(self, stage: Stage) -> bool:
-        """The robot is at a stage that has ended; whether it was not before."""
+        """The robot is at a stage that has ended; return whether that is new."""
         if self._on == stage:
             return False
         self.agreed, self._on = {self.robot}, stage
         return True
 
     def hear(self, message: Message, stage: Stage) -> None:
-        """Take in how far others are; `stage` is the robot's own."""
+        """Note the progress in a message; `stage` is the robot's own."""
         if stage.base and message.stage.base == stage.base:
             self.shown.add(message.sender)
             self.shown.update(message.agreed)

@@ -1,16 +1,16 @@
-"""Whose messages are of this run: those of processes that have proved that they hear this one.
+"""Replay protection across runs: messages count only from processes that have proved that they hear this one.
 
-Who has recorded what robots said in an earlier run under the same key could play it back to one that has just started,
-and make robots appear that are not there. So a message of a process is kept until that process has said something that
-names this one's session, which nobody could know before: 96 random bits (see `seal`). Processes that meet ask each
-other for that by greetings:
+An attacker who has recorded messages of an earlier run under the same key could replay them to a process that has just
+started, and so pretend that robots are present. Therefore a message of a process is held back until that process has
+sent something that names this process's session, 96 random bits that nobody could know before (see `encryption`).
+Processes exchange these proofs in greetings:
 
-    asks: sessions that are heard, and have not proved themselves | answers: sessions that have asked for a proof
+    asks: sessions that are heard and have not proved themselves | answers: sessions that have asked for a proof
 
-each of which names the session for which it is a proof. Two processes that hear each other have met after one message
-each way, or when one that was lost is repeated: who is not known yet is asked again whenever it speaks.
+Each entry names the session for which it is a proof. Two processes that hear each other know each other after one
+message in each direction; after a loss, an unproven process is asked again whenever it sends something.
 
-Sans-I/O. A process that hears another, but is not heard by it, does not take in its words.
+Sans-I/O. A process that hears another but is not heard by it does not process its messages.
 """
 
 from __future__ import annotations
@@ -21,36 +21,35 @@ from dataclasses import dataclass, field
 from muster.negotiation.encryption import OVERHEAD, SESSION, Seal
 
 KEPT = 32
-"""Messages of one process that are kept until it has proved itself; of more the oldest go."""
+"""The number of messages kept of a process that has not proved itself; of more the oldest are dropped."""
 STRANGERS = 256
-"""Processes of which messages are kept; of more those that have come first go."""
+"""The number of unproven processes of which messages are kept; of more the first ones are dropped."""
 REST_S = 0.05
-"""Nobody is asked twice within so long, seconds."""
+"""The shortest time between two requests for a proof to the same process, seconds."""
 
 _MESSAGE, _GREETING = b"\0", b"\1"
 
 
 @dataclass
-class _Stranger:
+class _UnprovenPeer:
     kept: deque[bytes] = field(default_factory=lambda: deque(maxlen=KEPT))
     asked_s: float = float("-inf")
     speaks: bool = True  # since it was asked
 
 
-class Acquaintance:
-    """Closes and opens messages, and tells which greetings are to be sent to all.
+class PeerSessions:
+    """Seals and opens messages, and tells which greetings to send to all.
 
     Attributes
     ----------
     counts
-        as `Seal.counts`, and `unproven`: messages that were not taken in, or not yet, as their sender has not proved
-        that it hears this process.
+        as `Seal.counts`, and `unproven`: messages held back because their sender has not proved itself.
     """
 
     def __init__(self, seal: Seal) -> None:
         self._seal = seal
         self._known: set[bytes] = set()
-        self._strangers: dict[bytes, _Stranger] = {}
+        self._strangers: dict[bytes, _UnprovenPeer] = {}
         self._owed: dict[bytes, None] = {}  # answers
         self._unproven = 0
 
@@ -59,11 +58,11 @@ class Acquaintance:
         return self._seal.counts + Counter(unproven=self._unproven)
 
     def close(self, data: bytes) -> bytes:
-        """What is to be sent of this."""
+        """The bytes to send for a message."""
         return self._seal.close(_MESSAGE + data)
 
     def open(self, data: bytes) -> list[bytes]:
-        """The messages that may be read now: this one, and those that its sender sent before it had proved itself."""
+        """The messages that may be read now: this one, and earlier ones of its sender if it has just proved itself."""
         opened = self._seal.open_from(data)
         if opened is None:
             return []
@@ -80,7 +79,7 @@ class Acquaintance:
         return []
 
     def greetings(self, now: float, room: int) -> list[bytes]:
-        """What is to be sent to all now; each fits into `room` bytes once it is closed."""
+        """The greetings to send to all now; each fits into `room` bytes once it is sealed."""
         asks = [session for session, one in self._strangers.items() if one.speaks and now >= one.asked_s + REST_S]
         for session in asks:
             self._strangers[session].asked_s, self._strangers[session].speaks = now, False
@@ -101,14 +100,14 @@ class Acquaintance:
         return []
 
     def _meet(self, session: bytes) -> list[bytes]:
-        """A process has proved itself; what it has said before."""
+        """A process has proved itself; return the messages that were held back."""
         self._known.add(session)
         stranger = self._strangers.pop(session, None)
         kept = [] if stranger is None else list(stranger.kept)
         self._unproven -= len(kept)
         return kept
 
-    def _stranger(self, session: bytes) -> _Stranger:
+    def _stranger(self, session: bytes) -> _UnprovenPeer:
         if session not in self._strangers and len(self._strangers) >= STRANGERS:
             del self._strangers[next(iter(self._strangers))]
-        return self._strangers.setdefault(session, _Stranger())
+        return self._strangers.setdefault(session, _UnprovenPeer())

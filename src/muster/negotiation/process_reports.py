@@ -1,4 +1,4 @@
-"""What robots' processes tell the one that has started them, and what that tells them. Plain data for pipes."""
+"""Messages between robots' processes and their starter. Plain data for pipes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from muster.allocation.auction_terms import Terms
 from muster.allocation.problem import Problem
-from muster.negotiation.members import Patience
+from muster.negotiation.members import Timeouts
 from muster.negotiation.messages import Stage
 from muster.negotiation.node import NodeStatus
 from muster.negotiation.robot_view import View
@@ -17,31 +17,31 @@ from muster.negotiation.robot_view import View
 TRANSPORTS = ("udp", "zenoh")
 
 GO, SHOW = "go", "show"
-"""Commands to a robot: begin; tell what you know."""
+"""Commands to a robot: begin; send your view."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Order:
-    """An auction that is to be held by the whole team of a mission.
+class TeamSetup:
+    """An auction that the whole team of a mission takes part in.
 
     Parameters
     ----------
     problem, terms
-        what about, and on which terms.
+        the mission and the method's parameters.
     method, transport
         names of METHODS and TRANSPORTS.
     key
-        that the team shares.
-    patience
-        how long robots wait for one another.
+        the team's key.
+    timeouts
+        the protocol's time limits.
     late
-        robots that are not started with the others, but when `Team.start` is called.
-    lives
-        how many processes those robots have, one after another, that have more than one.
+        robots that are not started with the others, but by `Team.start`.
+    starts
+        the number of processes, one after another, of each robot that has more than one.
     memory
-        a folder in which robots keep what they know for their next life; needed where one has it.
+        a folder in which robots store what they need after a restart; required where a robot restarts.
     part
-        what a robot's process does; None: it holds the auction, and no more.
+        what a robot's process does; None: it takes part in the auction and does nothing else.
     """
 
     problem: Problem
@@ -49,52 +49,52 @@ class Order:
     key: bytes = field(repr=False)
     method: str = "auction"
     transport: str = "udp"
-    patience: Patience = field(default_factory=Patience)
+    timeouts: Timeouts = field(default_factory=Timeouts)
     late: frozenset[str] = frozenset()
-    lives: Mapping[str, int] = field(default_factory=dict)
+    starts: Mapping[str, int] = field(default_factory=dict)
     memory: Path | None = None
     part: Callable[[Any], None] | None = None
 
     @property
-    def seats(self) -> list[tuple[str, int]]:
-        """All processes: whose, and which of its lives, from 1."""
+    def processes(self) -> list[tuple[str, int]]:
+        """All processes: the robot, and the number of the start, from 1."""
         robots = [robot.id for robot in self.problem.mission.robots]
-        return [(robot, life + 1) for robot in robots for life in range(self.lives.get(robot, 1))]
+        return [(robot, start_number + 1) for robot in robots for start_number in range(self.starts.get(robot, 1))]
 
 
 @dataclass(frozen=True)
-class Born:
-    """A robot has a process, for one of its lives."""
+class ProcessStarted:
+    """A process of a robot has started."""
 
     robot: str
-    life: int
+    start_number: int
     pid: int
 
 
 @dataclass(frozen=True)
-class Gone:
-    """A robot's process has ended; why."""
+class ProcessEnded:
+    """A process of a robot has ended, and why."""
 
     robot: str
-    life: int
+    start_number: int
     why: str
 
 
 @dataclass(frozen=True)
 class Ready:
-    """A robot could take part now."""
+    """A robot is ready to take part."""
 
 
 @dataclass(frozen=True)
 class Failed:
-    """A robot cannot take part."""
+    """A robot cannot take part, and why."""
 
     why: str
 
 
 @dataclass(frozen=True)
-class News:
-    """How far a robot is; `view` if it was asked to show it."""
+class Progress:
+    """A robot's progress; `view` if it was asked for."""
 
     status: NodeStatus
     stage: Stage

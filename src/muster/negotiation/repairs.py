@@ -1,10 +1,10 @@
-"""Anti-entropy: what the sender of a message lacks, and whether it is this robot that sends it.
+"""Anti-entropy: which robots send what the sender of a heartbeat lacks.
 
-A beat tells how far its sender is and what it lacks. Of all that may have that, about HELPERS send it, all at once, as
-a number drawn from the beat says, so that nobody need know who else answers; where few words are lacking, those whose
-they are answer, too. Who asks for the same again and again may not hear the others at all: then all that hear it help,
-and pass on in their own beats what it lacks as soon as they know it. So words go on from neighbour to neighbour where
-not all hear each other.
+A heartbeat states its sender's progress and what it lacks. About HELPERS of the robots that have the lacking data send
+it, all at once. A hash of the heartbeat selects them, so that no robot needs to know who else answers. Where little is
+lacking, its authors answer too. A robot that asks for the same repeatedly may not hear the others at all. Then all
+robots that hear it answer, and relay in their own heartbeats what it lacks. So data travel from neighbour to neighbour
+where not all robots hear each other.
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ from muster.negotiation.knowledge import Knowledge
 from muster.negotiation.messages import Message, Stage
 
 URGENT = 3
-"""Who asks so often for the same is in need."""
+"""A robot that has asked for the same this often is answered by all."""
 
 HELPERS = 2
-"""Of those that could send what somebody lacks, about so many do; so few words each author sends itself, too."""
+"""About this many robots send what a robot lacks. At most this many lacking authors send their own data too."""
 
 CROWD = 20
-"""In a larger team not all that lack something ask at once, so that about so many do in `retry_s`, and for each time
-that it is larger so many more help. Who is helped first goes on, and its next word helps the others."""
+"""In teams larger than this, requests are spread in time so that about this many robots ask within `retry_s`, and more
+robots answer in proportion. A robot that is answered first goes on, and its next message helps the others.
+"""
 
 Round = tuple[int, int]
 """A round of an epoch; later ones are greater."""
@@ -35,15 +36,15 @@ Round = tuple[int, int]
 
 @dataclass
 class Repairs:
-    """What one robot does for others.
+    """The repairs that one robot sends.
 
     Parameters
     ----------
     me
         its id.
     retry_s
-        who lacks something asks after so long, seconds, in a large team some later; nobody is answered twice within
-        half of it, unless it has got on.
+        the time, seconds, after which a robot that lacks something asks; more in large teams. No robot is answered
+        twice within half of it, unless it has made progress.
     """
 
     me: str
@@ -54,16 +55,16 @@ class Repairs:
     _answered: dict[str, tuple[float, Stage, int]] = field(default_factory=dict)
 
     def hear(self, message: Message) -> None:
-        """Take in how far a robot is, and what it lacks."""
+        """Note the progress of a robot, and what it lacks."""
         stage = message.stage
         self._note(message.sender, (stage.epoch, stage.round))
-        if message.pulses:
+        if message.heartbeats:
             asked, _, times = self._asked.get(message.sender, (None, (), 0))
             self._asked[message.sender] = stage, message.lacks, times + 1 if asked == stage else 1
 
     def answer(self, message: Message, epoch: Epoch, known: Knowledge, now: float) -> dict[str, Any] | None:
-        """What to tell the sender of a message, as fields of one to it; None: nothing."""
-        if not message.pulses:  # who has news is not waiting; if it is, its next beat tells so
+        """The fields of a message that answers a heartbeat; None: no answer."""
+        if not message.heartbeats:  # who has news is not waiting; if it is, its next heartbeat tells so
             return None
         what = self._lacking(message, epoch)
         if message.known != known.digest and known.facts and self._helps(message):
@@ -71,12 +72,12 @@ class Repairs:
         return what if what is not None and self.may_answer(message, now) else None
 
     def asks_s(self, number: int, members: int) -> float:
-        """How long after its message of this number the robot asks for what it lacks, in a team of so many."""
+        """The time from the message of this number until the robot asks for what it lacks, in a team of this size."""
         later = crc32(f"{self.me} {number}".encode()) / 2**32 * max(0.0, members / CROWD - 1)
         return self.retry_s * (1 + later)
 
     def passed_on(self, epoch: Epoch) -> dict[str, Any]:
-        """What robots in need lack and this one knows, with its own last words, as fields of a message."""
+        """Fields of a heartbeat: what robots in need lack and this one has, and its own last statements."""
         declared, bid = {self.me}, {self.me}
         for stage, lacks, times in self._asked.values():
             if times >= URGENT and stage.epoch == epoch.stage.epoch:
@@ -102,7 +103,7 @@ class Repairs:
                 del self._in_round[before]
 
     def may_answer(self, message: Message, now: float) -> bool:
-        """Whether the sender has got on since it was answered last, or that is long ago; if so, it is answered now."""
+        """Whether the sender has made progress since its last answer, or that was long ago; if so, note an answer."""
         to, state = message.sender, (message.stage, message.known)
         last_s, *last = self._answered.get(to, (-1.0, None, 0))
         if tuple(last) == state and now < last_s + self.retry_s / 2:
@@ -122,8 +123,8 @@ class Repairs:
         if stage.base != own.base:
             return None
         behind = stage.round < own.round or (own.ended and not stage.ended)
-        if behind and (epoch.valuer.told_by_sales or (own.ended and epoch.sales)):
-            known = stage.round if epoch.valuer.told_by_sales else 0
+        if behind and (epoch.valuer.sales_suffice or (own.ended and epoch.sales)):
+            known = stage.round if epoch.valuer.sales_suffice else 0
             return {"sales": tuple(epoch.sales[known:]), "sales_from": known} if self._helps(message) else None
         if stage.round <= own.round:
             bids = tuple(b for robot in self._lacked(message) if (b := epoch.bids_of(robot, stage.round)) is not None)
@@ -131,13 +132,13 @@ class Repairs:
         return None
 
     def _lacked(self, message: Message) -> Sequence[str]:
-        """Whose words this robot sends, of those that are lacking: its own if there are few, or all."""
+        """The robots whose data this robot sends: of all lacking ones, or its own if few are lacking."""
         if message.lacks and self._helps(message):
             return message.lacks
         return (self.me,) if len(message.lacks) <= HELPERS and self.me in message.lacks else ()
 
     def _helps(self, message: Message) -> bool:
-        """Whether it is this robot that sends what is lacking; to one in need always."""
+        """Whether this robot sends what is lacking; always for a sender in need."""
         if self._asked.get(message.sender, (None, (), 0))[2] >= URGENT:
             return True
         asked = (message.stage.epoch, message.stage.round)

@@ -1,8 +1,8 @@
 """The book of an auction without a centre, from one robot's view of it.
 
-Robots publish what the winner rule needs, no more; but what each would bid follows from the routes that all know. So
-the auctions are held again, and every bid is told as the book of the auction in one process tells it. (A bid that a
-robot did not make, since it had given the task back, is told too: others cannot know.)
+Robots publish only what the winner rule needs, but their bids follow from the routes that all know. So the auctions are
+repeated, and every bid is recorded as in the book of the auction in one process. (A bid that a robot did not make
+because it had given the task back is recorded too: others cannot know.)
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from muster.allocation.winners import Sale
 from muster.mission.auction_book import Award, Book, TakeBid
 from muster.negotiation.bundles import BundleValuer
 from muster.negotiation.messages import Claim
-from muster.negotiation.robot_view import Held, View
+from muster.negotiation.robot_view import EpochAuction, View
 from muster.negotiation.valuation import AuctionValuer
 
 OnSale = Callable[[Problem, Auctioneer, Sale, Sequence[int]], None]
-"""Is told of a sale before the task has its owner: of which problem, and which robots could bid."""
+"""Called before a sold task is assigned, with the problem, the auctioneer, the sale and the robots that could bid."""
 
 
 def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
-    """The book: awards of all that the view's robots own, and the bids of all rounds that the robot has seen.
+    """The book: awards of all tasks that robots own in the view, and the bids of all rounds that the robot has seen.
 
-    Of a task that was won where the robot could not see it, the book knows the price alone. `messages` is None where
-    the whole team took part throughout, so that every robot has bid for all that it could do; else it tells how many
-    the robot has sent.
+    Of a task that was won where the robot could not see it, the book knows only the price. `messages` is None where the
+    whole team took part throughout, so that every robot has bid for all that it could do; else it is the number that
+    the robot sent.
     """
     auctions = view.auctions
 
@@ -52,8 +52,8 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     )
 
 
-def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sale: OnSale) -> None:
-    """Ask all robots for their bids, and tell of them round by round."""
+def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[EpochAuction], on_sale: OnSale) -> None:
+    """Repeat the auctions, and report each sale."""
     valuer = AuctionValuer(problem, terms, problem.robots[0].id)
     for held in auctions:
         valuer.begin(held.opening)
@@ -65,7 +65,7 @@ def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[Held], on_sal
 
 
 def _awards(
-    problem: Problem, terms: Terms, auctions: Sequence[Held], claims: Mapping[str, Sequence[Claim]]
+    problem: Problem, terms: Terms, auctions: Sequence[EpochAuction], claims: Mapping[str, Sequence[Claim]]
 ) -> list[Award]:
     """How each task came to the robot that owns it, in the order of rounds."""
     seen: dict[tuple[str, str, int], Award] = {}
@@ -87,7 +87,7 @@ def _awards(
 
 
 def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:
-    """The book of CBBA: that of the last epoch, held again if the robot heard it whole, else what was won alone."""
+    """The book of CBBA: of the last epoch, repeated if the robot heard it completely, else only what was won."""
     held = view.auctions[-1]
     if not held.whole:
         owned = [(c.round, c.task, robot, score(c.price)) for robot, claims in view.claims.items() for c in claims]

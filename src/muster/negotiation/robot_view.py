@@ -1,4 +1,4 @@
-"""What one robot knows of an auction without a centre: who owns what, and how that came. Plain data; goes to others."""
+"""One robot's view of the auction: who owns what, and how that came about. Plain data that can be sent."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.valuation import Opening
 
 Routes = Mapping[str, tuple[str, ...]]
-"""By robot its tasks, in the order in which it does them."""
+"""The tasks of each robot, in the order of execution."""
 
 
 @dataclass(frozen=True)
-class Held:
-    """The auction of an epoch, as far as it was seen.
+class EpochAuction:
+    """The auction of an epoch, as far as the robot has seen it.
 
     Parameters
     ----------
     members
-        who could bid, in tie order.
+        the robots that could bid, in tie order.
     rounds
-        seen in all before it.
+        the number of rounds seen in all before it.
     opening
-        how things stood when it began.
+        the state of the mission when it began.
     sales
         in order.
     published
-        what members bid, by round; empty where sales tell all.
+        the members' bids by round; empty where sales contain everything.
     whole
-        whether that is all rounds.
+        whether these are all rounds.
     """
 
     members: tuple[str, ...]
@@ -50,21 +50,21 @@ class View:
     Parameters
     ----------
     robot
-        whose view it is.
+        the robot whose view it is.
     stage
-        how far the robot is.
+        its progress.
     routes
-        of all robots that have any; what was done stands first.
+        of all robots that have any; tasks that were done come first.
     claims
-        of members: by robot what it owns, for which price, won in which round.
+        for each member what it owns, with prices and rounds.
     twice
         tasks begun or done by several robots, with these.
     added
-        tasks that the mission did not have, as `tasks.content_of` writes them, in tie order.
+        tasks that were added to the mission, as `new_tasks.content_of` writes them, in tie order.
     auctions
-        one an epoch, the last one last.
+        one per epoch, the last one last.
     sent
-        messages that the robot has sent.
+        the number of messages that the robot has sent.
     """
 
     robot: str
@@ -73,17 +73,17 @@ class View:
     claims: Mapping[str, tuple[Claim, ...]]
     twice: Routes
     added: tuple[bytes, ...]
-    auctions: tuple[Held, ...]
+    auctions: tuple[EpochAuction, ...]
     sent: int
 
     @property
     def rounds(self) -> int:
-        """How many rounds were seen in all."""
+        """The number of rounds seen in all."""
         return self.auctions[-1].rounds + len(self.auctions[-1].sales) if self.auctions else 0
 
 
 def view_of(negotiator: Negotiator) -> View:
-    """What a robot knows now; between two epochs, what it knew in the last."""
+    """What a robot knows now; between two epochs, what it knew in the last one."""
     epochs, counts = negotiator.epochs, negotiator.counts
     auctions = tuple(held for epoch in epochs if (held := _held(epoch)) is not None)
     last = epochs[-1].base if epochs else None
@@ -96,16 +96,18 @@ def view_of(negotiator: Negotiator) -> View:
         twice={} if last is None else dict(negotiator.twice),
         added=() if last is None else tuple(fact.content for fact in last.added),
         auctions=auctions,
-        sent=counts.news + counts.repairs + counts.beats,
+        sent=counts.news + counts.repairs + counts.heartbeats,
     )
 
 
-def _held(epoch: Epoch) -> Held | None:
+def _held(epoch: Epoch) -> EpochAuction | None:
     if epoch.base is None:
         return None
-    published = () if epoch.valuer.told_by_sales else epoch.published()
-    whole = epoch.valuer.told_by_sales or len(published) == epoch.round
-    return Held(epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales), published, whole)
+    published = () if epoch.valuer.sales_suffice else epoch.published()
+    whole = epoch.valuer.sales_suffice or len(published) == epoch.round
+    return EpochAuction(
+        epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales), published, whole
+    )
 
 
 def _claims(base: Base, epoch: Epoch) -> dict[str, tuple[Claim, ...]]:

@@ -1,4 +1,4 @@
-"""A whole team on this machine, a process a robot: started, watched, and ended, whatever happens."""
+"""A whole team on this machine, one process per robot: started, observed and ended."""
 
 from __future__ import annotations
 
@@ -16,69 +16,78 @@ from types import TracebackType
 
 from muster.mission.errors import MusterError
 from muster.mission.interrupts import ctrl_c_held_back
-from muster.negotiation.members import Patience
+from muster.negotiation.members import Timeouts
 from muster.negotiation.optional_parts import require_net
-from muster.negotiation.process_reports import GO, SHOW, Born, Failed, Gone, News, Order, Ready
+from muster.negotiation.process_reports import (
+    GO,
+    SHOW,
+    Failed,
+    ProcessEnded,
+    ProcessStarted,
+    Progress,
+    Ready,
+    TeamSetup,
+)
 from muster.negotiation.robot_view import View
 
 _ENDING_S = 3.0
-_BORN_S = 0.05
+_START_POLL_S = 0.05
 
 
 class Team:
-    """Processes of robots that hold an auction. A context manager: none of them outlives it.
+    """The processes of robots that take part in an auction. A context manager: no process outlives it.
 
-    `on_word` is told all that a robot says beside how far it is.
+    `on_report` receives every report of a robot other than its progress.
 
     Attributes
     ----------
     pids
-        by robot its process; of one that has started again, the last.
-    news
-        by robot the last it has told.
-    gone
-        by robot why its process has ended, if it has not started again.
+        the process of each robot; the last one of a robot that has restarted.
+    progress
+        the last progress report of each robot.
+    ended
+        for each robot whose process has ended without a restart the reason.
     began_s
-        when all were ready and the auction began, by the monotonic clock; None before.
+        when all were ready and the auction began, on the monotonic clock; None before.
 
     Raises
     ------
     MissingExtraError
         if the extra `net` is not installed.
     MusterError
-        from `hear`, if a robot cannot take part at all.
+        from `poll`, if a robot cannot take part at all.
     """
 
-    def __init__(self, order: Order, on_word: Callable[[str, object], None] = lambda robot, word: None) -> None:
-        require_net("cryptography", "msgpack", *(("zenoh",) if order.transport == "zenoh" else ()))
-        self.robots = [robot.id for robot in order.problem.mission.robots]
-        self.news: dict[str, News] = {}
-        self.gone: dict[str, str] = {}
+    def __init__(self, setup: TeamSetup, on_report: Callable[[str, object], None] = lambda robot, report: None) -> None:
+        require_net("cryptography", "msgpack", *(("zenoh",) if setup.transport == "zenoh" else ()))
+        self.robots = [robot.id for robot in setup.problem.mission.robots]
+        self.progress: dict[str, Progress] = {}
+        self.ended: dict[str, str] = {}
         self.began_s: float | None = None
         self._ready: set[str] = set()
-        self._order, self._on_word = order, on_word
-        self._life = {robot: 1 for robot in self.robots if robot not in order.late}  # of those that have started
-        self._born: dict[tuple[str, int], int] = {}
+        self._setup, self._on_report = setup, on_report
+        self._starts = {robot: 1 for robot in self.robots if robot not in setup.late}  # of those that have started
+        self._pids: dict[tuple[str, int], int] = {}
         self._pipes: dict[str, Connection] = {}  # of those that live
-        self._unborn: dict[tuple[str, int], Connection] = {}  # seats that are not taken yet
+        self._spare_pipes: dict[tuple[str, int], Connection] = {}  # processes that are not taken yet
 
     def __enter__(self) -> Team:
-        self._nursery_pipe, theirs = Pipe()
-        seats = self._order.seats
-        pairs = [Pipe() for _ in seats]
+        self._factory_pipe, theirs = Pipe()
+        processes = self._setup.processes
+        pairs = [Pipe() for _ in processes]
         ends = [theirs, *(end for _, end in pairs)]
         descriptors = [end.fileno() for end in ends]
         with ctrl_c_held_back():
-            self._nursery = subprocess.Popen(
+            self._factory = subprocess.Popen(
                 [sys.executable, "-m", "muster.negotiation.process_factory", *map(str, descriptors)],
                 pass_fds=descriptors,
             )
         for end in ends:
             end.close()
-        self._unborn = {seat: pipe for seat, (pipe, _) in zip(seats, pairs, strict=True)}
-        self._pipes = {robot: self._unborn.pop((robot, 1)) for robot in self._life}
+        self._spare_pipes = {context: pipe for context, (pipe, _) in zip(processes, pairs, strict=True)}
+        self._pipes = {robot: self._spare_pipes.pop((robot, 1)) for robot in self._starts}
         try:
-            self._nursery_pipe.send(_light(self._order))
+            self._factory_pipe.send(_with_measured_travel(self._setup))
         except BaseException:
             self.__exit__(*sys.exc_info())
             raise
@@ -89,74 +98,76 @@ class Team:
     ) -> None:
         if kind is not None:
             self._kill_all()
-        for pipe in (*self._pipes.values(), *self._unborn.values(), self._nursery_pipe):
+        for pipe in (*self._pipes.values(), *self._spare_pipes.values(), self._factory_pipe):
             pipe.close()  # who has not ended yet hears that
         try:
-            self._nursery.wait(_ENDING_S)
+            self._factory.wait(_ENDING_S)
         except subprocess.TimeoutExpired:
             self._kill_all()
         finally:
-            self._nursery.kill()
-            self._nursery.wait()
+            self._factory.kill()
+            self._factory.wait()
 
     @property
     def pids(self) -> dict[str, int]:
-        return {robot: pid for (robot, life), pid in self._born.items() if life == self._life.get(robot)}
+        return {
+            robot: pid for (robot, start_number), pid in self._pids.items() if start_number == self._starts.get(robot)
+        }
 
     @property
     def living(self) -> list[str]:
         """Robots that have started, and whose processes have not ended."""
-        return [robot for robot in self.robots if robot in self._life and robot not in self.gone]
+        return [robot for robot in self.robots if robot in self._starts and robot not in self.ended]
 
     def may_start(self, robot: str) -> bool:
-        """Whether the order has one more life for a robot."""
-        return (robot, self._life.get(robot, 0) + 1) in self._unborn
+        """Whether the setup has another start of a robot."""
+        return (robot, self._starts.get(robot, 0) + 1) in self._spare_pipes
 
     def start(self, robot: str) -> None:
-        """Start a robot that comes late, or one more time.
+        """Start a robot that joins late, or again.
 
         Raises
         ------
         KeyError
-            if the order has no life for that.
+            if the setup has no such start.
         """
-        self._life[robot] = life = self._life.get(robot, 0) + 1
-        self._pipes[robot] = self._unborn.pop((robot, life))
-        self.gone.pop(robot, None)
-        self.news.pop(robot, None)
-        self.tell(robot, GO)
+        self._starts[robot] = start_number = self._starts.get(robot, 0) + 1
+        self._pipes[robot] = self._spare_pipes.pop((robot, start_number))
+        self.ended.pop(robot, None)
+        self.progress.pop(robot, None)
+        self.send(robot, GO)
 
     def kill(self, robot: str) -> None:
-        """End a robot's process, in the middle of whatever it does."""
+        """Kill a robot's process."""
         while robot not in self.pids:  # it has just been started
-            self.hear(_BORN_S)
+            self.poll(_START_POLL_S)
         with suppress(ProcessLookupError):
             os.kill(self.pids[robot], signal.SIGKILL)
 
-    def tell(self, robot: str, word: object) -> None:
-        """Say something to a robot; nothing if it has just ended."""
+    def send(self, robot: str, report: object) -> None:
+        """Send something to a robot; nothing if it has just ended."""
         if robot in self._pipes:
             with suppress(OSError):
-                self._pipes[robot].send(word)
+                self._pipes[robot].send(report)
 
-    def hear(self, wait_s: float) -> None:
-        """Take in all that robots have told; waits for the first word for so long at most."""
+    def poll(self, wait_s: float) -> None:
+        """Process all reports of robots; wait for the first one for at most `wait_s`."""
         ends: dict[object, str | None] = {pipe: robot for robot, pipe in self._pipes.items()}
-        for end in wait([self._nursery_pipe, *self._pipes.values()], wait_s):
+        for end in wait([self._factory_pipe, *self._pipes.values()], wait_s):
             robot = ends.get(end)
             if robot is None:
-                self._hear_nursery()
+                self._take_factory_report()
             else:
-                self._hear_out(robot)
-        if self.began_s is None and self._ready.issuperset(self._life):
+                self._take_reports(robot)
+        if self.began_s is None and self._ready.issuperset(self._starts):
             self.began_s = time.monotonic()
-            for robot in self._life:
-                self.tell(robot, GO)
+            for robot in self._starts:
+                self.send(robot, GO)
 
     def agreement(self, wait_s: float = 5.0) -> dict[str, View] | None:
-        """What each living robot knows, if all know the same and are alone with each other; else None."""
+        """The view of each living robot, if all agree with each other and nobody else; else None."""
         if not self.living:
-            raise MusterError(f"no robot is left: {self.robots[-1]} {self.gone[self.robots[-1]]}")
+            raise MusterError(f"no robot is left: {self.robots[-1]} {self.ended[self.robots[-1]]}")
         if not self.agree(self.living):
             return None
         views = self.views(self.living, wait_s)
@@ -164,65 +175,69 @@ class Team:
         return views if len(views) == len(living) and len(stages) == 1 and self.agree(living) else None
 
     def views(self, robots: Collection[str], wait_s: float = 5.0) -> dict[str, View]:
-        """What robots know, of those that live and say so in time; all of them have been heard."""
+        """The views of robots that live and answer in time; each of them must have reported before."""
         for robot in robots:
-            self.news[robot] = replace(self.news[robot], view=None)
-            self.tell(robot, SHOW)
+            self.progress[robot] = replace(self.progress[robot], view=None)
+            self.send(robot, SHOW)
         until_s = time.monotonic() + wait_s
         while any(self._owes_view(robot) for robot in robots) and time.monotonic() < until_s:
-            self.hear(0.1)
-        return {robot: view for robot in robots if robot in self.news and (view := self.news[robot].view) is not None}
+            self.poll(0.1)
+        return {
+            robot: view
+            for robot in robots
+            if robot in self.progress and (view := self.progress[robot].view) is not None
+        }
 
     def _owes_view(self, robot: str) -> bool:
-        return robot not in self.gone and robot in self.news and self.news[robot].view is None
+        return robot not in self.ended and robot in self.progress and self.progress[robot].view is None
 
     def agree(self, robots: Collection[str]) -> bool:
-        """Whether these robots take each other, and nobody else, for members, and are at the same end."""
-        if any(robot not in self.news for robot in robots):
+        """Whether these robots count each other, and nobody else, as members, and are at the same ended stage."""
+        if any(robot not in self.progress for robot in robots):
             return False
-        stages = {self.news[robot].stage for robot in robots}
-        told = [self.news[robot].status for robot in robots]
+        stages = {self.progress[robot].stage for robot in robots}
+        told = [self.progress[robot].status for robot in robots]
         return len(stages) == 1 and all(status.settled and set(status.members) == set(robots) for status in told)
 
-    def _hear_nursery(self) -> None:
+    def _take_factory_report(self) -> None:
         try:
-            word = self._nursery_pipe.recv()
+            report = self._factory_pipe.recv()
         except (EOFError, OSError):
             raise MusterError("the process that starts the robots has ended; expected it to stay") from None
-        if isinstance(word, Born):
-            self._born[word.robot, word.life] = word.pid
-        elif isinstance(word, Gone) and word.life == self._life.get(word.robot):
-            self._lose(word.robot, word.why)
+        if isinstance(report, ProcessStarted):
+            self._pids[report.robot, report.start_number] = report.pid
+        elif isinstance(report, ProcessEnded) and report.start_number == self._starts.get(report.robot):
+            self._note_end(report.robot, report.why)
 
-    def _hear_out(self, robot: str) -> None:
-        """Take in all that a robot has told, if it has not ended."""
+    def _take_reports(self, robot: str) -> None:
+        """Process all reports of a robot, if it has not ended."""
         while robot in self._pipes and self._pipes[robot].poll():
-            self._hear_robot(robot)
+            self._take_report(robot)
 
-    def _hear_robot(self, robot: str) -> None:
+    def _take_report(self, robot: str) -> None:
         try:
-            word = self._pipes[robot].recv()
+            report = self._pipes[robot].recv()
         except (EOFError, OSError):
             self._pipes.pop(robot).close()  # why, the nursery tells
             return
-        if isinstance(word, Ready):
+        if isinstance(report, Ready):
             self._ready.add(robot)
-        elif isinstance(word, Failed):
-            raise MusterError(f"{robot}: {word.why}")
-        elif isinstance(word, News):
-            before = self.news.get(robot)
-            self.news[robot] = replace(word, view=word.view if before is None else word.view or before.view)
+        elif isinstance(report, Failed):
+            raise MusterError(f"{robot}: {report.why}")
+        elif isinstance(report, Progress):
+            before = self.progress.get(robot)
+            self.progress[robot] = replace(report, view=report.view if before is None else report.view or before.view)
         else:
-            self._on_word(robot, word)
+            self._on_report(robot, report)
 
     def _kill_all(self) -> None:
         for robot in self.living:
             if robot in self.pids:
                 self.kill(robot)
 
-    def _lose(self, robot: str, why: str) -> None:
-        self._hear_out(robot)  # its last words may tell more than its end
-        self.gone[robot] = why
+    def _note_end(self, robot: str, why: str) -> None:
+        self._take_reports(robot)  # its last words may tell more than its end
+        self.ended[robot] = why
         pipe = self._pipes.pop(robot, None)
         if pipe is not None:
             pipe.close()
@@ -230,25 +245,25 @@ class Team:
             raise MusterError(f"{robot}: {why} before the auction began; expected it to take part")
 
 
-def patience_here(robots: int) -> Patience:
-    """The patience of robots that share this machine: the more there are, the longer an answer takes.
+def timeouts_for(robots: int) -> Timeouts:
+    """Time limits for robots that share this machine: the more there are, the longer an answer takes.
 
-    Robots that ask again too soon make each other slower still: 50 of them on two cores sent seven times what they had
-    to, and took twice as long; and one that waits long for its turn on a core is not lost.
+    Robots that ask again too soon slow each other down: 50 of them on two cores sent seven times as many messages as
+    necessary and took twice as long. A robot that waits for its turn on a core is not lost.
     """
-    usual = Patience()
-    return Patience(
-        beat_s=max(usual.beat_s, 0.02 * robots),
+    usual = Timeouts()
+    return Timeouts(
+        heartbeat_s=max(usual.heartbeat_s, 0.02 * robots),
         retry_s=max(usual.retry_s, 0.02 * robots),
         suspect_s=max(usual.suspect_s, 0.16 * robots),
         bid_s=max(usual.bid_s, 0.24 * robots),
-        mute_s=max(usual.mute_s, 0.2 * robots),
+        exclusion_s=max(usual.exclusion_s, 0.2 * robots),
     )
 
 
-def _light(order: Order) -> Order:
-    """The order with what was measured on a map, so that it need not be measured again."""
-    problem = order.problem
+def _with_measured_travel(setup: TeamSetup) -> TeamSetup:
+    """The setup with the travel measured on a map, so that it need not be measured again."""
+    problem = setup.problem
     if problem.mission.travel_rule != "map":
-        return order
-    return replace(order, problem=replace(problem, known=problem.measured, mapped=problem.roads))
+        return setup
+    return replace(setup, problem=replace(problem, known=problem.measured, mapped=problem.robot_paths))

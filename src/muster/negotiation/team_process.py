@@ -1,4 +1,4 @@
-"""A robot's process in a team on this machine: its place in the network, and its ears for the one that started it."""
+"""One robot's process in a team on this machine: its node, and its connection to the starter."""
 
 from __future__ import annotations
 
@@ -12,38 +12,38 @@ from queue import SimpleQueue
 from typing import Any
 
 from muster.allocation.problem import Problem
-from muster.negotiation.joining import node_of
 from muster.negotiation.memory_file import kept_of
 from muster.negotiation.methods import method_named
 from muster.negotiation.mission_digest import mission_digest
 from muster.negotiation.node import Node
-from muster.negotiation.process_reports import GO, SHOW, News, Order, Ready
+from muster.negotiation.node_factory import node_of
+from muster.negotiation.process_reports import GO, SHOW, Progress, Ready, TeamSetup
 from muster.negotiation.robot_view import view_of
 from muster.negotiation.transport import Transport
 
 HERE = "127.0.0.1"
 CLOSING_S = 1.0
-"""Within so long a process ends whose starter has ended."""
-_NEWS_EVERY_S = 0.1
+"""The time within which a process ends after its starter has ended, seconds."""
+_REPORT_EVERY_S = 0.1
 _STEP_S = 0.05
 _ZENOH_ENTRANCES = 3
-"""Robots whose address the others know; they hear of the rest from these."""
+"""The number of robots whose address the others know; they learn of the rest from these."""
 
 
-class Orders:
-    """What the starter wants; a thread listens to it, and ends the process soon after the starter has ended.
+class StarterCommands:
+    """Commands of the starter. A thread listens to them, and ends the process soon after the starter has ended.
 
     Attributes
     ----------
     go, show, leave
-        the robot may begin; it is to tell what it knows; it is to end.
-    words
-        all else that was said to it.
+        the robot may begin; it is to send its view; it is to end.
+    messages
+        everything else that was sent to it.
     """
 
     def __init__(self, pipe: Connection) -> None:
         self.go, self.show, self.leave = threading.Event(), threading.Event(), threading.Event()
-        self.words: SimpleQueue[Any] = SimpleQueue()
+        self.messages: SimpleQueue[Any] = SimpleQueue()
         self._pipe = pipe
         threading.Thread(target=self._listen, daemon=True).start()
 
@@ -51,11 +51,11 @@ class Orders:
         events = {GO: self.go, SHOW: self.show}
         try:
             while True:
-                word = self._pipe.recv()
-                if isinstance(word, str):
-                    events[word].set()
+                message = self._pipe.recv()
+                if isinstance(message, str):
+                    events[message].set()
                 else:
-                    self.words.put(word)
+                    self.messages.put(message)
         except (EOFError, OSError):
             self.leave.set()
             self.go.set()  # whoever waits for it goes, and leaves
@@ -64,53 +64,53 @@ class Orders:
 
 
 @dataclass(frozen=True)
-class Seat:
+class ProcessContext:
     """One process of one robot.
 
     Parameters
     ----------
-    robot, life
-        which robot, and how often it has started with this.
-    order, problem
-        what about; the problem is the order's, made ready.
+    robot, start_number
+        the robot, and the number of this start.
+    setup, problem
+        the team's setup; the problem is the setup's, made ready.
     ports
-        of this machine, by robot.
+        the port of each robot on this machine.
     pipe
-        to the one that started it.
+        to the starter.
     """
 
     robot: str
-    life: int
-    order: Order
+    start_number: int
+    setup: TeamSetup
     problem: Problem
     ports: Mapping[str, int]
     pipe: Connection
 
     @property
     def comes_late(self) -> bool:
-        """Whether the team does not wait for it before it begins."""
-        return self.life > 1 or self.robot in self.order.late
+        """Whether the team begins without waiting for this process."""
+        return self.start_number > 1 or self.robot in self.setup.late
 
     def node(self) -> Node:
-        """The robot's part in the auction, not begun."""
-        order = self.order
-        file = None if order.memory is None else order.memory / f"{self.robot}.json"
-        kept = kept_of(file, mission_digest(self.problem, order.terms), self.robot)
+        """The robot's node, not started."""
+        setup = self.setup
+        file = None if setup.memory is None else setup.memory / f"{self.robot}.json"
+        kept = kept_of(file, mission_digest(self.problem, setup.terms), self.robot)
         return node_of(
             self.problem,
-            order.terms,
-            method_named(order.method),
-            replace(kept, incarnation=self.life),
+            setup.terms,
+            method_named(setup.method),
+            replace(kept, incarnation=self.start_number),
             file=file,
-            key=order.key,
+            key=setup.key,
             transport=self._transport(),
-            patience=order.patience,
-            absent=order.late,
+            timeouts=setup.timeouts,
+            absent=setup.late,
         )
 
     def _transport(self) -> Transport:
         here = self.ports[self.robot]
-        if self.order.transport == "udp":
+        if self.setup.transport == "udp":
             from muster.negotiation.udp import UdpTransport
 
             others = {robot: (HERE, port) for robot, port in self.ports.items() if robot != self.robot}
@@ -122,28 +122,28 @@ class Seat:
         return ZenohTransport(name, self.robot, connect=entrances, listen=(f"tcp/{HERE}:{here}",))
 
 
-def hold_auction(seat: Seat) -> None:
-    """Take part until the starter has heard enough."""
-    orders, teller = Orders(seat.pipe), Teller(seat.pipe)
-    with seat.node() as node:
-        seat.pipe.send(Ready())
-        orders.go.wait()
-        while not orders.leave.is_set():
+def run_auction(context: ProcessContext) -> None:
+    """Take part until the starter has ended."""
+    commands, reporter = StarterCommands(context.pipe), ProgressReporter(context.pipe)
+    with context.node() as node:
+        context.pipe.send(Ready())
+        commands.go.wait()
+        while not commands.leave.is_set():
             node.step(_STEP_S)
-            teller.tell(node, orders)
+            reporter.report(node, commands)
 
 
 @dataclass
-class Teller:
-    """Tells the starter how far the robot is, now and then or when it asks."""
+class ProgressReporter:
+    """Reports the robot's progress to the starter, regularly or when asked."""
 
     pipe: Connection
-    _told_s: float = 0.0
+    _reported_s: float = 0.0
 
-    def tell(self, node: Node, orders: Orders) -> None:
-        now_s, asked = time.monotonic(), orders.show.is_set()
-        if asked or now_s >= self._told_s + _NEWS_EVERY_S:
-            orders.show.clear()
-            self._told_s = now_s
+    def report(self, node: Node, commands: StarterCommands) -> None:
+        now_s, asked = time.monotonic(), commands.show.is_set()
+        if asked or now_s >= self._reported_s + _REPORT_EVERY_S:
+            commands.show.clear()
+            self._reported_s = now_s
             negotiator = node.negotiator
-            self.pipe.send(News(node.status(), negotiator.stage, view_of(negotiator) if asked else None))
+            self.pipe.send(Progress(node.status(), negotiator.stage, view_of(negotiator) if asked else None))

@@ -1,4 +1,4 @@
-"""What carries messages: bytes to one robot or to all. Nothing is promised: not delivery, order, or that it is once."""
+"""The interface of transports: bytes to one robot or to all. Delivery, order and uniqueness are not guaranteed."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from typing import Protocol
 
 
 class Transport(Protocol):
-    """A robot's way to the others. One thread uses it.
+    """A robot's connection to the others, used by one thread.
 
     Attributes
     ----------
     room
-        the most bytes that travel in one piece; more may be sent, and is lost more easily.
+        the largest number of bytes that travel in one piece; longer data may be sent, and is lost more easily.
     datagrams, bytes_sent
-        how often `send` has sent something to somebody, and how many bytes in all: a message to n peers counts n times
-        where it is sent n times.
+        the number of datagrams sent and their bytes in all: a message to n peers counts n times where it is sent n
+        times.
     lost_here
-        what this side knows to be lost: received faster than it was read, or refused by the network.
+        the number of messages known to be lost on this side: received faster than read, or refused by the network.
     """
 
     @property
@@ -32,13 +32,13 @@ class Transport(Protocol):
     def lost_here(self) -> int: ...
 
     def send(self, data: bytes, to: str | None = None) -> None:
-        """Send to a robot; None: to all. Never waits."""
+        """Send to a robot; None: to all. Never blocks."""
         ...
 
     def receive(self, wait_s: float) -> list[bytes]:
-        """All that has come; waits for the first for so long at most. Empty: nothing came."""
+        """All messages that have arrived; waits for the first one for at most `wait_s`. Empty: none arrived."""
         ...
 
     def close(self) -> None:
-        """Send and receive no more. Closing again does nothing."""
+        """Stop sending and receiving. Closing again does nothing."""
         ...

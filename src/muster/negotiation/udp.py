@@ -1,7 +1,7 @@
-"""Messages as UDP datagrams: to explicit peers, or to a multicast group. No server.
+"""Messages as UDP datagrams, to explicit peers or to a multicast group. No server.
 
-A datagram that is larger than what fits a link is cut by the network into pieces, and lost with any of them. So `room`
-says what fits everywhere (`Codec.parts` keeps to it); what is larger is sent all the same.
+A datagram larger than a link's packet is fragmented, and lost with any fragment. `room` is the size that fits
+everywhere (`Codec.parts` keeps to it); larger data is sent all the same.
 """
 
 from __future__ import annotations

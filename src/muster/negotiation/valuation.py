@@ -1,8 +1,8 @@
-"""What a robot bids, and where a task goes that is won: the rules of the auction in one process, asked by one robot.
+"""What a robot bids, and where a task goes that is won: the rules of the auction in one process, for one robot.
 
-Every robot keeps all routes, since some bids look at the team (`total+max`), or wait for others (`makespan`); but it
-asks for its own bids alone. The same mission, terms and sales give the same bids, bit by bit, so that robots can follow
-each other's routes without a word.
+Every robot keeps all routes, since some bids depend on the team (`total+max`), or wait for others (`makespan`). It
+computes only its own bids. The same mission, terms and sales give exactly the same bids, so that robots follow each
+other's routes without messages.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from muster.negotiation.new_tasks import with_tasks
 
 @dataclass(frozen=True)
 class Opening:
-    """How things stand when an auction begins.
+    """The state of the mission when an auction begins.
 
     Parameters
     ----------
     past
-        for each robot what it has done and then what it has begun, in order; no task stands twice.
+        for each robot what it has done and then what it has begun, in order; no task occurs twice.
     ahead
         for each robot what else it owns, in order.
     closed
         tasks that are not for sale.
     added
-        tasks that the mission did not have, as `tasks.content_of` writes them, in tie order.
+        tasks that were added to the mission, as `new_tasks.content_of` writes them, in tie order.
     """
 
     past: Mapping[str, Sequence[str]] = field(default_factory=dict)
@@ -48,18 +48,18 @@ class Opening:
 
 @dataclass(frozen=True)
 class Resolution:
-    """What comes of a round: tasks that have owners now, and whether it was the last."""
+    """The result of a round: the tasks sold, and whether it was the last round."""
 
     sales: tuple[Sold, ...] = ()
     over: bool = False
 
 
 class Valuer(Protocol):
-    """What one robot's part in the auction needs to know of the mission."""
+    """The computation of one robot's part in the auction."""
 
     @property
-    def told_by_sales(self) -> bool:
-        """Whether who missed rounds need only know what was sold in them; else also what was bid."""
+    def sales_suffice(self) -> bool:
+        """Whether a robot that missed rounds needs to know only what was sold in them; else also what was bid."""
         ...
 
     def check(self, tasks: Sequence[bytes]) -> None:
@@ -67,35 +67,35 @@ class Valuer(Protocol):
         ...
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
-        """An auction begins; returns what robots own as far as they can still do it, behind their past."""
+        """Begin an auction; return what robots own as far as they can still do it, without their past."""
         ...
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
-        """What the robot bids in this round, as the winner rule wants it; nothing for what it has refused."""
+        """The robot's bids in this round, as the winner rule needs them; none for tasks that it has refused."""
         ...
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
-        """What comes of a round in which all members bid this; it is not awarded yet."""
+        """The result of a round with these bids of all members; not awarded yet."""
         ...
 
     def award(self, sold: Sold) -> None:
-        """A task has an owner."""
+        """Assign a task to its owner."""
         ...
 
     def route(self, robot: str) -> list[str]:
-        """The tasks of a robot, in the order in which it is going to do them."""
+        """The tasks of a robot, in the order of execution."""
         ...
 
 
 class TeamValuer(ABC):
-    """What all ways to sell tasks have in common: the mission with its new tasks, and what robots own already.
+    """Common parts of all methods: the mission with its added tasks, and what robots own already.
 
     Parameters
     ----------
     problem
-        the same for all robots; from `begin` on with the tasks that were added, and what was done.
+        the same for all robots; from `begin` on with added tasks and past work.
     robot
-        which one this is.
+        the robot whose bids are computed.
     """
 
     def __init__(self, problem: Problem, robot: str) -> None:
@@ -122,7 +122,7 @@ class TeamValuer(ABC):
 
     @abstractmethod
     def _open(self, routes: Routes, closed: Collection[int]) -> None:
-        """An auction begins: these tasks have owners, all others are for sale but those that are closed."""
+        """Begin an auction: these tasks have owners, all others are for sale except for those that are closed."""
 
     @abstractmethod
     def route(self, robot: str) -> list[str]: ...
@@ -135,9 +135,9 @@ class TeamValuer(ABC):
 
 
 class AuctionValuer(TeamValuer):
-    """The auction of `allocation`, held by one of its robots; `terms` are the same for all."""
+    """The auction of `allocation`, run by one of its robots; `terms` are the same for all."""
 
-    told_by_sales = True
+    sales_suffice = True
 
     def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
         super().__init__(problem, robot)
@@ -181,7 +181,7 @@ class AuctionValuer(TeamValuer):
 
 
 class _Heard:
-    """The bids of a round, as a winner rule asks for them; who is not a member bids for nothing."""
+    """The bids of a round, in the form that a winner rule needs; robots that are not members bid for nothing."""
 
     def __init__(self, robots: Mapping[str, int], tasks: Mapping[str, int], bids: Sequence[RoundBids]) -> None:
         self.shape = (len(robots), len(tasks))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import zenoh
 
 ROOM = 60_000
-"""Bytes that Zenoh sends in one batch over TCP."""
+"""The number of bytes that Zenoh sends in one batch over TCP."""
 
 _MOST_WAITING = 50_000  # messages that were received and not read yet; more are lost, and counted
 _ENDPOINT = re.compile(r"[a-z0-9_-]+/\S+")
@@ -104,7 +104,7 @@ class ZenohTransport:
         return came
 
     def close(self) -> None:
-        """Leave the network."""
+        """Close the session."""
         atexit.unregister(self.close)
         if not self._session.is_closed():
             self._session.close()  # type: ignore[no-untyped-call]

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.motion.port import Inertial, RetoldPort, RobotPort, Telemetry
+from muster.motion.port import Inertial, RobotPort, Telemetry, TranslatedPort
 from muster.perception import air_fusion, ground_fusion, heading_fusion
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.kalman import Correction, Estimate
@@ -171,7 +171,7 @@ class AirTracker:
         return air_fusion.moved_as_counted(estimate, dt, said.velocity, aware, pushed)
 
 
-class FusedPort(RetoldPort):
+class FusedPort(TranslatedPort):
     """A robot's port whose telemetry is fused by its `tracker`."""
 
     def __init__(self, port: RobotPort, tracker: Tracker) -> None:

@@ -53,8 +53,11 @@ def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: st
     MusterError
         if the judge rejects it, which is an error of the allocator.
     """
+    from muster.allocation.registry import ALLOCATORS
+
     verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
         details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
-        raise MusterError(f"internal error: the judge rejects the plan of {plan.allocator}: {details}")
+        internal = "internal error: " if plan.allocator in ALLOCATORS.shipped else ""
+        raise MusterError(f"{internal}allocator {plan.allocator}: the judge rejects its plan: {details}")
     return verdict

@@ -19,6 +19,7 @@ from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
+    from muster.allocation.function_allocator import AllocatingFunction
 
 DEFAULT_ALLOCATOR = "search"
 BOUNDS = ("quick", "exact")
@@ -37,7 +38,8 @@ class PlanningOptions:
     Parameters
     ----------
     allocator
-        the name of an algorithm (`muster solve --list-allocators`), or an allocator.
+        the name of an algorithm (`muster solve --list-allocators`), an allocator, or a function that makes
+        routes.
     parameters
         of the allocator, by name.
     objective
@@ -60,7 +62,7 @@ class PlanningOptions:
         for a value that no mission and no allocator can have.
     """
 
-    allocator: str | Allocator = _option(DEFAULT_ALLOCATOR, "The algorithm.")
+    allocator: str | Allocator | AllocatingFunction = _option(DEFAULT_ALLOCATOR, "The algorithm.")
     parameters: Mapping[str, Any] = field(
         default_factory=dict, metadata={"help": "Parameters of the allocator, by name."}
     )
@@ -121,7 +123,7 @@ def _are_parameters(value: object) -> bool:
 
 
 _KINDS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
-    "allocator": (_is_allocator, "the name of an allocator, or an allocator"),
+    "allocator": (_is_allocator, "a name, an Allocator or a function"),
     "parameters": (_are_parameters, "names and values of the allocator's parameters"),
     "objective": (lambda value: value is None or value in OBJECTIVES, " or ".join(OBJECTIVES)),
     "time_limit": (_is_time, "seconds, at least 0"),

@@ -19,6 +19,7 @@ from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
+    from muster.allocation.function_allocator import AllocatingFunction
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Progress, Stop
     from muster.verification import Verdict
@@ -68,12 +69,10 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     """
     from muster.allocation.allocator import make_parameters
     from muster.allocation.proofs import require_provable
-    from muster.allocation.registry import allocator_named
+    from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
 
-    allocator: Allocator = (
-        allocator_named(request.allocator) if isinstance(request.allocator, str) else request.allocator
-    )
+    allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
     problem = _compiled(request)
     if request.bound is not None:
@@ -132,14 +131,15 @@ def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> 
 
 def solve(
     mission: Mission,
-    allocator: str | Allocator = DEFAULT_ALLOCATOR,
+    allocator: str | Allocator | AllocatingFunction = DEFAULT_ALLOCATOR,
     time_limit: float | None = None,
     seed: int = 0,
     on_progress: OnProgress | None = None,
     *,
     iterations: int | None = None,
-    objective: str | None = None,
-    ignore: Collection[str] = (),
+    objective: str | Callable[[Verdict], float] | None = None,
+    candidates: int = 10,
+    ignore: str | Collection[str] = (),
     start: Plan | None = None,
     fixed: Plan | None = None,
     bound: str | None = None,
@@ -152,12 +152,15 @@ def solve(
     Parameters
     ----------
     allocator
-        one of `muster solve --list-allocators`.
+        one of `muster solve --list-allocators`, an allocator, or a function that makes routes.
     time_limit, iterations
         when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
         plan.
     objective
-        instead of the mission's own.
+        instead of the mission's own; or a function of the judge's `Verdict`, the lower the better, by which several
+        plans are ranked. That is slower: no allocator searches by it (see docs/extending.md).
+    candidates
+        how many plans such a function ranks; they share the time or the iterations.
     ignore
         rules that do not hold: prerequisite, suitability, skill, lock, capacity.
     start
@@ -183,7 +186,7 @@ def solve(
         mission=mission,
         allocator=allocator,
         parameters=given,
-        objective=objective,
+        objective=None if callable(objective) else objective,
         time_limit=time_limit,
         iterations=iterations,
         seed=seed,
@@ -193,6 +196,10 @@ def solve(
         bound=bound,
         rewire=rewire,
     )
+    if callable(objective):
+        from muster.planning.custom_objective import best_by
+
+        return best_by(objective, request, candidates, on_progress)
     return answer(request, on_progress=on_progress).plan
 
 

@@ -22,7 +22,7 @@ FARTHEST_M = 1.0
 """What was found farther than this from every tag is where nothing is."""
 
 
-class Looks:
+class CameraPictures:
     """Is told every look; see `Simulation`.
 
     Parameters

@@ -14,7 +14,7 @@ from typing import Any, Self
 from muster.mission.errors import MissingExtraError, NetworkError
 from muster.mission.model import Mission
 from muster.report.record import json_messages, scene
-from muster.report.record.publisher import Teller
+from muster.report.record.publisher import Publisher
 from muster.report.record.schemas import SCHEMAS, TOPICS
 
 _LASTING = ("/map", "/muster/plan")
@@ -23,7 +23,7 @@ _LAST_WORDS_S = 0.5
 """The server that stops drops what it has not yet sent, and tells nobody what it has."""
 
 
-class FoxgloveServer(Teller):
+class FoxgloveServer(Publisher):
     """Shows a mission to whoever connects, until it is closed.
 
     Parameters

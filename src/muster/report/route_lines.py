@@ -60,12 +60,12 @@ def way_in(mission: Mission) -> Way:
     if mission.travel_rule != "map":
         return lambda robot, start, goal: (start, goal)
     from muster.motion.map_world import body_of
-    from muster.motion.robot_paths import Roads
+    from muster.motion.robot_paths import RobotPaths
 
-    roads = Roads.of(mission)
+    robot_paths = RobotPaths.of(mission)
 
     def way(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
-        found = roads.path(body_of(robot), start, goal)
+        found = robot_paths.path(body_of(robot), start, goal)
         return (start, goal) if isinstance(found, NoPath) else [tuple(point) for point in found.points.tolist()]
 
     return way

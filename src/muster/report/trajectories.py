@@ -22,7 +22,7 @@ _INCHES = 3.6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Ways:
+class MethodRun:
     """What one method made of one scenario.
 
     Parameters
@@ -48,7 +48,7 @@ class Ways:
     inflated_m: float
 
 
-def plot_ways(ways: Sequence[Ways], title: str) -> Figure:
+def plot_trajectories(ways: Sequence[MethodRun], title: str) -> Figure:
     """Draw for each method, from above: the ways, the least distance over time, and both components of velocity.
 
     Raises
@@ -81,7 +81,7 @@ def plot_ways(ways: Sequence[Ways], title: str) -> Figure:
     return figure
 
 
-def _draw_ways(ax: Any, ways: Ways) -> None:
+def _draw_ways(ax: Any, ways: MethodRun) -> None:
     for index, robot in enumerate(ways.robots):
         color, (x, y) = robot_style(index).color, ways.positions[:, index].T
         ax.plot(x, y, color=color, linewidth=1.2, label=robot)
@@ -93,7 +93,7 @@ def _draw_ways(ax: Any, ways: Ways) -> None:
     ax.set_ylabel("y (m)")
 
 
-def _draw_distances(ax: Any, ways: Ways) -> None:
+def _draw_distances(ax: Any, ways: MethodRun) -> None:
     ax.plot(_times(ways), ways.least_distances_m, color=TEXT, linewidth=1.2, label="least distance")
     ax.axhline(ways.inflated_m, color=QUIET_TEXT, linestyle=DASHED, linewidth=1.0, label="inflated radii")
     ax.axhline(ways.touch_m, color=ALARM, linewidth=1.0, label="contact")
@@ -101,12 +101,12 @@ def _draw_distances(ax: Any, ways: Ways) -> None:
     ax.set_ylabel("least distance of centres (m)")
 
 
-def _draw_velocities(ax: Any, ways: Ways, axis: int, name: str) -> None:
+def _draw_velocities(ax: Any, ways: MethodRun, axis: int, name: str) -> None:
     for index in range(len(ways.robots)):
         ax.plot(_times(ways), ways.velocities[:, index, axis], color=robot_style(index).color, linewidth=0.9)
     ax.set_xlabel("time (s)")
     ax.set_ylabel(f"velocity, {name} (m/s)")
 
 
-def _times(ways: Ways) -> Floats:
+def _times(ways: MethodRun) -> Floats:
     return np.arange(1, len(ways.velocities) + 1, dtype=np.float64) * ways.dt

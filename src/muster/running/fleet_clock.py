@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from muster.bridges.fleet import Fleet
 from muster.mission.model import Event
-from muster.motion.port import RetoldPort, RobotPort, Telemetry
+from muster.motion.port import RobotPort, Telemetry, TranslatedPort
 
 
 class FromZero:
@@ -55,7 +55,7 @@ class _Ports(Mapping[str, RobotPort]):
         self._fleet, self._off_s = fleet, off_s
 
     def __getitem__(self, robot: str) -> RobotPort:
-        return RetoldPort(self._fleet.ports[robot], self._since_it_began)
+        return TranslatedPort(self._fleet.ports[robot], self._since_it_began)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fleet.ports)

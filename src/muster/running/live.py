@@ -28,7 +28,7 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.running.fleet_clock import FromZero
 
 if TYPE_CHECKING:
@@ -128,13 +128,13 @@ class Live:
         begin_s: float = 0.0,
     ) -> None:
         self._fleet, self._recorder = FromZero(fleet, begin_s), recorder
-        roads = Roads.of(mission) if mission.travel_rule == "map" else None
-        travel = travel_of(mission, roads)
+        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, robot_paths)
         self.executor = Executor(
             mission,
             replace(plan, ignored=ignored_rules(ignore)),
             self._fleet.ports,
-            way=way_of(mission, roads),
+            way=way_of(mission, robot_paths),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
             observer=recorder,

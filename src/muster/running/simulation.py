@@ -24,7 +24,7 @@ from muster.execution import (
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster.running.camera_search import Lookout, OnLook, lookout_for, with_found
 from muster.running.state_estimation import heard
 from muster.running.worlds import recorded_world
@@ -90,8 +90,8 @@ class Simulation:
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
     ) -> None:
-        roads = Roads.of(mission) if mission.travel_rule == "map" else None
-        travel = travel_of(mission, roads)
+        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        travel = travel_of(mission, robot_paths)
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         if on_world is not None:
             on_world(self._world)
@@ -100,7 +100,7 @@ class Simulation:
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
             self._hearing.ports,
-            way=way_of(mission, roads),
+            way=way_of(mission, robot_paths),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
             observer=recorder,
@@ -152,15 +152,16 @@ class Simulation:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
-                self._befalls(self._ahead.pop(0))
+                self._take_event(self._ahead.pop(0))
             self._look()
             self._tick()
         return self._executor.events[first:]
 
-    def report(self, event: Event) -> None:
+    def report(self, event: Event, *, replan: bool = True) -> None:
         """Let something happen now that the mission file did not foresee; its `at_s` does not count.
 
-        What follows for the plan follows at once, not only when time goes on.
+        The rest of the mission is planned again at once. With `replan=False` it is planned again by `replan`, or when
+        time goes on: once for all events that were reported until then.
 
         Raises
         ------
@@ -169,11 +170,16 @@ class Simulation:
         """
         if event.robot_joins is not None:
             self._executor.require_newcomer(event.robot_joins)
-            self._befalls(event)  # the executor asks for its port
+            self._take_event(event)  # the executor asks for its port
             self._executor.report(event)
         else:
             self._executor.report(event)
-            self._befalls(event)
+            self._take_event(event)
+        if replan:
+            self.replan()
+
+    def replan(self) -> None:
+        """Plan the rest again at once if events that were reported ask for that, and send robots on."""
         self._tick()
 
     def result(self) -> Report:
@@ -228,7 +234,7 @@ class Simulation:
     def _is_open(self, event: Event) -> bool:
         return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
 
-    def _befalls(self, event: Event) -> None:
+    def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""
         if event.robot_fails is not None:
             self._world.fail(event.robot_fails)

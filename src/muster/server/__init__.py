@@ -7,7 +7,7 @@
 | `store` | the database: tables, migrations, backup |
 | `work` | planning and other long work, in processes of their own with limits |
 | `runs` | missions that are carried out: a process each, their log, and how they go on after a crash |
-| `desk` | all that mission control can do; the API and the pages are its two faces |
+| `services` | all that mission control can do; the API and the pages are its two faces |
 | `security` | who may do what: tokens, roles, origins, limits |
 | `api` | HTTP and WebSocket, described by OpenAPI |
 | `pages` | the web page |

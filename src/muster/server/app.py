@@ -1,4 +1,4 @@
-"""Mission control as one application: the desk, the API, the pages, and the guard before all of them."""
+"""Mission control as one application: the services, the API, the pages, and the guard before all of them."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.health import health_route
 from muster.server.logs import log_answered
 from muster.server.metrics import Metrics
-from muster.server.security.authentication import Asking, who_of
-from muster.server.security.guard import Answered, Guard, Shield
+from muster.server.security.authentication import Authenticator, user_of
+from muster.server.security.guard import CompletedRequest, Guard, GuardState
 from muster.server.security.login import login_routes
 from muster.server.security.refusal_log import Audit, Keep
 from muster.server.security.serving_rules import require_safe
-from muster.server.services.services import Desk, open_desk
+from muster.server.services.services import Services, open_services
 from muster.server.settings import Settings
 
 
 def make_app(settings: Settings) -> FastAPI:
-    """Mission control; its lifespan opens and closes the desk, which is in `app.state.desk` meanwhile.
+    """Mission control; its lifespan opens and closes the services, which are `app.state.services` meanwhile.
 
     `app.state.left` says at the end how many runs go on when the server is started again.
 
@@ -39,51 +39,51 @@ def make_app(settings: Settings) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        async with open_desk(settings, metrics.appended, shield.audit.forbade) as desk:
-            app.state.desk = desk
+        async with open_services(settings, metrics.appended, guard_state.audit.forbade) as services:
+            app.state.services = services
             try:
                 yield
             finally:
-                app.state.left = desk.runs.under_way
-                await shield.audit.settle()
-                app.state.desk = None
+                app.state.left = services.runs.under_way
+                await guard_state.audit.settle()
+                app.state.services = None
 
     app = FastAPI(title="Muster", lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
-    app.state.desk = None
+    app.state.services = None
     app.state.left = 0
 
-    def desk_of() -> Desk:
-        desk: Desk = app.state.desk
-        return desk
+    def services_of() -> Services:
+        services: Services = app.state.services
+        return services
 
-    shield = Shield(settings, Asking.of(settings), Audit(lambda: _keeping(app.state.desk)))
-    metrics = Metrics(desk_of, shield)
-    app.router.routes += [*login_routes(shield), health_route(desk_of, shield.warning), metrics.route()]
+    guard_state = GuardState(settings, Authenticator.of(settings), Audit(lambda: _audit_writer(app.state.services)))
+    metrics = Metrics(services_of, guard_state)
+    app.router.routes += [*login_routes(guard_state), health_route(services_of, guard_state.warning), metrics.route()]
     if settings.tiles is not None:
         app.mount("/tiles", StaticFiles(directory=settings.tiles))
-    _mount_faces(app, desk_of)
+    _mount_faces(app, services_of)
 
-    def observe(answered: Answered) -> None:
-        metrics.observe(answered)
-        log_answered(answered)
+    def observe(completed: CompletedRequest) -> None:
+        metrics.observe(completed)
+        log_answered(completed)
 
-    app.add_middleware(Guard, shield=shield, observe=observe)  # last, so that nothing is before it
-    app.state.shield = shield
+    app.add_middleware(Guard, guard_state=guard_state, observe=observe)  # last, so that nothing is before it
+    app.state.guard_state = guard_state
     return app
 
 
-def _keeping(desk: Desk | None) -> Keep | None:
-    """What writes into the audit log."""
-    if desk is None:
+def _audit_writer(services: Services | None) -> Keep | None:
+    """What writes an action into the audit log; None while the services are closed."""
+    if services is None:
         return None
 
-    async def keep(who: Who, verb: str, data: Mapping[str, Any]) -> object:
-        return await desk.actions.add(who, verb, data)
+    async def keep(who: User, verb: str, data: Mapping[str, Any]) -> object:
+        return await services.actions.add(who, verb, data)
 
     return keep
 
 
-def _mount_faces(app: FastAPI, desk_of: Any) -> None:
+def _mount_faces(app: FastAPI, services_of: Any) -> None:
     """The API, and the pages, which take every path that nothing else has."""
     from muster.server.api import PREFIX, api
     from muster.server.api.problems import add_handlers
@@ -92,8 +92,8 @@ def _mount_faces(app: FastAPI, desk_of: Any) -> None:
         from muster.server.pages import mount
 
     add_handlers(app)
-    app.mount(PREFIX, api(desk_of, who_of))
-    mount(app, desk_of)
+    app.mount(PREFIX, api(services_of, user_of))
+    mount(app, services_of)
 
 
 @contextmanager

@@ -14,8 +14,8 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from muster.exchange.mission_control import StoreError
-from muster.server.security.authentication import who_of
-from muster.server.services.services import Desk
+from muster.server.security.authentication import user_of
+from muster.server.services.services import Services
 from muster.server.store.store import Store
 
 _PATIENCE_S = 2.0
@@ -23,7 +23,7 @@ _PATIENCE_S = 2.0
 _HOLDS_S = 1.0  # so that nobody can keep the database busy with this
 
 
-def health_route(desk_of: Callable[[], Desk | None], warning: Callable[[], str] = str) -> Route:
+def health_route(services_of: Callable[[], Services | None], warning: Callable[[], str] = str) -> Route:
     """200 or 503; a `warning` is told with either, to those who are known."""
     checked_at, found = float("-inf"), ["not checked yet"]
     check = _Check()
@@ -33,13 +33,13 @@ def health_route(desk_of: Callable[[], Desk | None], warning: Callable[[], str] 
         nonlocal checked_at, found
         async with turn:
             if time.monotonic() > checked_at + _HOLDS_S:
-                found = await _reasons(desk_of(), check)
+                found = await _reasons(services_of(), check)
                 checked_at = time.monotonic()
         content: dict[str, object] = {"status": "not ok" if found else "ok"}
-        if found and who_of(request).name:
+        if found and user_of(request).name:
             content["reasons"] = found
         said = warning()
-        if said and who_of(request).name:
+        if said and user_of(request).name:
             content["warning"] = said
         return JSONResponse(content, 503 if found else 200)
 
@@ -66,8 +66,8 @@ class _Check:
         return ""
 
 
-async def _reasons(desk: Desk | None, check: _Check) -> list[str]:
+async def _reasons(services: Services | None, check: _Check) -> list[str]:
     """Why it is not well; empty: it is."""
-    if desk is None:
+    if services is None:
         return ["starting or ending"]
-    return [why for why in (await check.why_not(desk.store), *desk.runs.troubles) if why]
+    return [why for why in (await check.why_not(services.store), *services.runs.troubles) if why]

@@ -10,7 +10,7 @@ import sys
 from datetime import UTC, datetime
 from typing import Any, Literal
 
-from muster.server.security.guard import Answered
+from muster.server.security.guard import CompletedRequest
 from muster.server.security.headers import is_static
 
 _SECRETS = (
@@ -105,19 +105,19 @@ def begin_logs(form: Literal["text", "json"], *, quiet: bool, verbose: bool) -> 
     requests.setLevel(logging.INFO if shows_requests else logging.WARNING)
 
 
-def log_answered(answered: Answered) -> None:
+def log_answered(completed: CompletedRequest) -> None:
     """A line for a request that is over; files of the page only where they failed."""
-    if is_static(answered.path) and answered.status < 400:
+    if is_static(completed.path) and completed.status < 400:
         return
     requests.info(
         "%s %s %d",
-        answered.scope.get("method", "WEBSOCKET"),
-        answered.path,
-        answered.status,
+        completed.scope.get("method", "WEBSOCKET"),
+        completed.path,
+        completed.status,
         extra={
-            "request": answered.id,
-            "user": answered.who.name,
-            "address": answered.who.address,
-            "ms": round(answered.seconds * 1000, 1),
+            "request": completed.id,
+            "user": completed.who.name,
+            "address": completed.who.address,
+            "ms": round(completed.seconds * 1000, 1),
         },
     )

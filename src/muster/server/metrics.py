@@ -18,9 +18,9 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from muster.exchange.mission_control import JobState, RunState, StoreError
-from muster.server.security.guard import Answered, Shield
-from muster.server.services.services import Desk
-from muster.server.store.statistics import Figures, figures
+from muster.server.security.guard import CompletedRequest, GuardState
+from muster.server.services.services import Services
+from muster.server.store.statistics import Statistics, statistics
 
 _SECONDS = (0.005, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
 _APPEND_S = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
@@ -31,9 +31,9 @@ _METHODS = ("GET", "HEAD", "POST", "PUT", "DELETE")
 class Metrics:
     """The figures of one server."""
 
-    def __init__(self, desk_of: Callable[[], Desk | None], shield: Shield) -> None:
-        self._desk_of = desk_of
-        self._shield = shield
+    def __init__(self, services_of: Callable[[], Services | None], guard_state: GuardState) -> None:
+        self._desk_of = services_of
+        self._shield = guard_state
         self._registry = CollectorRegistry()
         self._requests = Histogram(
             "muster_request_seconds",
@@ -50,13 +50,13 @@ class Metrics:
         )
         self._registry.register(self)
 
-    def observe(self, answered: Answered) -> None:
+    def observe(self, completed: CompletedRequest) -> None:
         """Count a request; WebSockets, which stay, are counted while they are open."""
-        if answered.scope["type"] != "http":
+        if completed.scope["type"] != "http":
             return
-        method = answered.scope["method"]
-        labels = (method if method in _METHODS else "other", _route(answered), f"{answered.status // 100}xx")
-        self._requests.labels(*labels).observe(answered.seconds)
+        method = completed.scope["method"]
+        labels = (method if method in _METHODS else "other", _route(completed), f"{completed.status // 100}xx")
+        self._requests.labels(*labels).observe(completed.seconds)
 
     def appended(self, seconds: float) -> None:
         """The log of a run was written, which took so long."""
@@ -71,27 +71,27 @@ class Metrics:
 
     def collect(self) -> Iterator[Metric]:
         """What is looked up when somebody asks; called by the registry, in a thread of its own."""
-        yield _gauge("muster_websockets", "WebSockets that are open.", self._shield.places.taken)
+        yield _gauge("muster_websockets", "WebSockets that are open.", self._shield.sockets.taken)
         yield _gauge("muster_memory_bytes", "Memory of the server process (RSS).", _memory_bytes())
-        desk = self._desk_of()
-        if desk is None:
+        services = self._desk_of()
+        if services is None:
             return
-        yield _gauge("muster_workers_busy", "Pieces of work under way in worker processes.", desk.pool.busy)
-        yield _gauge("muster_work_waiting", "Pieces of work that wait for a worker process.", desk.pool.waiting)
-        yield _gauge("muster_watchers", "WebSockets that watch a run.", desk.runs.watchers)
-        yield _by("muster_robots", "Robots of runs under way, by what they do.", "activity", _activities(desk))
+        yield _gauge("muster_workers_busy", "Pieces of work under way in worker processes.", services.pool.busy)
+        yield _gauge("muster_work_waiting", "Pieces of work that wait for a worker process.", services.pool.waiting)
+        yield _gauge("muster_watchers", "WebSockets that watch a run.", services.runs.watchers)
+        yield _by("muster_robots", "Robots of runs under way, by what they do.", "activity", _activities(services))
         try:
-            found = figures(desk.store)
+            found = statistics(services.store)
         except StoreError:
             found = None  # counted below; the rest is worth telling all the same
         if found is not None:
             yield from _of_database(found)
         yield CounterMetricFamily(
-            "muster_store_failures", "Times the database failed.", value=desk.store.database.failures
+            "muster_store_failures", "Times the database failed.", value=services.store.database.failures
         )
 
 
-def _of_database(found: Figures) -> Iterator[Metric]:
+def _of_database(found: Statistics) -> Iterator[Metric]:
     yield _by("muster_jobs", "Jobs by state.", "state", {**dict.fromkeys(get_args(JobState), 0), **found.jobs})
     yield _by("muster_runs", "Runs by state.", "state", {**dict.fromkeys(get_args(RunState), 0), **found.runs})
     means = (
@@ -115,21 +115,21 @@ def _by(name: str, what: str, label: str, values: Mapping[str, int]) -> Metric:
     return family
 
 
-def _activities(desk: Desk) -> Counter[str]:
+def _activities(services: Services) -> Counter[str]:
     """How many robots of runs under way do what, as watchers were told last."""
     activities: Counter[str] = Counter()
-    for text in desk.runs.statuses():
+    for text in services.runs.statuses():
         activities.update(robot["activity"] for robot in json.loads(text)["robots"].values())
     return activities
 
 
-def _route(answered: Answered) -> str:
+def _route(completed: CompletedRequest) -> str:
     """The template of the path, of which there are few, whatever strangers ask for."""
-    route = answered.scope.get("route")
+    route = completed.scope.get("route")
     path = getattr(route, "path_format", None) or getattr(route, "path", None)
     if path is None:
-        return answered.path if answered.path in _OWN_PATHS else "other"
-    return f"{answered.scope.get('root_path', '')}{path}"
+        return completed.path if completed.path in _OWN_PATHS else "other"
+    return f"{completed.scope.get('root_path', '')}{path}"
 
 
 def _memory_bytes() -> int:

@@ -32,7 +32,7 @@ _MESSAGE_BYTES = 4 * 2**20
 class PatientProtocol(HttpToolsProtocol):
     """HTTP of which the headers must come within a while, and be few: nobody keeps connections or memory busy so.
 
-    The rest of a body that was answered before it was whole is read and thrown away, for as long as that is little: a
+    The rest of a body that was completed before it was whole is read and thrown away, for as long as that is little: a
     connection that is closed with something unread is reset, and the answer lost with it (RFC 9112, 9.6).
     """
 
@@ -208,7 +208,7 @@ async def _serve(
     server = _Server(config)
     async with _ended_by_signals(server), app.router.lifespan_context(app):
         serving = asyncio.create_task(server.serve(sockets=[at]))
-        taken = app.state.desk.taken
+        taken = app.state.services.taken
         try:
             while not server.started and not serving.done():
                 await asyncio.sleep(0.005)

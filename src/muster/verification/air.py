@@ -20,7 +20,7 @@ from muster.mission.model import Point
 from muster.motion.free_space import PrismSpace
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.maps.free_points import free
-from muster.verification.roads import Roads
+from muster.verification.visibility_graph import VisibilityGraph
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -103,7 +103,7 @@ class AirWays:
         pairs = pairs[~upright | (pairs[:, 0] < len(ends))]
         for obstacle in met:
             pairs = pairs[obstacle.clear(nodes[pairs[:, 0]], nodes[pairs[:, 1]])]
-        way: Indices | None = Roads(nodes, pairs).way(0, 1)
+        way: Indices | None = VisibilityGraph(nodes, pairs).way(0, 1)
         return None if way is None else nodes[way]
 
 

@@ -20,7 +20,7 @@ from muster.motion.map_world import World
 from muster.verification.air import AirWays
 from muster.verification.cells import Cells
 from muster.verification.regions import Regions
-from muster.verification.roads import Roads
+from muster.verification.visibility_graph import VisibilityGraph
 
 PLANE_TOLERANCE = 1e-6
 """Relative. In the plane both planner and judge are exact, and add in different orders."""
@@ -99,7 +99,7 @@ class PlaneWays:
         self._number = {foot: k for k, foot in enumerate(feet)}
         self._sight = sight
         self._places, self._free = sight.settled(np.array(feet, dtype=np.float64).reshape(-1, 2))
-        self._roads: Roads | None = None
+        self._graph: VisibilityGraph | None = None
         self._known: dict[tuple[int, int], float | None] = {}
 
     def metres(self, start: Point, end: Point) -> float | None:
@@ -123,16 +123,16 @@ class PlaneWays:
 
     def _around(self, a: int, b: int) -> float | None:
         """The length of the shortest way that turns somewhere."""
-        if self._roads is None:
-            self._roads = self._drawn()
-        way = self._roads.way(a, b)
-        return None if way is None else self._roads.length(way) * self._sight.unit_m
+        if self._graph is None:
+            self._graph = self._drawn()
+        way = self._graph.way(a, b)
+        return None if way is None else self._graph.length(way) * self._sight.unit_m
 
-    def _drawn(self) -> Roads:
+    def _drawn(self) -> VisibilityGraph:
         """Places first, then corners. Blocked places see nothing."""
         sight, count = self._sight, len(self._places)
         standing = np.flatnonzero(self._free)
         seen = sight.from_places(self._places[standing])
         to_corners = np.stack([standing[seen[:, 0]], count + seen[:, 1]], axis=1)
         nodes = np.concatenate([self._places, sight.corners])
-        return Roads(nodes, np.concatenate([to_corners, count + sight.between_corners()]), ends=count)
+        return VisibilityGraph(nodes, np.concatenate([to_corners, count + sight.between_corners()]), ends=count)

@@ -15,8 +15,8 @@ from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
-from muster.negotiation.process_reports import TRANSPORTS, Order
-from muster.negotiation.team import Team, patience_here
+from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
+from muster.negotiation.team import Team, timeouts_for
 from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
 
@@ -39,15 +39,15 @@ def held(problem: Problem, transport: str, victims: Sequence[str] = ()) -> tuple
     MusterError
         if there is no agreement within GUARD_S.
     """
-    order = Order(
-        problem=problem, terms=Parameters(), key=new_key(), transport=transport, patience=patience_here(ROBOTS)
+    setup = TeamSetup(
+        problem=problem, terms=Parameters(), key=new_key(), transport=transport, timeouts=timeouts_for(ROBOTS)
     )
     until_s = time.monotonic() + GUARD_S
-    with Team(order) as team:
+    with Team(setup) as team:
         killed_s = None
         while team.agreement() is None:
-            team.hear(0.02)
-            if killed_s is None and any(news.status.round >= KILLED_IN_ROUND for news in team.news.values()):
+            team.poll(0.02)
+            if killed_s is None and any(news.status.round >= KILLED_IN_ROUND for news in team.progress.values()):
                 killed_s = time.monotonic()
                 for robot in victims:
                     team.kill(robot)
@@ -57,7 +57,7 @@ def held(problem: Problem, transport: str, victims: Sequence[str] = ()) -> tuple
         assert began_s is not None
         seconds = time.monotonic() - began_s
         sent, volume = Counter[str](), 0
-        for news in team.news.values():
+        for news in team.progress.values():
             sent.update(news.status.sent)
             volume += sum(news.status.sent_bytes.values())
         return seconds, sent, volume

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path
-from muster.motion.paths import WayFinder, find
+from muster.motion.paths import PathFinder, find
 from muster_studies.benches.measurement import Measurement
 
 Floats = npt.NDArray[np.float64]
@@ -48,7 +48,7 @@ def travel(runs: int) -> list[Measurement]:
 def _travel(name: str, blocked: Bools, threads: int, runs: int) -> list[Measurement]:
     places = free_places(blocked, 100)
     space = GridSpace(Grid(blocked, 0.1))
-    lengths, times = _timed(lambda: WayFinder(space).lengths(places * 0.1, threads=threads), runs)
+    lengths, times = _timed(lambda: PathFinder(space).lengths(places * 0.1, threads=threads), runs)
     note = f"{100 * np.isfinite(lengths).mean():.0f} % of pairs joined"
     return _rows(f"travel of 100 places on 500 x 500, {name}", threads, times, "< 5", note)
 

@@ -13,7 +13,7 @@ from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.negotiation.codec import Codec
 from muster.negotiation.encryption import OVERHEAD
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.methods import METHODS
 from muster.negotiation.robot_view import view_of
 from muster.verification import verify
@@ -55,7 +55,7 @@ class Said:
     ----------
     rounds
         in which all said something: of the auction one a sale.
-    news, repairs, beats
+    news, repairs, heartbeats
         messages of the whole team; one to all counts once.
     bytes
         of these as they go over a network, sealed; one to all counts once.
@@ -68,7 +68,7 @@ class Said:
     rounds: int
     news: int
     repairs: int
-    beats: int
+    heartbeats: int
     bytes: int
     seconds: float
     gap: float
@@ -92,7 +92,7 @@ def hold(talk: Talk) -> Said:
         lambda robot, incarnation: method.negotiator(problem, params, robot, incarnation=incarnation),
         names,
         talk.seed,
-        Weather(loss=talk.loss, delay_s=DELAY_S),
+        LinkConditions(loss=talk.loss, delay_s=DELAY_S),
         sent=lambda message: weights.append(len(codec.encode(message)) + OVERHEAD),
     )
     network.start()
@@ -106,7 +106,7 @@ def hold(talk: Talk) -> Said:
         rounds=node.stage.round,
         news=sum(count.news for count in counts),
         repairs=sum(count.repairs for count in counts),
-        beats=sum(count.beats for count in counts),
+        heartbeats=sum(count.heartbeats for count in counts),
         bytes=sum(weights),
         seconds=network.now,
         gap=value / searched(talk.robots, talk.seed) - 1,
@@ -155,7 +155,7 @@ class Cost:
                     n,
                     round(sum(said.rounds for said in of) / n),
                     sum(said.news for said in of) / n / tasks,
-                    sum(said.news + said.repairs + said.beats for said in of) / n / tasks,
+                    sum(said.news + said.repairs + said.heartbeats for said in of) / n / tasks,
                     sum(said.bytes for said in of) / n / tasks / 1000,
                     sum(said.seconds for said in of) / n,
                     100 * sum(said.gap for said in of) / n,
@@ -166,8 +166,8 @@ class Cost:
 
 _NOTES = (
     "Robots and 2.5 tasks a robot at random places of a square, without limits; total+max; 50 ms each way, nothing "
-    "else is slow. news: declarations and bids of all robots. all: with repairs and beats. A message to all counts "
-    "once; over UDP to peers it is sent to each. kB: sealed, as on the network. s: until all know that all agree. gap: "
-    "to search in one process, 20,000 iterations, which no loss touches. Of 50 robots two missions "
+    "else is slow. news: declarations and bids of all robots. all: with repairs and heartbeats. A message to all "
+    "counts once; over UDP to peers it is sent to each. kB: sealed, as on the network. s: until all know that all "
+    "agree. gap: to search in one process, 20,000 iterations, which no loss touches. Of 50 robots two missions "
     "at most, of 100 one.",
 )

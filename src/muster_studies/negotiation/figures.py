@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 
 from muster.allocation.problem import Problem
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster_studies.negotiation import suspicion
 from muster_studies.negotiation.teams import DELAY_S, all_agree, settled_team, team, time_until
 
@@ -43,7 +43,7 @@ def auctions(robots: int, tasks: int, loss: float, seeds: Sequence[int]) -> Auct
     """Auctions of a team, DELAY_S each way."""
     award_s, end_s, worse, sent, repairs, rounds = [], [], [], 0, 0, 0
     for seed in seeds:
-        problem, network = team(robots, tasks, seed, Weather(loss=loss, delay_s=DELAY_S))
+        problem, network = team(robots, tasks, seed, LinkConditions(loss=loss, delay_s=DELAY_S))
         times = _Rounds(network)
         network.watch = times.look
         network.start()
@@ -52,7 +52,7 @@ def auctions(robots: int, tasks: int, loss: float, seeds: Sequence[int]) -> Auct
         award_s += times.took_s()
         end_s.append(network.now)
         counts = [node.counts for node in network.nodes.values()]
-        sent += sum(count.news + count.repairs + count.beats for count in counts)
+        sent += sum(count.news + count.repairs + count.heartbeats for count in counts)
         repairs += sum(count.repairs for count in counts)
         rounds += robots * (len(times.took_s()) + 1)
         worse.append(_value(problem, network) / _value(problem, settled_team(robots, tasks, 0.0, seed)) - 1)

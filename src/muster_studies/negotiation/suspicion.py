@@ -13,8 +13,8 @@ from functools import partial
 from random import Random
 from statistics import NormalDist, fmean, stdev
 
-from muster.negotiation.members import Patience
-from muster.negotiation.memory_network import TICK_S, MemoryNetwork, Weather
+from muster.negotiation.members import Timeouts
+from muster.negotiation.memory_network import TICK_S, LinkConditions, MemoryNetwork
 from muster_studies.negotiation.teams import DELAY_S, all_agree, team, time_until
 
 BIASED_LOSS = 0.95
@@ -22,7 +22,7 @@ BIASED_LOSS = 0.95
 
 
 TRIALS = 25
-"""In each run; runs differ in how the beats of their robots meet the ticks of their clocks."""
+"""In each run; runs differ in how the heartbeats of their robots meet the ticks of their clocks."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def rate(loss: float, runs: int, seed: int, jitter_s: float = 0.0) -> Rate:
 
 
 def _rate_of_a_run(loss: float, jitter_s: float, random: Random) -> float:
-    _, network = team(2, 4, random.randrange(2**32), Weather(delay_s=DELAY_S, jitter_s=jitter_s))
+    _, network = team(2, 4, random.randrange(2**32), LinkConditions(delay_s=DELAY_S, jitter_s=jitter_s))
     speaker, listener = network.robots
     provoked = _Provoked(loss, random, speaker)
     network.links = provoked.gets_through
@@ -108,19 +108,19 @@ def _trial(network: MemoryNetwork, provoked: _Provoked, listener: str) -> float:
     network.run(math.inf, lambda: provoked.heard or suspects())
     provoked.provokes = False
     if not suspects():
-        network.run(network.now + DELAY_S + network.weather.jitter_s, suspects)
+        network.run(network.now + DELAY_S + network.conditions.jitter_s, suspects)
     suspected, weight = suspects(), provoked.weight
     _rest(network)
     return weight if suspected else 0.0
 
 
-def bound(loss: float, patience: Patience | None = None) -> float:
-    """False suspicions a robot pair and hour, at most: by beats from one to the other alone, all of them lost.
+def bound(loss: float, timeouts: Timeouts | None = None) -> float:
+    """False suspicions a robot pair and hour, at most: by heartbeats from one to the other alone, all of them lost.
 
-    A run of k lost beats begins with each beat with probability (1 - loss) * loss**k; k of them arrive in `suspect_s`,
-    if all are as long on their way: where one can be late by more than a beat, it is one less.
+    A run of k lost heartbeats begins with each heartbeat with probability (1 - loss) * loss**k; k of them arrive in
+    `suspect_s`, if all are as long on their way: where one can be late by more than a heartbeat, it is one less.
     """
-    patience = patience or Patience()
-    longest_s = patience.beat_s + TICK_S  # a beat is sent when its robot looks at its clock
-    k = math.floor(patience.suspect_s / longest_s)
-    return 3600 / patience.beat_s * (1 - loss) * loss**k
+    timeouts = timeouts or Timeouts()
+    longest_s = timeouts.heartbeat_s + TICK_S  # a heartbeat is sent when its robot looks at its clock
+    k = math.floor(timeouts.suspect_s / longest_s)
+    return 3600 / timeouts.heartbeat_s * (1 - loss) * loss**k

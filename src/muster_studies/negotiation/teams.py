@@ -7,7 +7,7 @@ from random import Random
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster.negotiation.memory_network import MemoryNetwork, Weather
+from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import negotiator_of
 from muster_studies.uniform import uniform_mission
@@ -16,7 +16,7 @@ DELAY_S = 0.05
 END_S = 600.0
 
 
-def team(robots: int, tasks: int, seed: int, weather: Weather) -> tuple[Problem, MemoryNetwork]:
+def team(robots: int, tasks: int, seed: int, conditions: LinkConditions) -> tuple[Problem, MemoryNetwork]:
     """Robots and tasks without limits in a square, and a network of them."""
     problem = Problem.compile(uniform_mission(Random(seed), robots=robots, tasks=tasks)).ready()
     terms = Parameters()
@@ -24,12 +24,12 @@ def team(robots: int, tasks: int, seed: int, weather: Weather) -> tuple[Problem,
     def make(robot: str, incarnation: int) -> Negotiator:
         return negotiator_of(problem, terms, robot, incarnation=incarnation)
 
-    return problem, MemoryNetwork(make, [robot.id for robot in problem.robots], seed, weather)
+    return problem, MemoryNetwork(make, [robot.id for robot in problem.robots], seed, conditions)
 
 
 def settled_team(robots: int, tasks: int, loss: float, seed: int) -> MemoryNetwork:
     """A team that has ended its first auction."""
-    _, network = team(robots, tasks, seed, Weather(loss=loss, delay_s=DELAY_S))
+    _, network = team(robots, tasks, seed, LinkConditions(loss=loss, delay_s=DELAY_S))
     network.start()
     time_until(network, lambda: all(node.settled for node in network.nodes.values()))
     return network

@@ -18,7 +18,7 @@ from muster.motion.grid import Floats
 from muster.motion.map_world import body_of
 from muster.motion.metrics import closest, path_length, risk_factor, trajectory_error
 from muster.motion.path import NoPath
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 from muster_studies.rescue.flights import Flown
 from muster_studies.rescue.teams import mission_of
 
@@ -62,22 +62,22 @@ class Tracking:
 
 
 @cache
-def _roads(team: str) -> Roads:
-    return Roads.of(mission_of(team))
+def _robot_paths(team: str) -> RobotPaths:
+    return RobotPaths.of(mission_of(team))
 
 
 @cache
 def legs(team: str, robot: str, tasks: tuple[str, ...]) -> tuple[Floats, ...]:
     """The reference to each task in order: (k, 2) metres, evenly along it."""
-    mission, roads = mission_of(team), _roads(team)
+    mission, robot_paths = mission_of(team), _robot_paths(team)
     (body,) = (body_of(one) for one in mission.robots if one.id == robot)
     starts = {one.id: one.position for one in mission.robots}
     places = {task.id: task.position for task in mission.tasks}
     found = []
     for start, goal in pairwise([starts[robot], *(places[task] for task in tasks)]):
-        path = roads.path(body, start, goal)
+        path = robot_paths.path(body, start, goal)
         assert not isinstance(path, NoPath)  # it was planned
-        curve = roads.curve(body, path)
+        curve = robot_paths.curve(body, path)
         found.append(curve.points(np.linspace(0.0, curve.length_m, math.ceil(curve.length_m / SAMPLE_M) + 1)))
     return tuple(found)
 
@@ -105,7 +105,7 @@ _ROUNDING_S = 1e-6
 
 def deviations(reference: Sequence[Floats], way: Floats) -> Floats:
     """Cross-track: metres (n,) from places (n, 2) to the nearest of the reference."""
-    import shapely  # an extra, which the roads have found by now
+    import shapely  # an extra, whose presence the map has checked
 
     line = shapely.LineString(np.concatenate(list(reference)))
     return np.asarray(shapely.distance(line, shapely.points(way)), dtype=np.float64)
@@ -118,7 +118,7 @@ def tracking(team: str, flown: Flown, robot: str) -> Tracking:
     matched = [at_same_shares(one, way) for one, way in zip(reference, ways, strict=True)]
     error = trajectory_error(np.concatenate(reference), np.concatenate(matched))
     whole = track(flown, robot)
-    world = _roads(team).world
+    world = _robot_paths(team).world
     others = [k for k in range(flown.positions.shape[1]) if k != index]
     return Tracking(
         goal_error=max(math.dist(way[-1], one[-1]) for one, way in zip(reference, ways, strict=True)),

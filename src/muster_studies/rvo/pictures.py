@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from muster.report import save_figure
-from muster.report.trajectories import Ways, plot_ways
+from muster.report.trajectories import MethodRun, plot_trajectories
 from muster_studies.rvo.runs import METHODS, Job
 from muster_studies.rvo.scenarios import Scenario, scenarios, tables
 
@@ -19,7 +19,7 @@ def draw(folder: Path, numbers: Sequence[str]) -> list[Path]:
     for table in (number for number in FIGURES if number in numbers):
         for scenario in scenarios(table):
             path = folder / f"{table}-{scenario.name.replace(' ', '-')}.png"
-            save_figure(plot_ways([_ways(scenario, method) for method in METHODS], _title(scenario)), path)
+            save_figure(plot_trajectories([_ways(scenario, method) for method in METHODS], _title(scenario)), path)
             made.append(path)
     return made
 
@@ -28,10 +28,10 @@ def _title(scenario: Scenario) -> str:
     return f"Table {scenario.table}, scenario {scenario.name} (as Figures {FIGURES[scenario.table]})"
 
 
-def _ways(scenario: Scenario, method: str) -> Ways:
+def _ways(scenario: Scenario, method: str) -> MethodRun:
     job = Job(scenario, method, 0 if method == "ORCA" else None)
     found, parameters = job.perform(), tables()["A.18"]
-    return Ways(
+    return MethodRun(
         method=method,
         robots=tuple(scenario.robots),
         goals=job.crowd.goals,

@@ -10,6 +10,7 @@ from itertools import pairwise
 import pytest
 
 from muster import load
+from muster.cli.exits import DONE, STILL_MOVING
 from muster.library.shipped import mission_path
 
 SPEED, YAW_RATE, RADIUS = 1.2, 6.0, 0.3
@@ -52,7 +53,7 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
             robots["r_1"].kill()
             break
     out, rest = carried.communicate(timeout=60)
-    assert carried.returncode == 0, rest
+    assert carried.returncode in (DONE, STILL_MOVING), rest  # r_1 may have driven when it was last heard
     report, heard = json.loads(out), listener.heard()
 
     assert sorted(report["tasks_done"], key=int) == [task.id for task in mission.tasks]

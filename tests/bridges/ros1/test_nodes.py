@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import time
+from itertools import groupby, pairwise
 from pathlib import Path
 
 import pytest
@@ -160,7 +161,8 @@ def test_a_task_is_added_and_planned_for_by_whom_robots_have(ros):
     ros.robot("r_0", 0, 0)
     carried = ros.muster("near.yaml", *QUICK, "--on-start")
     user = ros.user()
-    heard = ros.listener("/muster/events=std_msgs/String", "/mission_planner/plan=std_msgs/String")
+    topics = ("/muster/events", "/mission_planner/plan", "/muster/status")
+    heard = ros.listener(*(f"{topic}=std_msgs/String" for topic in topics))
     state_is(user, "waiting")
     for text in ('{"id": "more", "position": [3, 0]}', '{"id": "wrong", "position": "here"}'):
         user.do(publish="/command_interface/add_task", text=text)
@@ -170,6 +172,16 @@ def test_a_task_is_added_and_planned_for_by_whom_robots_have(ros):
     assert carried.returncode == 0, err
     assert set(json.loads(out)["tasks_done"]) == {"t_1", "t_2", "more"}
     said = [(topic, json.loads(data["data"])) for topic, data in heard.heard()]
+    status = [data for topic, data in said if topic == "/muster/status"]
+    under_way = [data for data in status if data["state"] == "carrying-out"]
+    assert [done for done, _ in groupby(data["tasks_done"] for data in under_way)] == [0, 1, 2, 3]
+    times = [data["time_s"] for data in under_way]
+    assert times[0] == 0.0
+    assert times == sorted(times)
+    assert all(b - a < 1.5 for a, b in pairwise(times))
+    ends = [data["time_s"] for topic, data in said if topic == "/muster/events" and data["kind"] == "ends"]
+    assert max(times) >= ends[-1] > 1.0
+    assert status[-1] | {"time_s": 0} == {"state": "ended", "mission": "near", "tasks_done": 3, "time_s": 0}
     events = [data for topic, data in said if topic == "/muster/events"]
     assert [event["reason"].split(";")[0] for event in events if event["kind"] == "event_refused"] == [
         'add_task: position: "here"'

@@ -10,7 +10,7 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import Prism, PrismSpace
 from muster.motion.path import Path
-from muster.motion.paths import WayFinder, find, travel_lengths
+from muster.motion.paths import PathFinder, find, travel_lengths
 from muster.motion.paths.rings import rings_of
 
 HALL = shapely.box(0, 0, 20, 20)
@@ -90,7 +90,7 @@ def outside_of_all(space, points):
 def test_paths_are_free_as_long_as_their_lengths_and_within_half_a_percent(seed):
     space = towers(seed)
     places = np.random.default_rng(seed).uniform((0, 0, 0), (20, 20, 5), (8, 3))
-    finder = WayFinder(space)
+    finder = PathFinder(space)
     lengths = finder.lengths(places)
     assert (lengths == lengths.T).all()
     answers = [[finder.path(a, b) for b in places] for a in places]

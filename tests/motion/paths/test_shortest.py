@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path
-from muster.motion.paths import PLANNERS, WayFinder, find, travel_lengths
+from muster.motion.paths import PLANNERS, PathFinder, find, travel_lengths
 
 
 def path_lengths(finder, places):
@@ -21,7 +21,7 @@ def path_lengths(finder, places):
 
 
 def assert_lengths(space, places, wanted):
-    finder, wanted = WayFinder(space), pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    finder, wanted = PathFinder(space), pytest.approx(wanted, rel=1e-9, abs=1e-12)
     assert path_lengths(finder, places) == wanted  # looking where it comes by
     assert finder.lengths(places) == wanted
     assert path_lengths(finder, places) == wanted  # with the graph
@@ -64,7 +64,7 @@ def test_lengths_are_symmetric_and_those_of_the_paths(kind):
         holes = [shapely.Point(p).buffer(1.5) for p in rng.uniform(0, 30, (20, 2))]
         space = PolygonSpace(shapely.box(0, 0, 30, 30).difference(shapely.unary_union(holes)))
         places = rng.uniform(0, 30, (20, 2))
-    finder = WayFinder(space)
+    finder = PathFinder(space)
     lengths = finder.lengths(places)
     assert (lengths == lengths.T).all()
     assert np.isfinite(lengths).any()

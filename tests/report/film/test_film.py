@@ -66,9 +66,9 @@ def test_a_gif(footage, tmp_path):
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_robots_are_seen_where_they_are_in_their_colors(footage, share):
     """Beside a robot's body, within its ring, the picture has the robot's hue; far away it has not."""
-    from muster.report.film.scenery import FilmSet
+    from muster.report.film.scenery import FilmScene
 
-    with FilmSet(footage, 960, 540) as scene:
+    with FilmScene(footage, 960, 540) as scene:
         now = share * scene.moments.end_s
         picture = scene.picture(now).astype(float)
         poses = scene.moments.at(now)
@@ -81,9 +81,9 @@ def test_robots_are_seen_where_they_are_in_their_colors(footage, share):
 
 
 def test_tasks_take_the_color_of_who_has_done_them(footage):
-    from muster.report.film.scenery import FilmSet
+    from muster.report.film.scenery import FilmScene
 
-    with FilmSet(footage, 960, 540) as scene:
+    with FilmScene(footage, 960, 540) as scene:
         x, y = np.round(scene.view.pixels(np.array([(4.0, 2.5, 0.0)]))[0]).astype(int)
         before = scene.picture(0.0)[y, x].astype(float)
         assert before.min() > 225
@@ -105,9 +105,9 @@ def test_captions_tell_what_happens_and_fade(footage):
 
 def test_what_is_written_is_seen(footage):
     from muster.report.film.film import _write_upon
-    from muster.report.film.scenery import FilmSet
+    from muster.report.film.scenery import FilmScene
 
-    with FilmSet(footage, 960, 540) as scene:
+    with FilmScene(footage, 960, 540) as scene:
         blank = scene.picture(3.0)
         written = blank.copy()
         _write_upon(written, scene, footage, 3.0, 1.0)
@@ -124,9 +124,9 @@ def test_the_speed_that_is_chosen_makes_no_film_longer_than_24_s():
 
 
 def test_moments_between_two_looks_are_between(footage):
-    from muster.report.film.interpolation import Moments
+    from muster.report.film.interpolation import RunInterpolation
 
-    moments = Moments(footage)
+    moments = RunInterpolation(footage)
     early, late = moments.poses[20], moments.poses[21]
     between = moments.at((moments.times_s[20] + moments.times_s[21]) / 2)
     np.testing.assert_allclose(between[:, :3], (early[:, :3] + late[:, :3]) / 2, atol=1e-9)

@@ -1,4 +1,4 @@
-"""What the tests of the API share: a server with a real desk, and a mission on it."""
+"""What the tests of the API share: a server with a real services, and a mission on it."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""What every route answers, with the real desk."""
+"""What every route answers, with the real services."""
 
 import io
 import re

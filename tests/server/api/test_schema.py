@@ -27,7 +27,7 @@ REFUSALS = ["400", "404", "409", "413", "422", "428", "429"]
 CHECKS = ChecksConfig(positive_data_acceptance=PositiveDataAcceptanceConfig(expected_statuses=["2xx", *REFUSALS]))
 GENERATION = GenerationConfig(deterministic=True, max_examples=EXAMPLES, database="none")
 PROJECT = ProjectConfig(checks=CHECKS, generation=GENERATION)
-DESCRIPTION = api(lambda: pytest.fail("a description needs no desk")).openapi()
+DESCRIPTION = api(lambda: pytest.fail("a description needs no services")).openapi()
 
 schema = schemathesis.openapi.from_dict(
     DESCRIPTION, config=SchemathesisConfig(seed=1, projects=ProjectsConfig(default=PROJECT))

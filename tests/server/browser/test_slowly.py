@@ -36,7 +36,7 @@ def client(served):
 
 
 class Held:
-    """Answers of a service of the desk wait until they are let go."""
+    """Answers of a service of the services wait until they are let go."""
 
     def __init__(self, monkeypatch, service, name, only):
         self._gate, self._answered = threading.Event(), threading.Event()
@@ -153,7 +153,7 @@ def test_live_opens_and_stops_robots_while_the_database_is_gone(watched, client)
 def test_live_and_records_open_while_workers_are_busy(watched, client, hold):
     page = watched.page
     run = client.start(client.plan(MISSION, iterations=20).wait(), speed=0.2).id
-    held = hold(Missions, "look")
+    held = hold(Missions, "read_keys")
     watched.open(f"/live/{run}")
     page.locator(".run-state[data-state=running]").wait_for()
     page.get_by_role("button", name="End the run").click()

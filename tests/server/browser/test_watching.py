@@ -63,7 +63,7 @@ def test_the_login_page_shows_one_field(watched):
 
 
 def commanding(page):
-    """Words on buttons and fields that would command something."""
+    """Texts on buttons and fields that would command something."""
     shown = page.locator("button:visible").evaluate_all("all => all.map(b => b.ariaLabel || b.innerText)")
     return [words for words in shown if COMMANDS.search(words)]
 

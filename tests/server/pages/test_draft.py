@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from muster.exchange.mission_control import ConflictError, MissionVersion, Who
+from muster.exchange.mission_control import ConflictError, MissionVersion, User
 from muster.mission.errors import NetworkError
 from muster.server.pages.editing.draft import Draft
 
-WHO = Who("anna", "command")
+WHO = User("anna", "command")
 FIRST = MissionVersion(mission="yard", version=1, text="name: a\n", author="anna", at=None)
 
 
 class Missions:
-    """As the desk's, with one mission."""
+    """As the services', with one mission."""
 
     def __init__(self) -> None:
         self.newest = FIRST
@@ -34,7 +34,7 @@ class Missions:
             raise ValueError(text)
         return text.replace(*arguments) if change == "replace" else text + arguments[0]
 
-    async def save(self, who: Who, mission: str, text: str, base: int, files: object = None, note: str = "") -> Any:
+    async def save(self, who: User, mission: str, text: str, base: int, files: object = None, note: str = "") -> Any:
         await asyncio.sleep(0)
         if base != self.newest.version:
             raise ConflictError("another one was saved")

@@ -111,8 +111,10 @@ def test_what_a_mission_begins_with_is_one(text: str, dimensions: int, tmp_path:
 
 def test_figures_are_the_judges_and_say_what_is_wrong() -> None:
     plan = {"objective": {"name": "max", "value": 10.0}, "lower_bound": 8.0, "total_cost": 1.0, "usage_unit": "m"}
-    verdict = {"valid": False, "violations": [{"kind": "capacity", "robot": "r_0", "task": None}], "total_cost": 2.0}
+    wrong = [{"kind": "capacity", "robot": "r_0", "task": None}]
+    verdict = {"valid": False, "violations": wrong, "total_cost": 2.0, "ignored": ["skills"]}
     figures = dict(figures_of(plan, verdict))
+    assert figures["Rules ignored"] == "skills"
     assert figures["Lower bound"] == "8.00 m (gap 20.0%)"
     assert figures["Total cost"] == "2.00 m"
     assert figures["The judge says"] == "not admissible: capacity r_0"

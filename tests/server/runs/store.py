@@ -1,12 +1,12 @@
 """A database with a plan in it, as runs need."""
 
 import muster
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.yaml_writer import yaml_text
 from muster.server.settings import Settings
 
-ADA = Who("ada", "command")
-EVE = Who("eve", "watch")
+ADA = User("ada", "command")
+EVE = User("eve", "watch")
 
 
 def planned(store, mission, **how):

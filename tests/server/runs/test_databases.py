@@ -12,7 +12,7 @@ from tests.server.runs.store import ADA, planned
 from tests.server.services.opened import TINY
 
 import muster
-from muster.server.services.services import open_desk
+from muster.server.services.services import open_services
 from muster.server.settings import Settings
 from muster.server.store.store import Store
 
@@ -56,28 +56,28 @@ def test_a_run_is_killed_and_resumed_by_the_next_server(database_url):
     settings = Settings(database=database_url, workers=1)
 
     async def first():
-        async with open_desk(settings) as desk:
-            run = (await desk.runs.start(ADA, planned(desk.store, mission), speed=20.0)).id
-            await watched(desk.runs, run, going_at(5))
-            await desk.runs.act(ADA, run, "event", {"robot_fails": "r_0"})
-            os.kill(desk.runs.pid(run), signal.SIGKILL)
-            await watched(desk.runs, run, lambda said: said.get("kind") == "resumed")
+        async with open_services(settings) as services:
+            run = (await services.runs.start(ADA, planned(services.store, mission), speed=20.0)).id
+            await watched(services.runs, run, going_at(5))
+            await services.runs.act(ADA, run, "event", {"robot_fails": "r_0"})
+            os.kill(services.runs.pid(run), signal.SIGKILL)
+            await watched(services.runs, run, lambda said: said.get("kind") == "resumed")
             return run
 
     async def second(run):
-        async with open_desk(settings) as desk:
-            await desk.runs.act(ADA, run, "speed", {"speed": None})
-            await watched(desk.runs, run)
-            page = await desk.records.page(run)
+        async with open_services(settings) as services:
+            await services.runs.act(ADA, run, "speed", {"speed": None})
+            await watched(services.runs, run)
+            page = await services.records.page(run)
             return (
                 page,
-                desk.store,
-                judge(desk.store, run, [task.id for task in mission.tasks], 2),
-                await kept(desk, run),
+                services.store,
+                judge(services.store, run, [task.id for task in mission.tasks], 2),
+                await kept(services, run),
             )
 
-    async def kept(desk, run):
-        return {(action.verb, action.outcome) for action in await desk.actions.list(run=run)}
+    async def kept(services, run):
+        return {(action.verb, action.outcome) for action in await services.actions.list(run=run)}
 
     run = asyncio.run(first())
     page, _, log, actions = asyncio.run(second(run))
@@ -90,27 +90,27 @@ def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url
     mission = muster.load("31T-6R50")
 
     async def story():
-        async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
-            desk.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ada")
-            run = (await desk.runs.start(ADA, planned(desk.store, mission), speed=10.0)).id
-            await watched(desk.runs, run, going_at(5))
-            job = await desk.jobs.ask_plan(ADA, "tiny", time_limit=1.0)
+        async with open_services(Settings(database=postgresql_url, workers=1)) as services:
+            services.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ada")
+            run = (await services.runs.start(ADA, planned(services.store, mission), speed=10.0)).id
+            await watched(services.runs, run, going_at(5))
+            job = await services.jobs.ask_plan(ADA, "tiny", time_limit=1.0)
             await asyncio.to_thread(postgresql.stop)
             try:
-                pause = await desk.runs.act(ADA, run, "pause")
-                await watched(desk.runs, run, lambda said: said["type"] == "action" and said["id"] == pause.id)
-                during = await desk.runs.get(run)
-                os.kill(desk.runs.pid(run), signal.SIGKILL)
-                await desk.runs.act(ADA, run, "resume")
-                await desk.runs.act(ADA, run, "speed", {"speed": None})
-                messages = await watched(desk.runs, run, lambda said: said.get("kind") == "report")
+                pause = await services.runs.act(ADA, run, "pause")
+                await watched(services.runs, run, lambda said: said["type"] == "action" and said["id"] == pause.id)
+                during = await services.runs.get(run)
+                os.kill(services.runs.pid(run), signal.SIGKILL)
+                await services.runs.act(ADA, run, "resume")
+                await services.runs.act(ADA, run, "speed", {"speed": None})
+                messages = await watched(services.runs, run, lambda said: said.get("kind") == "report")
             finally:
                 await asyncio.to_thread(postgresql.start)
-            await gone(desk.runs, run)
-            *_, last = [each async for each in desk.jobs.follow(job.id)]
-            judge(desk.store, run, [task.id for task in mission.tasks], 1)
-            plans = [plan.id for plan in desk.store.plans.list("tiny")]
-            asked = [(action.verb, action.outcome) for action in desk.store.actions.list(run=run)]
+            await gone(services.runs, run)
+            *_, last = [each async for each in services.jobs.follow(job.id)]
+            judge(services.store, run, [task.id for task in mission.tasks], 1)
+            plans = [plan.id for plan in services.store.plans.list("tiny")]
+            asked = [(action.verb, action.outcome) for action in services.store.actions.list(run=run)]
             return during, messages, last, plans, asked
 
     during, messages, job, plans, asked = asyncio.run(story())

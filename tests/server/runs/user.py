@@ -1,4 +1,4 @@
-"""Who uses mission control over its API while it is killed: a user who asks for things at random, and a watcher."""
+"""Uses mission control over its API while it is killed: a user who asks for things at random, and a watcher."""
 
 import json
 import threading

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from fastapi import FastAPI, Request, WebSocket
 
-from muster.server.security import who_of
-from muster.server.security.authentication import Asking
-from muster.server.security.guard import Guard, Shield
+from muster.server.security import user_of
+from muster.server.security.authentication import Authenticator
+from muster.server.security.guard import Guard, GuardState
 from muster.server.security.login import login_routes
 from muster.server.security.refusal_log import Audit
 from muster.server.security.tokens import line_of, new_token
@@ -59,16 +59,16 @@ class Shielded:
 
     def __init__(self, settings: Settings) -> None:
         self.noted = []
-        self.answered = []
-        self.shield = Shield(settings, Asking.of(settings), Audit(lambda: self._keep))
+        self.completed = []
+        self.guard_state = GuardState(settings, Authenticator.of(settings), Audit(lambda: self._keep))
         self.app = FastAPI()
-        self.app.router.routes += login_routes(self.shield)
+        self.app.router.routes += login_routes(self.guard_state)
         self.app.add_api_route("/who", _who, methods=["GET", "POST"])
         self.app.add_api_route("/api/body", _body, methods=["POST"])
         self.app.add_api_route("/healthz", lambda: "ok")
         self.app.add_api_route("/fails", _fails)
         self.app.add_api_websocket_route("/echo", _echo)
-        self.app.add_middleware(Guard, shield=self.shield, observe=self.answered.append)
+        self.app.add_middleware(Guard, guard_state=self.guard_state, observe=self.completed.append)
 
     async def _keep(self, who, verb, data):
         self.noted.append((who.name, verb, dict(data)))
@@ -81,12 +81,12 @@ class Shielded:
 
     def noted_after(self, client):
         """The audit log, when everything is in it."""
-        client.portal.call(self.shield.audit.settle)
+        client.portal.call(self.guard_state.audit.settle)
         return self.noted
 
 
 async def _who(request: Request):
-    who = who_of(request)
+    who = user_of(request)
     return {"name": who.name, "role": who.role, "address": who.address}
 
 
@@ -101,7 +101,7 @@ async def _fails():
 async def _echo(socket: WebSocket):
     await socket.accept()
     async for text in socket.iter_text():
-        await socket.send_text(f"{who_of(socket).name}: {text}")
+        await socket.send_text(f"{user_of(socket).name}: {text}")
 
 
 def asgi_answer(

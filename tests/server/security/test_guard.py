@@ -306,8 +306,8 @@ def test_how_many_sockets(tmp_path):
             client.websocket_connect(SOCKET).__enter__()
         assert raised.value.status_code == 429
         with client.websocket_connect(SOCKET):
-            assert app.shield.places.taken == 1
-    assert app.shield.places.taken == 0
+            assert app.guard_state.sockets.taken == 1
+    assert app.guard_state.sockets.taken == 0
 
 
 def test_a_socket_ends_with_its_token(tmp_path):
@@ -315,7 +315,7 @@ def test_a_socket_ends_with_its_token(tmp_path):
     app = Shielded(settings)
     with app.client() as client, client.websocket_connect(SOCKET, headers=bearer(COMMANDER)) as socket:
         settings.tokens.write_text("watch bob -\n", encoding="utf-8")
-        app.shield.asking.tokens._looked_at = float("-inf")
+        app.guard_state.authenticator.tokens._looked_at = float("-inf")
         socket.send_text("hello")
         with pytest.raises(WebSocketDisconnect) as raised:
             socket.receive_text()
@@ -396,5 +396,5 @@ def test_that_nobody_listens_any_more_is_no_failure_of_the_server(tmp_path, capl
 
     headers = [(b"host", b"localhost"), (b"origin", b"http://localhost")]
     scope = {"type": "websocket", "scheme": "ws", "path": "/told", "headers": headers, "client": ("127.0.0.1", 9)}
-    asyncio.run(Guard(tells, shielded.shield)(scope, None, send))
+    asyncio.run(Guard(tells, shielded.guard_state)(scope, None, send))
     assert [record.name for record in caplog.records if record.levelname == "ERROR"] == ["muster.security"] * failures

@@ -1,4 +1,4 @@
-"""Limits: rates, places, bodies."""
+"""Limits: rates, sockets, bodies."""
 
 import asyncio
 
@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.server.security.limits import Body, Buckets, Places, network_of
+from muster.server.security.limits import Buckets, LimitedBody, SocketLimit, network_of
 from muster.server.security.refusal import RefusalError
 
 
@@ -46,15 +46,15 @@ def test_a_person_has_many_addresses_of_ipv6():
 
 
 def test_places():
-    places = Places(3, 2)
-    with places.place("10.0.0.1"), places.place("10.0.0.1"):
-        with pytest.raises(RefusalError) as raised, places.place("10.0.0.1"):
+    sockets = SocketLimit(3, 2)
+    with sockets.place("10.0.0.1"), sockets.place("10.0.0.1"):
+        with pytest.raises(RefusalError) as raised, sockets.place("10.0.0.1"):
             pass
         assert (raised.value.status_code, raised.value.headers) == (429, {"retry-after": "5"})
-        with places.place("10.0.0.2"), pytest.raises(RefusalError), places.place("10.0.0.3"):
+        with sockets.place("10.0.0.2"), pytest.raises(RefusalError), sockets.place("10.0.0.3"):
             pass
-        assert places.taken == 2
-    assert places.taken == 0
+        assert sockets.taken == 2
+    assert sockets.taken == 0
 
 
 def _body(pieces, most, clock=lambda: 0.0):
@@ -64,7 +64,7 @@ def _body(pieces, most, clock=lambda: 0.0):
         body = left.pop(0)
         return {"type": "http.request", "body": body, "more_body": bool(left)}
 
-    return Body(receive, most, clock)
+    return LimitedBody(receive, most, clock)
 
 
 async def _read(body):

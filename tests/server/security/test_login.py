@@ -57,7 +57,7 @@ def test_a_token_that_is_deleted_ends_its_sessions(tmp_path, app):
     with app.client() as client:
         client.post("/login", data={"token": COMMANDER}, headers=_OWN)
         (tmp_path / "tokens.txt").write_text("watch anna -\n")
-        app.shield.asking.tokens._looked_at = float("-inf")
+        app.guard_state.authenticator.tokens._looked_at = float("-inf")
         assert client.get("/who").status_code == 401
 
 

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.security.refusal_log import Audit
 
 
@@ -11,7 +11,7 @@ def _settled(keep, monkeypatch):
 
     async def story():
         audit = Audit(lambda: keep)
-        audit.logged_in(Who("ann", "command", "127.0.0.1"))
+        audit.logged_in(User("ann", "command", "127.0.0.1"))
         await asyncio.wait_for(audit.settle(), 20)
 
     asyncio.run(story())

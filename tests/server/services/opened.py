@@ -1,17 +1,17 @@
-"""The desk's services that need workers, opened for a test."""
+"""The services's services that need workers, opened for a test."""
 
 from contextlib import asynccontextmanager
 from types import SimpleNamespace
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.services.jobs import Jobs
 from muster.server.services.plans import Plans
 from muster.server.settings import Settings
 from muster.server.store import Store
 from muster.server.work import Pool
 
-WHO = Who("ann", "command", "127.0.0.1")
-WATCHER = Who("bob", "watch")
+WHO = User("ann", "command", "127.0.0.1")
+WATCHER = User("bob", "watch")
 TINY = """
 schema: muster/1
 name: tiny
@@ -44,10 +44,10 @@ async def opened(folder, pool=None, **settings):
 
 
 async def told(folder, story, **settings):
-    """Run `story(desk)` to its end, with the mission `tiny` in the database."""
-    async with opened(folder, **settings) as desk:
-        desk.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
-        return await story(desk)
+    """Run `story(services)` to its end, with the mission `tiny` in the database."""
+    async with opened(folder, **settings) as services:
+        services.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
+        return await story(services)
 
 
 async def over(jobs, job):

@@ -5,12 +5,12 @@ from contextlib import closing, nullcontext
 
 import pytest
 
-from muster.exchange.mission_control import ConflictError, ForbiddenError, StoreError, Who
+from muster.exchange.mission_control import ConflictError, ForbiddenError, StoreError, User
 from muster.server.services.actions import Actions
 from muster.server.store import Store
 
-ANN = Who("ann", "command")
-BO = Who("bo", "watch")
+ANN = User("ann", "command")
+BO = User("bo", "watch")
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import threading
 import zipfile
 
 from muster.server.services import archives
-from muster.server.services.archives import parcel
+from muster.server.services.archives import archive_of
 
 
 def in_base64(*names):
@@ -15,8 +15,8 @@ def in_base64(*names):
 
 
 def test_one_file_stays_as_it_is_and_several_become_a_zip():
-    assert asyncio.run(parcel(in_base64("a.plan"), "x")) == (b"a.plan", "a.plan")
-    content, name = asyncio.run(parcel(in_base64("a.plan", "b.plan"), "plan-1-qgc"))
+    assert asyncio.run(archive_of(in_base64("a.plan"), "x")) == (b"a.plan", "a.plan")
+    content, name = asyncio.run(archive_of(in_base64("a.plan", "b.plan"), "plan-1-qgc"))
     assert name == "plan-1-qgc.zip"
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         assert {file: archive.read(file) for file in archive.namelist()} == {"a.plan": b"a.plan", "b.plan": b"b.plan"}
@@ -32,7 +32,7 @@ def test_others_are_served_while_files_are_packed(monkeypatch):
     monkeypatch.setattr(archives, "b64decode", slow)
 
     async def story():
-        packing = asyncio.create_task(parcel(in_base64("a", "b"), "x"))
+        packing = asyncio.create_task(archive_of(in_base64("a", "b"), "x"))
         await asyncio.sleep(0)
         served.set()
         return await packing

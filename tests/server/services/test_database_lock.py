@@ -18,7 +18,7 @@ from tests.server.runs.store import ADA, planned
 import muster
 from muster.exchange.mission_control import StoreError
 from muster.server.services.database_lock import TakenError, alone_with
-from muster.server.services.services import open_desk
+from muster.server.services.services import open_services
 from muster.server.settings import Settings
 from muster.server.store import Store
 
@@ -172,11 +172,11 @@ def test_what_one_server_has_begun_to_write_ends_before_the_next_one_reads(postg
         lock.look()
 
 
-async def _under_way(desk):
+async def _under_way(services):
     """A run of which something has happened."""
-    plan = await asyncio.to_thread(planned, desk.store, muster.load("31T-6R50"))
-    run = await desk.runs.start(ADA, plan, speed=1.0)
-    while not await desk.runs.entries(run.id):
+    plan = await asyncio.to_thread(planned, services.store, muster.load("31T-6R50"))
+    run = await services.runs.start(ADA, plan, speed=1.0)
+    while not await services.runs.entries(run.id):
         await asyncio.sleep(0.05)
     return run
 
@@ -185,22 +185,22 @@ def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(post
     monkeypatch.setattr("muster.server.services.services._LOOK_S", 0.1)
 
     async def story():
-        async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
-            run = await _under_way(desk)
+        async with open_services(Settings(database=postgresql_url, workers=1)) as services:
+            run = await _under_way(services)
             with _next_in_line(postgresql_url) as take:
                 taking = asyncio.create_task(asyncio.to_thread(take))
                 await asyncio.to_thread(_until_somebody_waits, postgresql_url)
                 await asyncio.to_thread(_end_session, postgresql_url)
                 await taking
                 await asyncio.to_thread(_until_nobody_writes, postgresql_url)
-                last = len(desk.store.log.entries(run.id))
+                last = len(services.store.log.entries(run.id))
                 with pytest.raises(TakenError, match="in use by another server; expected one server a database"):
-                    await asyncio.wait_for(asyncio.shield(desk.taken), 20)
-                assert (desk.runs.under_way, desk.runs.pid(run.id)) == (0, None)
+                    await asyncio.wait_for(asyncio.shield(services.taken), 20)
+                assert (services.runs.under_way, services.runs.pid(run.id)) == (0, None)
                 with pytest.raises(StoreError):
-                    await desk.runs.start(ADA, run.plan)
-                assert len(desk.store.log.entries(run.id)) == last
-                assert desk.store.runs.get(run.id).state in ("starting", "running")
+                    await services.runs.start(ADA, run.plan)
+                assert len(services.store.log.entries(run.id)) == last
+                assert services.store.runs.get(run.id).state in ("starting", "running")
 
     asyncio.run(story())
 
@@ -240,10 +240,10 @@ def test_closing_waits_for_no_look_that_hangs_with_the_database(postgresql_url, 
     monkeypatch.setattr("muster.server.services.database_lock._SessionLock._look", look)
 
     async def story():
-        async with open_desk(Settings(database=postgresql_url, workers=1)) as desk:
-            run = await _under_way(desk)
+        async with open_services(Settings(database=postgresql_url, workers=1)) as services:
+            run = await _under_way(services)
             await asyncio.to_thread(looking.wait, 60)
-        assert (desk.runs.under_way, desk.runs.pid(run.id)) == (0, None)
+        assert (services.runs.under_way, services.runs.pid(run.id)) == (0, None)
         assert not ended.is_set()
 
     try:

@@ -22,8 +22,8 @@ SHORT = {"iterations": 1}
 
 
 @pytest.fixture
-def in_desk(tmp_path):
-    """Runs a story of the desk to its end."""
+def with_services(tmp_path):
+    """Runs a story of the services to its end."""
     return lambda story, **settings: asyncio.run(told(tmp_path, story, **settings))
 
 
@@ -41,198 +41,200 @@ def children():
     return found
 
 
-async def under_way(desk, job):
+async def under_way(services, job):
     """Wait until there is progress."""
-    async for each in desk.jobs.follow(job.id):
+    async for each in services.jobs.follow(job.id):
         if each.progress is not None:
             return each
     raise AssertionError("it is over")
 
 
-def test_a_plan_is_asked_for_and_made(in_desk):
-    async def story(desk):
-        asked = await desk.jobs.ask_plan(WHO, "tiny", iterations=5, seed=3, bound="quick")
+def test_a_plan_is_asked_for_and_made(with_services):
+    async def story(services):
+        asked = await services.jobs.ask_plan(WHO, "tiny", iterations=5, seed=3, bound="quick")
         assert (asked.kind, asked.state, asked.author, asked.mission_version) == ("plan", "queued", "ann", 1)
-        *_, last = await over(desk.jobs, asked)
-        assert last == await desk.jobs.get(asked.id)
+        *_, last = await over(services.jobs, asked)
+        assert last == await services.jobs.get(asked.id)
         assert (last.state, last.error) == ("done", "")
-        plan = await desk.plans.get(last.result["plan"])
+        plan = await services.plans.get(last.result["plan"])
         assert (plan.origin, plan.author, plan.plan["seed"], plan.plan["tasks_completed"]) == ("planned", "ann", 3, 2)
-        (action,) = desk.store.actions.list()
+        (action,) = services.store.actions.list()
         assert (action.verb, action.outcome, action.data["iterations"]) == ("plan.ask", "done", 5)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_shipped_mission_is_stored_when_it_is_planned(in_desk):
-    async def story(desk):
-        job = await desk.jobs.ask_plan(WHO, "6T-2R", **SHORT)
-        assert (await over(desk.jobs, job))[-1].state == "done"
-        assert desk.store.missions.get("6T-2R").version == 1
+def test_a_shipped_mission_is_stored_when_it_is_planned(with_services):
+    async def story(services):
+        job = await services.jobs.ask_plan(WHO, "6T-2R", **SHORT)
+        assert (await over(services.jobs, job))[-1].state == "done"
+        assert services.store.missions.get("6T-2R").version == 1
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_plan_to_go_on_from(in_desk):
-    async def story(desk):
-        first = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", allocator="greedy")))[-1].result["plan"]
-        last = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", start=first, iterations=0)))[-1]
-        assert (await desk.plans.get(last.result["plan"])).plan["routes"] == (await desk.plans.get(first)).plan[
+def test_a_plan_to_go_on_from(with_services):
+    async def story(services):
+        first = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", allocator="greedy")))[-1].result[
+            "plan"
+        ]
+        last = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", start=first, iterations=0)))[-1]
+        assert (await services.plans.get(last.result["plan"])).plan["routes"] == (await services.plans.get(first)).plan[
             "routes"
         ]
         with pytest.raises(NotFoundError):
-            await desk.jobs.ask_plan(WHO, "tiny", start=99)
+            await services.jobs.ask_plan(WHO, "tiny", start=99)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_whose_start_is_gone_fails_with_a_line(in_desk):
-    async def story(desk):
-        first = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].result["plan"]
-        holds = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        waits = await desk.jobs.ask_plan(WHO, "tiny", start=first, **SHORT)
-        with desk.store.database.writing() as connection:
+def test_a_job_whose_start_is_gone_fails_with_a_line(with_services):
+    async def story(services):
+        first = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].result["plan"]
+        holds = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        waits = await services.jobs.ask_plan(WHO, "tiny", start=first, **SHORT)
+        with services.store.database.writing() as connection:
             connection.execute(delete(plans).where(plans.c.id == first))
-        await desk.jobs.cancel(WHO, holds.id)
-        last = (await over(desk.jobs, waits))[-1]
+        await services.jobs.cancel(WHO, holds.id)
+        last = (await over(services.jobs, waits))[-1]
         assert (last.state, last.error) == ("failed", f"no plan {first}")
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_two_hundred_requests_are_queued_and_done_in_order(in_desk):
-    async def story(desk):
-        asked = [await desk.jobs.ask_plan(WHO, "tiny", allocator="greedy") for _ in range(200)]
-        assert (await over(desk.jobs, asked[-1]))[-1].state == "done"
-        done = desk.store.jobs.list(state="done", limit=300)
+def test_two_hundred_requests_are_queued_and_done_in_order(with_services):
+    async def story(services):
+        asked = [await services.jobs.ask_plan(WHO, "tiny", allocator="greedy") for _ in range(200)]
+        assert (await over(services.jobs, asked[-1]))[-1].state == "done"
+        done = services.store.jobs.list(state="done", limit=300)
         assert [job.id for job in done] == [job.id for job in reversed(asked)]
         ends = [job.ended_at for job in done]
         assert ends == sorted(ends, reverse=True)
         assert len({job.result["plan"] for job in done}) == 200
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_is_found_behind_many_others(in_desk):
-    async def story(desk):
-        running = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        seen = await under_way(desk, running)
-        desk.store.missions.create("other", TINY, {}, {"name": "other"}, "ann")
+def test_a_job_is_found_behind_many_others(with_services):
+    async def story(services):
+        running = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        seen = await under_way(services, running)
+        services.store.missions.create("other", TINY, {}, {"name": "other"}, "ann")
         for _ in range(210):
-            desk.store.jobs.add("plan", "other", 1, {}, "ann")
-        assert [(job.id, job.progress is None) for job in await desk.jobs.list("running")] == [(seen.id, False)]
-        assert [job.id for job in await desk.jobs.list(mission="tiny")] == [seen.id]
-        assert [len(await desk.jobs.list(limit=limit)) for limit in (1000, 10)] == [211, 10]
+            services.store.jobs.add("plan", "other", 1, {}, "ann")
+        assert [(job.id, job.progress is None) for job in await services.jobs.list("running")] == [(seen.id, False)]
+        assert [job.id for job in await services.jobs.list(mission="tiny")] == [seen.id]
+        assert [len(await services.jobs.list(limit=limit)) for limit in (1000, 10)] == [211, 10]
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_the_queue_has_an_end(in_desk):
-    async def story(desk):
-        running = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        await under_way(desk, running)
+def test_the_queue_has_an_end(with_services):
+    async def story(services):
+        running = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        await under_way(services, running)
         for _ in range(2):
-            await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+            await services.jobs.ask_plan(WHO, "tiny", **LONG)
         with pytest.raises(BusyError, match=r"^2 jobs wait, the most that may; expected [^\n]*$"):
-            await desk.jobs.ask_plan(WHO, "tiny", **LONG)
+            await services.jobs.ask_plan(WHO, "tiny", **LONG)
 
-    in_desk(story, queue=2)
+    with_services(story, queue=2)
 
 
-def test_a_job_that_is_cancelled_is_over_within_a_second(in_desk):
-    async def story(desk):
-        job = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        await under_way(desk, job)
+def test_a_job_that_is_cancelled_is_over_within_a_second(with_services):
+    async def story(services):
+        job = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        await under_way(services, job)
         (worker,) = children()
         async with asyncio.timeout(1.0):
-            assert (await desk.jobs.cancel(WHO, job.id)).state == "cancelled"
-            assert (await over(desk.jobs, job))[-1].state == "cancelled"
+            assert (await services.jobs.cancel(WHO, job.id)).state == "cancelled"
+            assert (await over(services.jobs, job))[-1].state == "cancelled"
         async with asyncio.timeout(10.0):  # a process that gives way to others gets to its end late
             while worker in children():
                 await asyncio.sleep(0.01)
         with pytest.raises(ConflictError):
-            await desk.jobs.cancel(WHO, job.id)
-        assert (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].state == "done"
-        assert len(await desk.plans.list()) == 1
+            await services.jobs.cancel(WHO, job.id)
+        assert (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].state == "done"
+        assert len(await services.plans.list()) == 1
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_that_waits_can_be_cancelled(in_desk):
-    async def story(desk):
-        first = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        await under_way(desk, first)
-        waits = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
-        following = asyncio.create_task(over(desk.jobs, waits))
+def test_a_job_that_waits_can_be_cancelled(with_services):
+    async def story(services):
+        first = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        await under_way(services, first)
+        waits = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
+        following = asyncio.create_task(over(services.jobs, waits))
         await asyncio.sleep(0)
-        await desk.jobs.cancel(WHO, waits.id)
+        await services.jobs.cancel(WHO, waits.id)
         assert (await following)[-1].state == "cancelled"
-        last = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
-        await desk.jobs.cancel(WHO, first.id)
-        assert (await over(desk.jobs, last))[-1].state == "done"
-        assert len(await desk.plans.list()) == 1
+        last = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
+        await services.jobs.cancel(WHO, first.id)
+        assert (await over(services.jobs, last))[-1].state == "done"
+        assert len(await services.plans.list()) == 1
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_that_is_stopped_keeps_its_best_plan(in_desk):
-    async def story(desk):
-        job = await desk.jobs.ask_plan(WHO, "tiny", **LONG)
-        await under_way(desk, job)
+def test_a_job_that_is_stopped_keeps_its_best_plan(with_services):
+    async def story(services):
+        job = await services.jobs.ask_plan(WHO, "tiny", **LONG)
+        await under_way(services, job)
         (worker,) = children()
-        waits = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
-        assert (await desk.jobs.stop(WHO, waits.id)).state == "cancelled"
-        assert (await desk.jobs.stop(WHO, job.id)).state == "running"
-        last = (await over(desk.jobs, job))[-1]
+        waits = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
+        assert (await services.jobs.stop(WHO, waits.id)).state == "cancelled"
+        assert (await services.jobs.stop(WHO, job.id)).state == "running"
+        last = (await over(services.jobs, job))[-1]
         assert (last.state, last.error) == ("done", "")
-        assert (await desk.plans.get(last.result["plan"])).plan["tasks_completed"] == 2
+        assert (await services.plans.get(last.result["plan"])).plan["tasks_completed"] == 2
         with pytest.raises(ConflictError):
-            await desk.jobs.stop(WHO, job.id)
+            await services.jobs.stop(WHO, job.id)
         with pytest.raises(ForbiddenError):
-            await desk.jobs.stop(WATCHER, job.id)
+            await services.jobs.stop(WATCHER, job.id)
         assert children() == [worker]
-        stops = [action.outcome for action in desk.store.actions.list() if action.verb == "job.stop"]
+        stops = [action.outcome for action in services.store.actions.list() if action.verb == "job.stop"]
         assert stops.count("done") == 2
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_whose_worker_is_killed_is_done_once_more(in_desk):
-    async def story(desk):
-        job = await desk.jobs.ask_plan(WHO, "tiny", time_limit=1.5)
-        await under_way(desk, job)
+def test_a_job_whose_worker_is_killed_is_done_once_more(with_services):
+    async def story(services):
+        job = await services.jobs.ask_plan(WHO, "tiny", time_limit=1.5)
+        await under_way(services, job)
         (worker,) = children()
         os.kill(worker, signal.SIGKILL)
-        assert (await over(desk.jobs, job))[-1].state == "done"
-        assert len(await desk.plans.list()) == 1
+        assert (await over(services.jobs, job))[-1].state == "done"
+        assert len(await services.plans.list()) == 1
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_whose_workers_always_die_fails_with_a_line(in_desk, monkeypatch):
-    async def story(desk):
+def test_a_job_whose_workers_always_die_fails_with_a_line(with_services, monkeypatch):
+    async def story(services):
         async def dies(*_, **__):
             raise WorkerDied("the process that worked on it ended with SIGSEGV")
 
-        monkeypatch.setattr(desk.pool, "run", dies)
-        last = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1]
+        monkeypatch.setattr(services.pool, "run", dies)
+        last = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1]
         assert (last.state, last.error) == (
             "failed",
             "the process that worked on it ended with SIGSEGV, for the second time",
         )
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_fault_of_the_server_fails_the_job_alone(in_desk, monkeypatch):
-    async def story(desk):
+def test_a_fault_of_the_server_fails_the_job_alone(with_services, monkeypatch):
+    async def story(services):
         with monkeypatch.context() as broken:
-            broken.setattr(desk.store.jobs.__class__, "end_with_plan", lambda *_: 1 / 0)
-            last = (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1]
+            broken.setattr(services.store.jobs.__class__, "end_with_plan", lambda *_: 1 / 0)
+            last = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1]
             assert (last.state, last.error) == ("failed", "internal error; the server's log says more")
-        assert (await over(desk.jobs, await desk.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].state == "done"
+        assert (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].state == "done"
 
-    in_desk(story)
+    with_services(story)
 
 
 def refused(monkeypatch, table, method, refusals):
@@ -249,62 +251,62 @@ def refused(monkeypatch, table, method, refusals):
 
 
 @pytest.mark.parametrize("what", ["begin", "end_with_plan"])
-def test_a_database_that_refuses_for_a_while_keeps_jobs_waiting(in_desk, monkeypatch, what):
+def test_a_database_that_refuses_for_a_while_keeps_jobs_waiting(with_services, monkeypatch, what):
     monkeypatch.setattr("muster.server.services.jobs._AGAIN_S", 0.2)
 
-    async def story(desk):
+    async def story(services):
         refusals = [0] * 10**6
-        refused(monkeypatch, desk.store.jobs, what, refusals)
-        job = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
+        refused(monkeypatch, services.store.jobs, what, refusals)
+        job = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
         while len(refusals) > 10**6 - 2:
             await asyncio.sleep(0.05)
-        error = (await desk.jobs.get(job.id)).error
+        error = (await services.jobs.get(job.id)).error
         assert error == ("" if what == "begin" else "this job waits: m.db: full")
         refusals.clear()
-        last = (await over(desk.jobs, job))[-1]
+        last = (await over(services.jobs, job))[-1]
         assert (last.state, last.error, last.result["plan"]) == ("done", "", 1)
-        assert len(await desk.plans.list()) == 1
+        assert len(await services.plans.list()) == 1
 
-    in_desk(story)
+    with_services(story)
 
 
 def test_who_closes_does_not_wait_for_a_database_that_refuses(tmp_path, monkeypatch):
     monkeypatch.setattr("muster.server.services.jobs._AGAIN_S", 0.2)
 
     async def story():
-        async with opened(tmp_path) as desk:
-            desk.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
-            refused(monkeypatch, desk.store.jobs, "end_with_plan", [0] * 10**6)
-            job = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
-            while not (await desk.jobs.get(job.id)).error:
+        async with opened(tmp_path) as services:
+            services.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
+            refused(monkeypatch, services.store.jobs, "end_with_plan", [0] * 10**6)
+            job = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
+            while not (await services.jobs.get(job.id)).error:
                 await asyncio.sleep(0.05)
             return job
 
     async def again(job):
-        async with opened(tmp_path) as desk:
-            assert (await over(desk.jobs, job))[-1].result["plan"] == 1
-            assert len(await desk.plans.list()) == 1
+        async with opened(tmp_path) as services:
+            assert (await over(services.jobs, job))[-1].result["plan"] == 1
+            assert len(await services.plans.list()) == 1
 
     asyncio.run(again(asyncio.run(asyncio.wait_for(story(), 60))))
 
 
-def test_a_job_that_is_cancelled_while_its_plan_is_written_has_none(in_desk):
-    async def story(desk):
-        job = desk.store.jobs.add("plan", "tiny", 1, {}, "ann")
-        desk.store.jobs.begin(job.id)
-        desk.store.jobs.end(job.id, "cancelled")
+def test_a_job_that_is_cancelled_while_its_plan_is_written_has_none(with_services):
+    async def story(services):
+        job = services.store.jobs.add("plan", "tiny", 1, {}, "ann")
+        services.store.jobs.begin(job.id)
+        services.store.jobs.end(job.id, "cancelled")
         with pytest.raises(ConflictError, match="is cancelled"):
-            desk.store.jobs.end_with_plan(job.id, {"routes": []}, "", None)
-        assert desk.store.plans.list() == []
+            services.store.jobs.end_with_plan(job.id, {"routes": []}, "", None)
+        assert services.store.plans.list() == []
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(in_desk, monkeypatch):
+def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(with_services, monkeypatch):
     written, go_on = threading.Event(), threading.Event()
 
-    async def story(desk):
-        end = desk.store.jobs.end
+    async def story(services):
+        end = services.store.jobs.end
 
         def end_slowly(job, state, *more):
             ended = end(job, state, *more)
@@ -313,71 +315,71 @@ def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(in_desk, monkey
                 go_on.wait(60)
             return ended
 
-        monkeypatch.setattr(desk.store.jobs, "end", end_slowly)
+        monkeypatch.setattr(services.store.jobs, "end", end_slowly)
         foreign = {"schema": "muster-plan/1", "routes": [{"robot": "ghost", "tasks": []}]}
-        start = desk.store.plans.add("tiny", 1, "uploaded", "ann", foreign)
-        job = await desk.jobs.ask_plan(WHO, "tiny", start=start.id)
+        start = services.store.plans.add("tiny", 1, "uploaded", "ann", foreign)
+        job = await services.jobs.ask_plan(WHO, "tiny", start=start.id)
         await asyncio.to_thread(written.wait, 60)
         with pytest.raises(ConflictError):
-            await desk.jobs.cancel(WHO, job.id)
+            await services.jobs.cancel(WHO, job.id)
         go_on.set()
         async with asyncio.timeout(30):
-            assert (await over(desk.jobs, job))[-1].state == "failed"
+            assert (await over(services.jobs, job))[-1].state == "failed"
 
-    in_desk(story)
+    with_services(story)
 
 
 def test_queued_and_running_jobs_go_on_after_a_restart(tmp_path):
     async def before():
-        async with opened(tmp_path) as desk:
-            desk.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
-            first = await desk.jobs.ask_plan(WHO, "tiny", time_limit=2.0)
-            await under_way(desk, first)
-            others = [await desk.jobs.ask_plan(WHO, "tiny", **SHORT) for _ in range(3)]
+        async with opened(tmp_path) as services:
+            services.store.missions.create("tiny", TINY, {}, {"name": "tiny"}, "ann")
+            first = await services.jobs.ask_plan(WHO, "tiny", time_limit=2.0)
+            await under_way(services, first)
+            others = [await services.jobs.ask_plan(WHO, "tiny", **SHORT) for _ in range(3)]
             return [first, *others]
 
     async def after(asked):
-        async with opened(tmp_path) as desk:
-            ended = [(await over(desk.jobs, job))[-1] for job in asked]
+        async with opened(tmp_path) as services:
+            ended = [(await over(services.jobs, job))[-1] for job in asked]
             assert [job.state for job in ended] == ["done"] * 4
             assert [job.result["plan"] for job in ended] == [1, 2, 3, 4]
 
     asyncio.run(after(asyncio.run(before())))
 
 
-def test_progress_is_told_at_most_ten_times_a_second(in_desk):
-    async def story(desk):
+def test_progress_is_told_at_most_ten_times_a_second(with_services):
+    async def story(services):
         begun = asyncio.get_running_loop().time()
-        job = await desk.jobs.ask_plan(WHO, "tiny", time_limit=1.0)
-        heard = await over(desk.jobs, job)
+        job = await services.jobs.ask_plan(WHO, "tiny", time_limit=1.0)
+        heard = await over(services.jobs, job)
         with_progress = [each.progress["elapsed_s"] for each in heard if each.progress]
         assert with_progress == sorted(with_progress)
         assert 3 <= len(heard) <= 10 * (asyncio.get_running_loop().time() - begun) + 2
         assert heard[-1].progress["history"]
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_follower_of_a_job_that_is_over_hears_that(in_desk):
-    async def story(desk):
-        job = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
-        await over(desk.jobs, job)
-        assert [each.state for each in await over(desk.jobs, job)] == ["done"]
+def test_a_follower_of_a_job_that_is_over_hears_that(with_services):
+    async def story(services):
+        job = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
+        await over(services.jobs, job)
+        assert [each.state for each in await over(services.jobs, job)] == ["done"]
         with pytest.raises(NotFoundError):
-            await over(desk.jobs, type(job)(**{**vars(job), "id": 99}))
+            await over(services.jobs, type(job)(**{**vars(job), "id": 99}))
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_whoever_watches_asks_for_nothing(in_desk):
-    async def story(desk):
+def test_whoever_watches_asks_for_nothing(with_services):
+    async def story(services):
         with pytest.raises(ForbiddenError):
-            await desk.jobs.ask_plan(WATCHER, "tiny")
-        job = await desk.jobs.ask_plan(WHO, "tiny", **SHORT)
+            await services.jobs.ask_plan(WATCHER, "tiny")
+        job = await services.jobs.ask_plan(WHO, "tiny", **SHORT)
         with pytest.raises(ForbiddenError):
-            await desk.jobs.cancel(WATCHER, job.id)
+            await services.jobs.cancel(WATCHER, job.id)
 
-    in_desk(story)
+    with_services(story)
 
 
 @pytest.mark.parametrize(
@@ -399,24 +401,24 @@ def test_whoever_watches_asks_for_nothing(in_desk):
         {"parameters": {"threads": [1]}},
     ],
 )
-def test_a_wish_that_cannot_be_met_is_refused_at_once(in_desk, wish):
-    async def story(desk):
+def test_a_wish_that_cannot_be_met_is_refused_at_once(with_services, wish):
+    async def story(services):
         with pytest.raises(ParameterError, match=r"^[^\n]*; expected [^\n]*$"):
-            await desk.jobs.ask_plan(WHO, "tiny", **wish)
-        assert await desk.jobs.list() == []
+            await services.jobs.ask_plan(WHO, "tiny", **wish)
+        assert await services.jobs.list() == []
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_mission_that_is_not_there(in_desk):
-    async def story(desk):
+def test_a_mission_that_is_not_there(with_services):
+    async def story(services):
         for version in (None, 7):
             with pytest.raises(NotFoundError):
-                await desk.jobs.ask_plan(WHO, "nowhere", version)
+                await services.jobs.ask_plan(WHO, "nowhere", version)
         with pytest.raises(NotFoundError):
-            await desk.jobs.cancel(WHO, 99)
+            await services.jobs.cancel(WHO, 99)
 
-    in_desk(story)
+    with_services(story)
 
 
 @pytest.mark.parametrize(
@@ -433,13 +435,13 @@ def test_a_mission_that_is_not_there(in_desk):
         ({"time_limt": 1}, r"time_limt.*did you mean 'time_limit'\?"),
     ],
 )
-def test_a_request_that_nothing_can_meet_is_refused_at_once(in_desk, asked, said):
-    async def story(desk):
+def test_a_request_that_nothing_can_meet_is_refused_at_once(with_services, asked, said):
+    async def story(services):
         with pytest.raises(MusterError, match=said):
-            await desk.jobs.ask_plan(WHO, "tiny", **asked)
-        assert await desk.jobs.list() == []
+            await services.jobs.ask_plan(WHO, "tiny", **asked)
+        assert await services.jobs.list() == []
 
-    in_desk(story)
+    with_services(story)
 
 
 def test_the_server_loads_nothing_heavy():

@@ -1,4 +1,4 @@
-"""Missions as the desk has them: shipped and own ones, checked by a worker, saved, uploaded, written down."""
+"""Missions as the services has them: shipped and own ones, checked by a worker, saved, uploaded, written down."""
 
 import asyncio
 import base64
@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import muster
-from muster.exchange.mission_control import ConflictError, ForbiddenError, NotFoundError, Who
+from muster.exchange.mission_control import ConflictError, ForbiddenError, NotFoundError, User
 from muster.mission.errors import MissionError, MusterError, ParameterError
 from muster.server.services import uploads
 from muster.server.services.missions import Missions
 from muster.server.services.shipped import shipped_entries, shipped_version
 from muster.server.store import Store
 
-ANN = Who("ann", "command", "10.0.0.1")
+ANN = User("ann", "command", "10.0.0.1")
 FINDING = {"file": "mission.yaml", "line": 1, "field": "robots", "value": "missing", "expected": "a list"}
 
 
@@ -142,7 +142,7 @@ def test_what_is_wrong_is_not_stored(missions, store):
 
 
 def test_who_may_only_watch(missions, store):
-    bo = Who("bo", "watch")
+    bo = User("bo", "watch")
     for call in (
         lambda: missions.create(bo, "name: x"),
         lambda: missions.save(bo, "floor", "name: x", 0),

@@ -28,8 +28,8 @@ def workers():
 
 
 @pytest.fixture
-def in_desk(tmp_path, workers):
-    """Runs a story of the desk to its end."""
+def with_services(tmp_path, workers):
+    """Runs a story of the services to its end."""
     runner, pool = workers
     return lambda story: runner.run(told(tmp_path, story, pool=pool))
 
@@ -49,59 +49,59 @@ def said(capsys, *arguments):
     return json.loads(capsys.readouterr().out)
 
 
-def test_an_uploaded_plan_is_kept_with_the_figures_of_the_judge(in_desk, files):
-    async def story(desk):
-        entry = await desk.plans.upload(WHO, "tiny", {**ROUTES, "seed": 4, "rubbish": "x" * 100})
+def test_an_uploaded_plan_is_kept_with_the_figures_of_the_judge(with_services, files):
+    async def story(services):
+        entry = await services.plans.upload(WHO, "tiny", {**ROUTES, "seed": 4, "rubbish": "x" * 100})
         assert (entry.id, entry.version, entry.origin, entry.author) == (1, 1, "uploaded", "ann")
-        assert entry == await desk.plans.get(1)
+        assert entry == await services.plans.get(1)
         verdict = muster.verify(muster.load(files / "tiny.yaml"), muster.read_plan(files / "a.json"))
         assert entry.plan["objective"] == {"name": "total+max", "value": verdict.value()}
         assert (entry.plan["total_cost"], entry.plan["tasks_completed"], entry.plan["seed"]) == (9.0, 2, 4)
         assert "rubbish" not in entry.plan
-        (listed,) = await desk.plans.list("tiny")
+        (listed,) = await services.plans.list("tiny")
         assert listed.plan["total_cost"] == 9.0
         assert "routes" not in listed.plan
-        assert [action.outcome for action in desk.store.actions.list()] == ["done"]
+        assert [action.outcome for action in services.store.actions.list()] == ["done"]
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_an_uploaded_plan_that_is_none_is_refused(in_desk):
-    async def story(desk):
+def test_an_uploaded_plan_that_is_none_is_refused(with_services):
+    async def story(services):
         with pytest.raises(
             WorkError, match=r"^plan: schema: missing; expected muster-plan/1 \(and 1 more\)$"
         ) as refused:
-            await desk.plans.upload(WHO, "tiny", {"routes": 3})
+            await services.plans.upload(WHO, "tiny", {"routes": 3})
         assert [finding.field for finding in refused.value.findings] == ["schema", "routes"]
         with pytest.raises(NotFoundError):
-            await desk.plans.upload(WHO, "nowhere", ROUTES)
+            await services.plans.upload(WHO, "nowhere", ROUTES)
         with pytest.raises(ForbiddenError):
-            await desk.plans.upload(WATCHER, "tiny", ROUTES)
-        assert await desk.plans.list() == []
+            await services.plans.upload(WATCHER, "tiny", ROUTES)
+        assert await services.plans.list() == []
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_the_verdict_is_that_of_the_command(in_desk, files, capsys):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
-        answer = await desk.plans.verdict(1)
-        assert answer == await desk.plans.verdict(1)
+def test_the_verdict_is_that_of_the_command(with_services, files, capsys):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
+        answer = await services.plans.verdict(1)
+        assert answer == await services.plans.verdict(1)
         return answer
 
-    answer = in_desk(story)
+    answer = with_services(story)
     printed = said(capsys, "verify", files / "tiny.yaml", files / "a.json")
     assert {key: answer[key] for key in printed} == printed
     assert answer["lines"]["r_0"]["travel"] == [[[0, 0], [1, 0], [9, 0]]]
 
 
 @pytest.mark.parametrize("task", [None, "a", "c"])
-def test_explanations_are_those_of_the_command(in_desk, files, capsys, task):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
-        return await desk.plans.explain(1, task)
+def test_explanations_are_those_of_the_command(with_services, files, capsys, task):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
+        return await services.plans.explain(1, task)
 
-    answer = in_desk(story)
+    answer = with_services(story)
     words, tables = answer.pop("words"), answer.pop("tables")
     asked = () if task is None else ("--task", task)
     assert answer == said(capsys, "explain", files / "tiny.yaml", files / "a.json", *asked)
@@ -111,25 +111,25 @@ def test_explanations_are_those_of_the_command(in_desk, files, capsys, task):
 
 
 @pytest.mark.parametrize("ask", ["verdict", "explain"])
-def test_what_is_refused_reads_nothing(in_desk, monkeypatch, ask):
-    async def story(desk):
+def test_what_is_refused_reads_nothing(with_services, monkeypatch, ask):
+    async def story(services):
         async def busy(*_, **__):
             raise BusyError("64 requests wait")
 
-        monkeypatch.setattr(desk.pool, "run", busy)
-        monkeypatch.setattr(desk.store.plans, "get", lambda plan: pytest.fail("a plan is read"))
+        monkeypatch.setattr(services.pool, "run", busy)
+        monkeypatch.setattr(services.store.plans, "get", lambda plan: pytest.fail("a plan is read"))
         with pytest.raises(BusyError):
-            await getattr(desk.plans, ask)(1)
+            await getattr(services.plans, ask)(1)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_explanations_in_words(in_desk):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
-        return [(await desk.plans.explain(1, task))["words"] for task in (None, "b", "c")]
+def test_explanations_in_words(with_services):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
+        return [(await services.plans.explain(1, task))["words"] for task in (None, "b", "c")]
 
-    left_out, done, missing = in_desk(story)
+    left_out, done, missing = with_services(story)
     assert left_out == [
         "1 task is left out: c.",
         "c could be done by r_0 with this change: skill crane.",
@@ -144,31 +144,31 @@ def test_explanations_in_words(in_desk):
     assert missing[-1] == "Smallest change: r_0: skill crane."
 
 
-def test_a_task_that_is_not_there(in_desk):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
+def test_a_task_that_is_not_there(with_services):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
         with pytest.raises(WorkError, match=r"^--task: z; expected the id of a task of this mission"):
-            await desk.plans.explain(1, "z")
+            await services.plans.explain(1, "z")
         with pytest.raises(NotFoundError):
-            await desk.plans.explain(2)
+            await services.plans.explain(2)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_exports_are_those_of_the_command(in_desk, tmp_path, capsys):
+def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
     (tmp_path / "bay.yaml").write_text(BAY, encoding="utf-8")
     bay_plan().save(tmp_path / "bay.json")
     inputs = tmp_path / "bay.yaml", tmp_path / "bay.json"
 
-    async def story(desk):
-        desk.store.missions.create("bay", BAY, {}, {"name": "bay"}, "ann")
-        await desk.plans.upload(WHO, "bay", bay_plan().as_dict())
+    async def story(services):
+        services.store.missions.create("bay", BAY, {}, {"name": "bay"}, "ann")
+        await services.plans.upload(WHO, "bay", bay_plan().as_dict())
         forms = ("csv", "geojson", "gpx", "kml", "json")
-        answers = {form: await desk.plans.export(1, form) for form in forms}
-        answers["qgc"] = await desk.plans.export(1, "qgc", {"firmware": "ardupilot", "altitude": 5})
+        answers = {form: await services.plans.export(1, form) for form in forms}
+        answers["qgc"] = await services.plans.export(1, "qgc", {"firmware": "ardupilot", "altitude": 5})
         return answers
 
-    answers = in_desk(story)
+    answers = with_services(story)
     for form in ("csv", "geojson", "gpx", "kml"):
         assert command(["export", *map(str, inputs), "--to", form]) == 0
         (file,) = answers[form].values()
@@ -193,77 +193,77 @@ def test_exports_are_those_of_the_command(in_desk, tmp_path, capsys):
         ("gpx", {}, ".*.*origin_wgs84"),
     ],
 )
-def test_an_export_that_cannot_be_is_one_line(in_desk, to, options, line):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
+def test_an_export_that_cannot_be_is_one_line(with_services, to, options, line):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
         with pytest.raises(WorkError, match=f"^{line}[^\n]*$"):
-            await desk.plans.export(1, to, options)
+            await services.plans.export(1, to, options)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_a_plan_that_breaks_rules_is_kept_and_not_exported(in_desk):
-    async def story(desk):
+def test_a_plan_that_breaks_rules_is_kept_and_not_exported(with_services):
+    async def story(services):
         wrong = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["c"]}]}
-        entry = await desk.plans.upload(WHO, "tiny", wrong)
-        assert not (await desk.plans.verdict(entry.id))["valid"]
+        entry = await services.plans.upload(WHO, "tiny", wrong)
+        assert not (await services.plans.verdict(entry.id))["valid"]
         with pytest.raises(WorkError, match=r"^plan: skill: r_0, c, .*; expected an admissible plan"):
-            await desk.plans.export(entry.id, "csv")
+            await services.plans.export(entry.id, "csv")
 
-    in_desk(story)
+    with_services(story)
 
 
 @pytest.mark.parametrize("what", ["routes", "gantt"])
-def test_pictures(in_desk, what):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
-        png, svg = [await desk.plans.picture(1, what, form) for form in ("png", "svg")]
+def test_pictures(with_services, what):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
+        png, svg = [await services.plans.picture(1, what, form) for form in ("png", "svg")]
         assert png.startswith(b"\x89PNG\r\n")
         assert b"<svg" in svg
         with pytest.raises(WorkError, match=r"^format: \"gif\"; expected png or svg or pdf$"):
-            await desk.plans.picture(1, what, "gif")
+            await services.plans.picture(1, what, "gif")
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_two_plans_side_by_side(in_desk):
-    async def story(desk):
+def test_two_plans_side_by_side(with_services):
+    async def story(services):
         for plan in (ROUTES, OTHER):
-            await desk.plans.upload(WHO, "tiny", plan)
-        answer = await desk.plans.compare(1, 2)
+            await services.plans.upload(WHO, "tiny", plan)
+        answer = await services.plans.compare(1, 2)
         assert [head["id"] for head in answer["plans"].values()] == [1, 2]
         figures = {figure["name"]: figure for figure in answer["figures"]}
         assert figures["total_cost"] == {"name": "total_cost", "a": 9.0, "b": 2.0, "change": -7.0, "better": "b"}
         assert figures["tasks_completed"]["better"] is None
         assert figures["equality_index"]["better"] == "b"
         assert (answer["moved"], answer["same"]) == ([{"task": "b", "a": "r_0", "b": "r_1"}], 1)
-        desk.store.missions.create("other", TINY, {}, {"name": "tiny"}, "ann")
-        await desk.plans.upload(WHO, "other", ROUTES)
+        services.store.missions.create("other", TINY, {}, {"name": "tiny"}, "ann")
+        await services.plans.upload(WHO, "other", ROUTES)
         with pytest.raises(ParameterError, match=r"^plan 3 is of other; expected one of tiny, as plan 1$"):
-            await desk.plans.compare(1, 3)
+            await services.plans.compare(1, 3)
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_the_allocators_are_asked_for_once(in_desk, monkeypatch):
-    async def story(desk):
-        first = await desk.plans.allocators()
-        monkeypatch.setattr(desk.pool, "run", None)
-        assert await desk.plans.allocators() == first
+def test_the_allocators_are_asked_for_once(with_services, monkeypatch):
+    async def story(services):
+        first = await services.plans.allocators()
+        monkeypatch.setattr(services.pool, "run", None)
+        assert await services.plans.allocators() == first
         assert {"greedy", "search"} <= {allocator["name"] for allocator in first}
 
-    in_desk(story)
+    with_services(story)
 
 
-def test_looking_at_plans_does_not_wait_for_planning(in_desk):
-    async def story(desk):
-        await desk.plans.upload(WHO, "tiny", ROUTES)
-        jobs = [await desk.jobs.ask_plan(WHO, "tiny", time_limit=300.0) for _ in range(3)]
-        while desk.pool.busy < 1:
+def test_looking_at_plans_does_not_wait_for_planning(with_services):
+    async def story(services):
+        await services.plans.upload(WHO, "tiny", ROUTES)
+        jobs = [await services.jobs.ask_plan(WHO, "tiny", time_limit=300.0) for _ in range(3)]
+        while services.pool.busy < 1:
             await asyncio.sleep(0.01)
         async with asyncio.timeout(30):
-            assert (await desk.plans.verdict(1))["valid"]
+            assert (await services.plans.verdict(1))["valid"]
         for job in jobs:
-            await desk.jobs.cancel(WHO, job.id)
+            await services.jobs.cancel(WHO, job.id)
 
-    in_desk(story)
+    with_services(story)

@@ -8,11 +8,11 @@ import pytest
 from sqlalchemy import select, text
 from tests.server.store.conftest import SUMMARY, Filled
 
-from muster.exchange.mission_control import StoreError, Who
+from muster.exchange.mission_control import StoreError, User
 from muster.mission.errors import ParameterError
 from muster.server.store import Store
 from muster.server.store.backup import backup, restore
-from muster.server.store.database_info import contents
+from muster.server.store.database_info import database_info
 from muster.server.store.schema import metadata
 
 
@@ -33,7 +33,7 @@ def full(filled):
     store.jobs.begin(job.id)
     store.jobs.end(job.id, "done", {"plan": filled.plan})
     store.jobs.add("plan", "Yard", 1, {}, "ann")
-    store.actions.settle(store.actions.add(Who("bo", "command"), "run.pause", {}, filled.run).id, "done", 1.25)
+    store.actions.settle(store.actions.add(User("bo", "command"), "run.pause", {}, filled.run).id, "done", 1.25)
     entries = [filled.entry(k, text="x" * k) for k in range(1, 501)]
     store.log.append(filled.run, 250.0, entries, [filled.stretch(k) for k in range(1, 4)])
     store.log.append(filled.run, 251.0, [filled.entry(501, "report", done=3)])
@@ -152,7 +152,7 @@ def test_databases_that_are_not_there(tmp_path, postgresql_url):
 
 
 def test_contents(full, database_url):
-    found = contents(database_url)
+    found = database_info(database_url)
     few = {"missions": 1, "mission_versions": 2, "plans": 1, "jobs": 2, "runs": 1, "stretches": 3, "actions": 1}
     assert found.rows == {**few, "entries": 501}
     assert found.bytes > 100_000

@@ -15,14 +15,14 @@ from hypothesis import strategies as st
 from sqlalchemy import text
 from tests.server.store.conftest import Filled
 
-from muster.exchange.mission_control import StoreError, Who
+from muster.exchange.mission_control import StoreError, User
 from muster.mission.errors import MusterError, ParameterError
 from muster.server.store import Store
 from muster.server.store.database import Database
 from muster.server.store.schema import HEAD
 from muster.server.store.urls import database_url, shown
 
-ANN = Who("ann", "command")
+ANN = User("ann", "command")
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from sqlalchemy import select, text, update
 from tests.server.store.conftest import SUMMARY
 
-from muster.exchange.mission_control import NotFoundError, StoreError, Who
+from muster.exchange.mission_control import NotFoundError, StoreError, User
 from muster.server.store import Store
 from muster.server.store.prune import Pruned, _delete, prune
 from muster.server.store.schema import actions, jobs, mission_files, mission_versions, plans, pruning, runs
@@ -36,8 +36,8 @@ def old(filled):
     """An old run that is over, an old one that is not, jobs, actions, versions; then the same anew."""
     store = filled.store
     store.log.append(filled.run, 1.0, [filled.entry(1), filled.entry(2)], [filled.stretch(1)])
-    store.actions.add(Who("bo", "command"), "run.pause", {}, filled.run)
-    store.actions.add(Who("bo", "command"), "login", {})
+    store.actions.add(User("bo", "command"), "run.pause", {}, filled.run)
+    store.actions.add(User("bo", "command"), "login", {})
     store.runs.set(filled.run, state="ended")
     store.jobs.end(store.jobs.add("plan", "Yard", 1, {}, "ann").id, "failed")
     filled.start = store.plans.add("Yard", 1, "planned", "ann", {}).id
@@ -52,7 +52,7 @@ def old(filled):
     store.missions.create("Forgotten", "", {"map.png": b"gone"}, SUMMARY, "ann")
     store.missions.delete("Forgotten")
     make_old(store)
-    store.actions.add(Who("bo", "command"), "login", {})
+    store.actions.add(User("bo", "command"), "login", {})
     return filled
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.server.store.statistics import figures
+from muster.server.store.statistics import statistics
 
 
 def plan_of(value, bound):
@@ -17,12 +17,12 @@ def made(store, plan):
 
 def test_the_gap_is_that_of_plans_not_of_what_was_heard_on_the_way(filled):
     store = filled.store
-    assert (figures(store).gap, figures(store).job_s) == (None, None)
+    assert (statistics(store).gap, statistics(store).job_s) == (None, None)
     made(store, plan_of(10.0, 10.0))
-    assert figures(store).gap == 0.0
+    assert statistics(store).gap == 0.0
     made(store, plan_of(10.0, 8.0))
     made(store, plan_of(10.0, None))
     store.plans.add("Yard", 1, "uploaded", "ann", plan_of(10.0, 1.0))  # a bound that nobody here has proven
-    assert figures(store).gap == pytest.approx(0.1)
-    assert figures(store).job_s >= 0.0
-    assert figures(store).jobs == {"done": 3}
+    assert statistics(store).gap == pytest.approx(0.1)
+    assert statistics(store).job_s >= 0.0
+    assert statistics(store).jobs == {"done": 3}

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.server.store.conftest import SUMMARY
 
-from muster.exchange.mission_control import ConflictError, NotFoundError, StoreError, Who
+from muster.exchange.mission_control import ConflictError, NotFoundError, StoreError, User
 from muster.mission.errors import ParameterError
 from muster.server.store import Store
 from muster.server.store.missions import slug
@@ -53,7 +53,7 @@ def test_plain_data_comes_back_as_it_was(filled, data, arguments):
     assert store.plans.get(plan.id).plan == data
     job = store.jobs.add("plan", filled.mission, 1, arguments, "ann")
     assert store.jobs.get(job.id).arguments == arguments
-    action = store.actions.add(Who("bo", "command", "::1"), "run.event", data, filled.run)
+    action = store.actions.add(User("bo", "command", "::1"), "run.event", data, filled.run)
     assert store.actions.list(filled.run, limit=1) == [action]
     seq = len(store.log.entries(filled.run)) + 1
     entry = filled.entry(seq, **{f"k{key}": value for key, value in data.items()})
@@ -236,7 +236,7 @@ def test_times_of_other_zones_are_the_same_moment(filled):
 
 def test_actions(filled):
     actions = filled.store.actions
-    who = Who("bo", "command", "10.0.0.1")
+    who = User("bo", "command", "10.0.0.1")
     kept = [actions.add(who, "run.pause", {"n": n}, filled.run) for n in range(3)]
     login = actions.add(who, "login", {})
     assert (kept[0].who, kept[0].role, kept[0].address, kept[0].outcome) == ("bo", "command", "10.0.0.1", "")

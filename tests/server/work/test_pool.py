@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from muster.exchange.mission_control import BusyError, NotFoundError
-from muster.server.work import Halt, OutOfMemory, Pool, TimedOut, WorkerDied, WorkError
+from muster.server.work import OutOfMemory, Pool, StopRequest, TimedOut, WorkerDied, WorkError
 
 PROGRAM = (sys.executable, str(Path(__file__).with_name("odd_worker.py")))
 
@@ -277,9 +277,14 @@ def test_a_fault_in_a_task_is_one_line(task, line):
 @pytest.mark.parametrize("times", [1, 2])
 def test_work_is_told_to_stop_before_and_while_it_is_done(times):
     async def story(pool):
-        halt = Halt()
-        halt.ask()  # before there is a process
-        work = pool.run("goes_on", {"times": times}, on_progress=lambda _: times > 1 and halt.ask(), halt=halt)
+        stop_request = StopRequest()
+        stop_request.ask()  # before there is a process
+        work = pool.run(
+            "goes_on",
+            {"times": times},
+            on_progress=lambda _: times > 1 and stop_request.ask(),
+            stop_request=stop_request,
+        )
         assert await asyncio.wait_for(work, 20) == {"hurried": times > 1}
 
     in_pool(story)
@@ -288,12 +293,12 @@ def test_work_is_told_to_stop_before_and_while_it_is_done(times):
 def test_a_late_stop_never_hits_the_next_piece_of_work():
     async def story(pool):
         for _ in range(50):
-            halt = Halt()
-            work = asyncio.create_task(pool.run("counts", {"times": 1, "size": 1}, halt=halt))
+            stop_request = StopRequest()
+            work = asyncio.create_task(pool.run("counts", {"times": 1, "size": 1}, stop_request=stop_request))
             while not work.done():
-                halt.ask()
+                stop_request.ask()
                 await asyncio.sleep(0.001)
-            halt.ask()
+            stop_request.ask()
             assert await pool.run("stopped", {}) == {"stopped": False}
 
     in_pool(story)

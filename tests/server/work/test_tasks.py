@@ -8,7 +8,7 @@ from tests.server.work.asking import FLOOR, MAPPED, TINY, given, shipped
 import muster
 from muster.library import mission_path
 from muster.mission.plan import plan_from
-from muster.server.work import Halt, WorkError
+from muster.server.work import StopRequest, WorkError
 
 
 @pytest.fixture(scope="module")
@@ -156,8 +156,8 @@ def test_a_long_history_is_thinned_to_its_end():
 
 @pytest.mark.parametrize(("bound", "why"), [(None, ""), ("quick", "planning was stopped before a bound was proven")])
 def test_planning_that_is_stopped_at_once_gives_the_first_plan(asked, bound, why):
-    halt = Halt()
-    halt.ask()
-    done = asked("plan", mission=shipped("31T-6R50"), time_limit=600.0, bound=bound, halt=halt)
+    stop_request = StopRequest()
+    stop_request.ask()
+    done = asked("plan", mission=shipped("31T-6R50"), time_limit=600.0, bound=bound, stop_request=stop_request)
     assert done["plan"]["tasks_completed"] > 0
     assert (done["plan"].get("lower_bound"), done["why"]) == (None, why)

@@ -15,7 +15,7 @@ from typing import Any
 
 from muster.bridges.discovery import NAME, topics_in
 from muster.bridges.ros1.clock import Forward, MissionClock
-from muster.bridges.ros1.joining import Newcomers
+from muster.bridges.ros1.joining import Ros1Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
@@ -27,7 +27,7 @@ from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
 from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
-from muster.motion.robot_paths import Roads
+from muster.motion.robot_paths import RobotPaths
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
@@ -101,7 +101,7 @@ class Ros1Fleet:
         self._events: list[Event] = []
         for robot in mission.robots:
             self._ports[robot.id] = self._reached(robot)
-        self._newcomers = Newcomers(namespace, self._ports, self._reached, flat=self._flat)
+        self._newcomers = Ros1Newcomers(namespace, self._ports, self._reached, flat=self._flat)
         tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
         self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
         for thread in self._threads:
@@ -280,9 +280,9 @@ def _free_ways(mission: Mission) -> Callable[[Robot, Place, Place], bool]:
     """Whether the mission's map lets a robot go straight from a place to another."""
     if mission.map is None:
         return lambda *_: True
-    roads, d = Roads(World.of(mission)), mission.dimensions
+    robot_paths, d = RobotPaths(World.of(mission)), mission.dimensions
     for robot in mission.robots:
-        roads.clear(
+        robot_paths.clear(
             body_of(robot), [robot.position]
         )  # looks at the map for this body now, not while robots are steered
-    return lambda robot, here, there: roads.clear(body_of(robot), [here[:d], there[:d]])
+    return lambda robot, here, there: robot_paths.clear(body_of(robot), [here[:d], there[:d]])

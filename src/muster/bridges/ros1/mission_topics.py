@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -33,6 +34,8 @@ _ACTIVITIES = {
     "task_refused": "idle",
 }
 """What a robot does after an event of this kind."""
+_STATUS_EVERY_S = 1.0
+"""Seconds of the mission's clock after which the status is published again."""
 
 
 class Board:
@@ -50,23 +53,25 @@ class Board:
             for name in ("status", "mission", "plan", "robots", "events")
         }
         self.now_s, self._done = 0.0, 0
+        self._status: dict[str, Any] = {}
+        self._status_s = -math.inf  # when it was published last, by the mission's clock
         self._robots: dict[str, dict[str, str]] = {}
 
     def show_mission(self, mission: Mission) -> None:
         """Tell which is to be carried out next."""
         self._say("mission", packed(mission))
-        self.now_s, self._done = 0.0, 0
+        self.now_s, self._done, self._status_s = 0.0, 0, -math.inf
         self._robots = {robot.id: {"activity": "idle"} for robot in mission.robots}
         self._say("robots", self._robots)
 
     def show_status(self, state: str, mission: str, time_s: float | None, reason: str = "") -> None:
         """What the whole is doing, since when on the mission's clock, and why if something is wrong."""
-        status: dict[str, Any] = {"state": state, "mission": mission, "tasks_done": self._done}
+        self._status = {"state": state, "mission": mission}
         if time_s is not None:
-            status["time_s"] = round(time_s, 3)
+            self._status["time_s"] = time_s
         if reason:
-            status["reason"] = reason
-        self._say("status", status)
+            self._status["reason"] = reason
+        self._publish_status()
 
     def refuse(self, reason: str) -> None:
         """Tell whoever hears events that something asked for was refused."""
@@ -85,7 +90,9 @@ class Board:
             task = {"task": str(data["task"])} if kind in ("sets_out", "arrives", "starts") and "task" in data else {}
             self._robots[robot] = {"activity": _ACTIVITIES[kind], **task}
             self._say("robots", self._robots)
-        self._done += kind == "ends"
+        if kind == "ends":
+            self._done += 1
+            self._advance_status(now)
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
         """See `Observer`: the system monitor hears robots itself."""
@@ -93,9 +100,24 @@ class Board:
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`: where robots are is in what they say."""
         self.now_s = now
+        if now >= self._status_s + _STATUS_EVERY_S:
+            self._advance_status(now)
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """See `Recorder`: the figures are printed."""
+
+    def _advance_status(self, now: float) -> None:
+        """Publish the status with the time that has come and the tasks that are done by now."""
+        self.now_s = now
+        if "time_s" in self._status:
+            self._status["time_s"] = now
+            self._publish_status()
+
+    def _publish_status(self) -> None:
+        status = self._status | {"tasks_done": self._done}
+        if "time_s" in status:
+            self._status_s, status["time_s"] = status["time_s"], round(status["time_s"], 3)
+        self._say("status", status)
 
     def _say(self, topic: str, data: Any) -> None:
         publish(self._topics[topic], text_of(data))

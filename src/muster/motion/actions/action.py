@@ -59,7 +59,7 @@ class Doing:
     def cost_m(self) -> float:
         """What it costs, metres: the typed cost, else the straight length of the way points.
 
-        Over a map a leg is as long as the shortest path, which `roads.Roads` knows and this does not.
+        Over a map a leg is as long as the shortest path, which `robot_paths.RobotPaths` knows and this does not.
         """
         if self.typed_cost is not None:
             return self.typed_cost

@@ -1,4 +1,4 @@
-"""Collision avoidance: one method a file behind one interface, and crowds that are led by one."""
+"""Collision avoidance: one method per file behind one interface, and crowds of robots that use one."""
 
 from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 from muster.motion.avoidance.crowd import Crowd, Trajectories, perturbed, run, towards

@@ -1,4 +1,4 @@
-"""What collision avoidance sees at one moment: the robots, and what stands still."""
+"""The input of collision avoidance at one moment: the robots and the static obstacles."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Agents:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Obstacles:
-    """What stands still.
+    """Static obstacles.
 
     Parameters
     ----------

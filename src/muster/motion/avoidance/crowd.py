@@ -1,4 +1,4 @@
-"""Many robots at once on their ways to goals.
+"""Simulates many robots that move to their goals and avoid each other by one method.
 
 Holonomic bodies that keep a chosen velocity for a step: [tcf-thesis] (A.21), (A.22).
 """
@@ -50,7 +50,7 @@ class Crowd:
 
     @property
     def avoided_radii(self) -> Floats:
-        """With which they avoid each other, (n,) metres."""
+        """The radii with which they avoid each other, (n,) metres."""
         return self.radii if self.inflated_radii is None else self.inflated_radii
 
     def arrived(self, positions: Floats, tolerance_m: float) -> npt.NDArray[np.bool_]:
@@ -73,7 +73,7 @@ class Crowd:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectories:
-    """What came of it.
+    """The result of a crowd's run.
 
     Parameters
     ----------
@@ -124,9 +124,9 @@ def towards(goals: Floats, max_speeds: Floats, dt: float) -> Preference:
 
 
 def perturbed(preference: Preference, share: float, seed: int, hold: int = 1) -> Preference:
-    """The same, each velocity shifted at random by this share of its length, so that symmetry does not last.
+    """The same velocities, each shifted at random by this share of its length, which breaks symmetries.
 
-    A shift lasts for `hold` steps: one that changes at every step comes to nothing where robots hold each other up.
+    A shift lasts for `hold` steps: one that changes at every step averages out where robots block each other.
     """
 
     def preferred(positions: Floats, step: int) -> Floats:
@@ -149,9 +149,9 @@ def run(
     preference: Preference | None = None,
     obstacles: Obstacles = NO_OBSTACLES,
 ) -> Trajectories:
-    """Let all robots go until they are at their goals, or time is up.
+    """Move all robots until they are at their goals, or time is up.
 
-    Those that are there go on avoiding the others. `preference` is `towards` the goals by default.
+    Robots at their goals keep avoiding the others. `preference` is `towards` the goals by default.
 
     Raises
     ------

@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
+from muster.motion.paths.path_finder import PathFinder
 from muster.motion.paths.planner import Planner
-from muster.motion.paths.way_finder import WayFinder
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,8 +30,8 @@ class Parameters:
 
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
-    """One path; who wants many makes a `WayFinder`."""
-    return WayFinder(space).path(start, goal)
+    """One path; who wants many makes a `PathFinder`."""
+    return PathFinder(space).path(start, goal)
 
 
 SHORTEST = Planner(

@@ -29,7 +29,7 @@ def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Para
 
 
 def pulled(asked: Question, way: Floats) -> Floats:
-    """The way (k, 2) in cells without the points that the one before can do without: it sees the one after."""
+    """The path (k, 2) in cells without points that are not needed, as their neighbours see each other."""
     kept = list(way[:1])
     for point, after in pairwise(way[1:]):
         if not asked.cells.sees(pair(kept[-1]), pair(after)):

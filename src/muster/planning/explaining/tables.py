@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Remedy
-from muster.planning.explaining.explanations import LeftOut, OneTask
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
 from muster.planning.explaining.phrases import (
     award_text,
     ignored,
@@ -30,6 +33,32 @@ class Table:
 
 
 Part = str | Table
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What `muster explain` prints: `data` for programs, lines and tables for people."""
+
+    data: Mapping[str, Any]
+    parts: Sequence[Part]
+
+
+def explained(mission: Mission, plan: Plan, task: str | None, ignore: Collection[str], file: str) -> Explanation:
+    """Why tasks are left out of a plan; of one task, why it is done by this robot, or left out.
+
+    Raises
+    ------
+    PlanError
+        if the plan does not fit the mission; `file` names it.
+    ParameterError
+        if the mission has no such task.
+    """
+    require_fit(mission, plan, file, ignore)
+    if task is None:
+        missing = left_out(mission, plan, ignore)
+        return Explanation(missing.as_dict(), tables_on_left_out(missing))
+    found = one_task(mission, plan, task, ignore)
+    return Explanation(found.as_dict(), tables_on_task(found))
 
 
 def tables_on_left_out(found: LeftOut) -> list[Part]:

@@ -5,8 +5,8 @@ from muster.simulation.physics.optional_parts import require_physics_extra
 require_physics_extra()
 
 from muster.report.film.files import check_film, check_still  # noqa: E402
-from muster.report.film.film import Made, speed_for, write_film  # noqa: E402 (OpenCV comes with it)
+from muster.report.film.film import FilmSummary, speed_for, write_film  # noqa: E402 (OpenCV comes with it)
 from muster.report.film.footage import Footage  # noqa: E402
 from muster.report.film.still import write_still  # noqa: E402
 
-__all__ = ["Footage", "Made", "check_film", "check_still", "speed_for", "write_film", "write_still"]
+__all__ = ["FilmSummary", "Footage", "check_film", "check_still", "speed_for", "write_film", "write_still"]

@@ -22,7 +22,7 @@ from muster.report.film.captions import (
 )
 from muster.report.film.files import film_file
 from muster.report.film.footage import Footage
-from muster.report.film.scenery import FilmSet
+from muster.report.film.scenery import FilmScene
 from muster.report.record.mission_state import ALARMING, DONE
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
 
@@ -36,7 +36,7 @@ _EDGE = 20
 
 
 @dataclass(frozen=True)
-class Made:
+class FilmSummary:
     """A film that was written: how many pictures, how long in seconds, how many times as fast as it was."""
 
     frames: int
@@ -44,7 +44,7 @@ class Made:
     speed: float
 
 
-def write_film(path: str | Path, footage: Footage, *, speed: float | None = None) -> Made:
+def write_film(path: str | Path, footage: Footage, *, speed: float | None = None) -> FilmSummary:
     """Draw a film and write it as its file's ending says: .mp4 or .gif.
 
     If it is interrupted, the file is a whole film all the same, up to then.
@@ -71,11 +71,11 @@ def write_film(path: str | Path, footage: Footage, *, speed: float | None = None
     duration_s = float(footage.times_s[-1])
     chosen = speed_for(duration_s) if speed is None else speed
     count = 0
-    with FilmSet(footage, *kind.size) as scene, closing(kind(path)) as file:
+    with FilmScene(footage, *kind.size) as scene, closing(kind(path)) as file:
         for picture in _pictures(scene, footage, chosen, kind.rate_hz):
             file.add(picture)
             count += 1
-    return Made(count, count / kind.rate_hz, chosen)
+    return FilmSummary(count, count / kind.rate_hz, chosen)
 
 
 def speed_for(duration_s: float) -> float:
@@ -84,7 +84,7 @@ def speed_for(duration_s: float) -> float:
     return float(next((speed for speed in SPEEDS if speed >= least), -(-least // 100) * 100))
 
 
-def _pictures(scene: FilmSet, footage: Footage, speed: float, rate_hz: float) -> Iterator[Picture]:
+def _pictures(scene: FilmScene, footage: Footage, speed: float, rate_hz: float) -> Iterator[Picture]:
     end_s, step_s = scene.moments.end_s, speed / rate_hz
     last = -int(-end_s / step_s // 1)  # the first picture at or after the end
     for k in range(last + 1):
@@ -96,7 +96,7 @@ def _pictures(scene: FilmSet, footage: Footage, speed: float, rate_hz: float) ->
         yield picture
 
 
-def _write_upon(picture: Picture, scene: FilmSet, footage: Footage, now: float, speed: float) -> None:
+def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float, speed: float) -> None:
     moments, width = scene.moments, picture.shape[1]
     wide = write(picture, clock(now), (_EDGE, 40), 28, weight=600)
     states = list(moments.situation.states.values())
@@ -113,7 +113,7 @@ def _plain(age_s: float) -> float:
     return min(1.0, max(0.0, (_SHOWN_S - age_s) / _FADES_S))
 
 
-def _color(told: ExecutionEvent, scene: FilmSet) -> Rgb:
+def _color(told: ExecutionEvent, scene: FilmScene) -> Rgb:
     robots = list(scene.moments.situation.robots)
     if told.kind in ALARMING:
         return rgb(ALARM)

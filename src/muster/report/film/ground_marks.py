@@ -13,7 +13,7 @@ import numpy as np
 
 from muster.mission.model import Robot, Task
 from muster.motion.grid import Floats
-from muster.report.film.interpolation import Moments
+from muster.report.film.interpolation import RunInterpolation
 from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
 from muster.simulation.physics.buildings import Rgba
@@ -34,7 +34,7 @@ def rgba(color: str, opaque: float = 1.0, *, faded: float = 0.0) -> Rgba:
     return red, green, blue, opaque
 
 
-class StageMarks:
+class GroundMarks:
     """Makes the marks of a moment.
 
     Parameters
@@ -47,7 +47,7 @@ class StageMarks:
         metres that a pixel of the film is across.
     """
 
-    def __init__(self, moments: Moments, ground_m: float, pixel_m: float) -> None:
+    def __init__(self, moments: RunInterpolation, ground_m: float, pixel_m: float) -> None:
         self._moments, self._ground_m, self._pixel_m = moments, ground_m, pixel_m
         self._level_m = max(_LEVEL_M, 0.03 * pixel_m)
         self._trails: list[list[Mark | None]] = [[] for _ in range(moments.poses.shape[1])]

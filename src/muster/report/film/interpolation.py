@@ -7,10 +7,10 @@ import numpy as np
 from muster.execution.record import ExecutionEvent
 from muster.motion.grid import Floats
 from muster.report.film.footage import Footage
-from muster.report.record.mission_state import OUT, Situation
+from muster.report.record.mission_state import OUT, MissionState
 
 
-class Moments:
+class RunInterpolation:
     """Goes through a run, forwards only.
 
     Parameters
@@ -21,7 +21,7 @@ class Moments:
 
     def __init__(self, footage: Footage) -> None:
         self.times_s, self.poses = footage.times_s, footage.poses
-        self.situation = Situation(footage.mission)
+        self.situation = MissionState(footage.mission)
         self.busy_with: dict[str, str] = {}
         """Tasks that are under way or done, and who does or did them."""
         self.out: set[str] = set()

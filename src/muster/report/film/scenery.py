@@ -13,8 +13,8 @@ from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
-from muster.report.film.ground_marks import RING_PX, TASK_PX, StageMarks, rgba
-from muster.report.film.interpolation import Moments
+from muster.report.film.ground_marks import RING_PX, TASK_PX, GroundMarks, rgba
+from muster.report.film.interpolation import RunInterpolation
 from muster.report.film.view import Frame, View, view_of
 from muster.report.styles import QUIET_TEXT, robot_style
 from muster.simulation.physics.buildings import Heights
@@ -32,7 +32,7 @@ _FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
 """What is kept free for captions, pixels of the film."""
 
 
-class FilmSet:
+class FilmScene:
     """Goes through a run and draws it; use it in a `with`.
 
     Parameters
@@ -44,14 +44,14 @@ class FilmSet:
     """
 
     def __init__(self, footage: Footage, width: int, height: int) -> None:
-        self.moments = Moments(footage)
+        self.moments = RunInterpolation(footage)
         mission = footage.mission
         places = places_of(mission, self.moments.poses)
         self.size = (width, height)
         frame = Frame(width, height, **_FREE)
         self.view: View = view_of(places, frame)
         self._tableau = tableau_of(footage, self.view.pixel_m)
-        self._marks = StageMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
+        self._marks = GroundMarks(self.moments, self._tableau.ground_m, self.view.pixel_m)
         self._renderer = Renderer(self._tableau, OVERSAMPLED * width, OVERSAMPLED * height)
 
     def __enter__(self) -> Self:
@@ -89,7 +89,7 @@ def tableau_of(footage: Footage, pixel_m: float, *, smooth: bool = False) -> Pos
 
 def name_all(
     picture: Picture,
-    moments: Moments,
+    moments: RunInterpolation,
     poses: Floats,
     pixels: Callable[[Floats], Floats],
     pixel_m: float,

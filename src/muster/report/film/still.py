@@ -10,8 +10,8 @@ from muster.motion.grid import Floats
 from muster.report.film.captions import QUIET_INK, clock, write
 from muster.report.film.files import check_still, write_png
 from muster.report.film.footage import Footage
-from muster.report.film.ground_marks import StageMarks
-from muster.report.film.interpolation import Moments
+from muster.report.film.ground_marks import GroundMarks
+from muster.report.film.interpolation import RunInterpolation
 from muster.report.film.scenery import name_all, places_of, tableau_of
 from muster.report.record.mission_state import DONE
 from muster.simulation.physics.rendering import Renderer
@@ -33,7 +33,7 @@ def write_still(path: str | Path, footage: Footage) -> None:
         if nothing draws here.
     """
     check_still(path)
-    moments = Moments(footage)
+    moments = RunInterpolation(footage)
     moments.go_on(moments.end_s)
     poses, places = moments.at(moments.end_s), places_of(footage.mission, moments.poses)
     low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
@@ -48,7 +48,7 @@ def write_still(path: str | Path, footage: Footage) -> None:
 
     tableau = tableau_of(footage, pixel_m, smooth=True)
     tableau.put(poses[:, :3], poses[:, 3:])
-    marks = StageMarks(moments, tableau.ground_m, pixel_m).at(moments.end_s, poses)
+    marks = GroundMarks(moments, tableau.ground_m, pixel_m).at(moments.end_s, poses)
     with Renderer(tableau, width, height) as renderer:
         picture = renderer.seen_from_above((float(centre[0]), float(centre[1])), height * pixel_m, marks=marks).copy()
     name_all(picture, moments, poses, pixels, pixel_m, tableau.ground_m)

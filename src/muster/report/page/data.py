@@ -18,7 +18,7 @@ from muster.motion.grid import Grid
 from muster.report.activity_spans import spans
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
-from muster.report.record.mission_state import ALARMING, OPEN, OUT, Situation
+from muster.report.record.mission_state import ALARMING, OPEN, OUT, MissionState
 from muster.report.styles import PALETTE
 
 Floats = npt.NDArray[np.float64]
@@ -125,7 +125,7 @@ def _unwrapped(headings: Floats) -> Floats:
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:
     """Of each task where it is and in which state, from which moment on."""
-    situation = Situation(recording.mission)
+    situation = MissionState(recording.mission)
     tasks = {name: _task(situation, name, 0.0) for name in situation.tasks}
     for event in recording.events:
         name = situation.take(event.kind, event.data)
@@ -140,7 +140,7 @@ def _tasks(recording: Recording) -> list[dict[str, Any]]:
     return list(tasks.values())
 
 
-def _task(situation: Situation, name: str, since: float) -> dict[str, Any]:
+def _task(situation: MissionState, name: str, since: float) -> dict[str, Any]:
     task, now = situation.tasks[name], _thousandths(since)
     return {
         "id": name,

@@ -35,7 +35,7 @@ ALARMING = ("lost", *OUT, "contact")
 _BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED}
 
 
-class Situation:
+class MissionState:
     """Robots and tasks by id, in the order in which they came, and the state of each task."""
 
     def __init__(self, mission: Mission) -> None:

@@ -18,13 +18,13 @@ from muster.mission.event_descriptions import event_line
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record import json_messages, scene
-from muster.report.record.mission_state import ALARMING, Situation
+from muster.report.record.mission_state import ALARMING, MissionState
 from muster.report.record.routes import RouteLines
 
 Floats = npt.NDArray[np.float64]
 
 
-class Teller(ABC):
+class Publisher(ABC):
     """Tells of a mission; who inherits says where messages go.
 
     Parameters
@@ -36,7 +36,7 @@ class Teller(ABC):
     def __init__(self, mission: Mission, rate_hz: float) -> None:
         if not rate_hz > 0:
             raise ParameterError(f"rate_hz: {rate_hz}; expected a number above 0")
-        self._situation = Situation(mission)
+        self._situation = MissionState(mission)
         self._routes = RouteLines(mission)
         self._places: dict[str, Point] = {}
         self._period_s, self._next_s = 1.0 / rate_hz, 0.0

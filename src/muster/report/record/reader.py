@@ -17,7 +17,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import plan_from
 from muster.mission.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
-from muster.report.record.mission_state import Situation
+from muster.report.record.mission_state import MissionState
 from muster.report.record.recording import PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
 from muster.report.record.writer import require_mcap
@@ -99,7 +99,7 @@ def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Recording:
     mission = _mission(file, text)
     events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
-    situation = Situation.after(mission, ((event.kind, event.data) for event in events))
+    situation = MissionState.after(mission, ((event.kind, event.data) for event in events))
     plans = messages.get("/muster/plan", [])
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])
     return Recording(

@@ -14,7 +14,7 @@ from muster.execution.record import ExecutionEvent
 from muster.mission.model import Mission, Point, Robot
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
-from muster.report.record.mission_state import Situation
+from muster.report.record.mission_state import MissionState
 
 Floats = npt.NDArray[np.float64]
 
@@ -94,9 +94,9 @@ class Recording:
         return float(max([0.0, reported, *told, *self.tracks.times_s[-1:].tolist()]))
 
     @cached_property
-    def outcome(self) -> Situation:
+    def outcome(self) -> MissionState:
         """The robots and tasks after the last event, and what became of these; not to be changed."""
-        return Situation.after(self.mission, ((event.kind, event.data) for event in self.events))
+        return MissionState.after(self.mission, ((event.kind, event.data) for event in self.events))
 
     @cached_property
     def robots(self) -> tuple[Robot, ...]:

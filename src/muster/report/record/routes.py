@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
-from muster.report.record.mission_state import CANCELLED, DONE, LOST, Situation
+from muster.report.record.mission_state import CANCELLED, DONE, LOST, MissionState
 from muster.report.route_lines import Way, way_in
 
 _OVER = (DONE, LOST, CANCELLED)
@@ -20,7 +20,7 @@ class RouteLines:
         self._dimensions = mission.dimensions
         self._found: dict[tuple[str, Point, Point], tuple[Point, ...]] = {}
 
-    def of(self, plan: Plan, situation: Situation, places: Mapping[str, Point]) -> dict[str, list[Point]]:
+    def of(self, plan: Plan, situation: MissionState, places: Mapping[str, Point]) -> dict[str, list[Point]]:
         """The points of each robot's route, in the situation in which the plan is made: where it still has to go.
 
         Parameters
@@ -35,7 +35,7 @@ class RouteLines:
         }
 
     def _line(
-        self, name: str, tasks: tuple[str, ...], situation: Situation, places: Mapping[str, Point]
+        self, name: str, tasks: tuple[str, ...], situation: MissionState, places: Mapping[str, Point]
     ) -> list[Point]:
         robot = situation.robots[name]
         line = [self._flat(places.get(name, robot.position))]
@@ -48,7 +48,7 @@ class RouteLines:
             line += self._leg(name, situation, line[-1], self._flat(end))
         return line
 
-    def _leg(self, name: str, situation: Situation, start: Point, goal: Point) -> tuple[Point, ...]:
+    def _leg(self, name: str, situation: MissionState, start: Point, goal: Point) -> tuple[Point, ...]:
         leg = (name, start, goal)
         if leg not in self._found:
             self._found[leg] = tuple(tuple(point) for point in self._way(situation.robots[name], start, goal))[1:]

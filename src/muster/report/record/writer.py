@@ -21,13 +21,13 @@ from muster.mission.errors import MissingExtraError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import yaml_text
 from muster.report.record import json_messages
-from muster.report.record.publisher import Teller
+from muster.report.record.publisher import Publisher
 from muster.report.record.schemas import MISSION_FILE, SCHEMAS, TOPICS
 
 Floats = npt.NDArray[np.float64]
 
 
-class RecordWriter(Teller):
+class RecordWriter(Publisher):
     """Writes the record of a mission.
 
     Parameters

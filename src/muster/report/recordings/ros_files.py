@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from muster.bridges.ros2.cdr import to_cdr, to_ros1
-from muster.bridges.ros2.description import ROS1, ROS2, Message, definition, md5_sum, type_name
+from muster.bridges.ros2.description import ROS1, ROS2, Message
+from muster.bridges.ros2.serialization import definition, md5_sum, to_cdr, to_ros1, type_name
 from muster.mission.errors import MissingExtraError
 from muster.report.record import Recording
 from muster.report.record.json_messages import nanoseconds
 from muster.report.record.writer import require_mcap
-from muster.report.recordings.ros_messages import Sent, ros_messages
+from muster.report.recordings.ros_messages import TimedMessage, ros_messages
 
 _KEPT = ("/markers",)
 """Topics whose last message holds for who comes later: latched in ROS 1."""
@@ -52,7 +52,7 @@ def write_ros2(file: str | Path, recording: Recording, *, begins_s: float = 0.0)
             kind = type(one.message)
             if kind not in schemas:
                 text = definition(kind, ROS2).encode()
-                schemas[kind] = writer.register_schema(type_name(kind, ROS2), "ros2msg", text)
+                schemas[kind] = writer.register_schema(type_name(kind), "ros2msg", text)
             if one.topic not in channels:
                 profiles = {"offered_qos_profiles": ""}  # which rosbag2 wants to be there
                 channels[one.topic] = writer.register_channel(one.topic, "cdr", schemas[kind], profiles)
@@ -78,11 +78,11 @@ def write_ros1(file: str | Path, recording: Recording, *, begins_s: float = 0.0)
     return counts
 
 
-def _connection(writer: Any, one: Sent) -> Any:
+def _connection(writer: Any, one: TimedMessage) -> Any:
     kind = type(one.message)
     return writer.add_connection(
         one.topic,
-        type_name(kind, ROS2),
+        type_name(kind),
         msgdef=definition(kind, ROS1),
         md5sum=md5_sum(kind),
         callerid="/muster",
@@ -98,5 +98,5 @@ def _bag_writer() -> Any:
     return Writer
 
 
-def _time(one: Sent, begins_s: float) -> int:
+def _time(one: TimedMessage, begins_s: float) -> int:
     return nanoseconds(begins_s) + nanoseconds(one.time_s)

@@ -40,12 +40,12 @@ from muster.motion.frames import enu_to_flu, wrapped
 from muster.report.record import Recording
 from muster.report.record import scene as scenes
 from muster.report.record.json_messages import MAP_FRAME, body_frame, json_bytes
-from muster.report.record.mission_state import Situation
+from muster.report.record.mission_state import MissionState
 from muster.report.recordings.markers import Markers
 
 
 @dataclass(frozen=True)
-class Sent:
+class TimedMessage:
     """A message: where, when on the mission's clock, what."""
 
     topic: str
@@ -53,7 +53,7 @@ class Sent:
     message: Message
 
 
-def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[Sent]:
+def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[TimedMessage]:
     """All that a record tells, in the order of time.
 
     Parameters
@@ -71,7 +71,7 @@ def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[Sent]:
     return sorted(told, key=attrgetter("time_s"))
 
 
-def _steps(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[Sent]:
+def _steps(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[TimedMessage]:
     tracks = recording.tracks
     turning = _yaw_rates(tracks.times_s, tracks.headings)
     for row, now in enumerate(tracks.times_s.tolist()):
@@ -86,11 +86,11 @@ def _steps(recording: Recording, names: dict[str, str], begins_s: float) -> Iter
             velocity = enu_to_flu(tracks.velocities[row, k], heading).tolist()
             twist = Twist(Vector3(*velocity), Vector3(0.0, 0.0, float(turning[row, k])))
             odometry = Odometry(header, frame, PoseWithCovariance(pose), TwistWithCovariance(twist))
-            yield Sent(f"/{name}/odom", now, odometry)
-            yield Sent(f"/{name}/pose", now, PoseStamped(header, pose))
+            yield TimedMessage(f"/{name}/odom", now, odometry)
+            yield TimedMessage(f"/{name}/pose", now, PoseStamped(header, pose))
             moved = Transform(Vector3(*place.tolist()), pose.orientation)
             transforms.append(TransformStamped(header, frame, moved))
-        yield Sent("/tf", now, TFMessage(tuple(transforms)))
+        yield TimedMessage("/tf", now, TFMessage(tuple(transforms)))
 
 
 def _yaw_rates(times: Any, headings: Any) -> Any:
@@ -105,37 +105,37 @@ def _turned(heading: float) -> Quaternion:
     return Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
 
 
-def _plans(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[Sent]:
+def _plans(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[TimedMessage]:
     """The routes of each plan: `<robot>/plan`, the way on which it goes."""
     for version in recording.plans:
         header = Header(stamp=Time.of(begins_s + version.time_s), frame_id=MAP_FRAME)
         for robot, line in version.lines.items():
             poses = tuple(PoseStamped(header, Pose(Point(*_in_space(point)))) for point in line)
-            yield Sent(f"/{names[robot]}/plan", version.time_s, Path(header, poses))
+            yield TimedMessage(f"/{names[robot]}/plan", version.time_s, Path(header, poses))
 
 
 def _in_space(point: Sequence[float]) -> Sequence[float]:
     return (*map(float, point), 0.0)[:3]
 
 
-def _events(recording: Recording, begins_s: float) -> Iterator[Sent]:
+def _events(recording: Recording, begins_s: float) -> Iterator[TimedMessage]:
     """Each event as JSON, and the markers that it changes; first those of the beginning."""
-    mission, situation = recording.mission, Situation(recording.mission)
+    mission, situation = recording.mission, MissionState(recording.mission)
     markers = Markers(ros_names(recording.tracks.robots))
     tasks = [scenes.task_entity(0.0, task, situation.states[task.id]) for task in mission.tasks]
     robots = [scenes.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
     first = markers.of([*scenes.map_entities(mission.map), *tasks, *robots], begins_s)
-    yield Sent("/markers", 0.0, MarkerArray(first))
+    yield TimedMessage("/markers", 0.0, MarkerArray(first))
     for event in recording.events:
         text = json.dumps({"time_s": event.time_s, "kind": event.kind, "data": json.loads(json_bytes(event.data))})
-        yield Sent("/muster/event", event.time_s, String(text))
+        yield TimedMessage("/muster/event", event.time_s, String(text))
         changed = situation.take(event.kind, event.data)
         if changed is not None:
             entity = _entity(situation, event.kind, changed)
-            yield Sent("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
+            yield TimedMessage("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
 
 
-def _entity(situation: Situation, kind: str, name: str) -> dict[str, Any]:
+def _entity(situation: MissionState, kind: str, name: str) -> dict[str, Any]:
     if kind == "robot_joins":
         return scenes.robot_entity(0.0, situation.robots[name], list(situation.robots).index(name))
     return scenes.task_entity(0.0, situation.tasks[name], situation.states[name])

@@ -1,4 +1,1 @@
-"""A mission carried out without a centre: each robot is a process that agrees with the others, and acts for itself.
-
-Here negotiation, execution and simulation meet, which do not know each other.
-"""
+"""Carrying out a mission without a central planner: one process per robot, which negotiates and executes its tasks."""

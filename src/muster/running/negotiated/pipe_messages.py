@@ -1,7 +1,7 @@
-"""What a robot's process and the simulated world tell each other. Plain data for pipes.
+"""Messages between a robot's process and the simulated world. Plain data for pipes.
 
-The world is to a robot what its sensors and motors are, and an operator who can reach it. It tells nothing that a robot
-would not know by itself: what others do, robots tell each other.
+The world stands for the robot's sensors and motors, and for an operator who can reach it. It tells a robot nothing that
+the robot would not know by itself: robots learn from each other what the others do.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from muster.motion.port import Telemetry, Waypoint
 
 
 @dataclass(frozen=True)
-class Sense:
-    """What a robot's body tells it.
+class BodyState:
+    """What a robot's sensors tell it.
 
     Parameters
     ----------
     now_s
         the mission's time, seconds.
     telemetry
-        how it stands.
+        the robot's pose and progress.
     orders, used
-        how many orders it was given, and what it has used, in the mission's unit, as a gauge has it: for a robot that
-        starts again.
+        the number of orders that the body has received, and the usage so far in the mission's unit: for a restarted
+        robot.
     """
 
     now_s: float
@@ -36,44 +36,44 @@ class Sense:
 
 
 @dataclass(frozen=True)
-class Befalls:
-    """What an operator tells one robot, for all: an event as in a mission file."""
+class OperatorEvent:
+    """What an operator tells one robot for the whole team: an event as in a mission file."""
 
     event: Event
 
 
 @dataclass(frozen=True)
-class Radio:
-    """Whether the robot's messages come through, both ways."""
+class RadioState:
+    """Whether the robot's messages come through, in both directions."""
 
     on: bool
 
 
 @dataclass(frozen=True)
-class Steer:
+class SteerCommand:
     """Way points for the robot's body."""
 
     waypoints: Sequence[Waypoint]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Did:
+class WorkReport:
     """What a robot has done, and whether it has more to do.
 
     Parameters
     ----------
     events
-        (seconds, kind, data) of each, as an executor tells them.
+        (seconds, kind, data) of each, as an executor reports them.
     used
-        so far, in the mission's unit.
+        the usage so far, in the mission's unit.
     usages
-        of tasks that it has done since it told last: planned, flown.
+        planned and flown usage of tasks that it has done since its last report.
     idle
-        whether it has nothing to do, nor a way to go.
+        whether it has neither a task nor a path left.
     settled
-        whether all that it hears have agreed.
+        whether all robots that it hears have agreed.
     heard
-        how many times it was told something that befalls.
+        the number of operator events that it has received.
     """
 
     events: Sequence[tuple[float, str, Mapping[str, Any]]]

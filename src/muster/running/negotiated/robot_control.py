@@ -1,4 +1,4 @@
-"""One robot that decides for itself: it does what it owns by the auction, and tells the others what it has done."""
+"""Control of one robot that decides for itself: it executes what it owns, and tells the others what it has done."""
 
 from __future__ import annotations
 
@@ -38,33 +38,35 @@ _ITS_OWN = {
 """Events that nobody else knows of."""
 
 
-class Pilot:
-    """One robot. Its executor plans by asking what the robot owns, and begins no task without the others' leave.
+class RobotControl:
+    """The control of one robot.
+
+    Its executor asks the negotiator what the robot owns, and for permission to begin a task.
 
     Parameters
     ----------
     problem
-        what the team negotiates about.
+        the mission that the team negotiates about.
     port
-        to the robot's body, which has been heard.
+        the port of the robot's body, which has sent telemetry.
     negotiator
-        its part in the auction.
+        the robot's part in the auction.
     now
         the mission's time, seconds.
     used
-        what it has used so far, in the mission's unit.
+        the usage so far, in the mission's unit.
     """
 
     def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
         mission = problem.mission.at_once()
-        roads = problem.roads if mission.travel_rule == "map" else None
-        self._travel = travel_of(mission, roads)
+        robot_paths = problem.robot_paths if mission.travel_rule == "map" else None
+        self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(
             mission,
             Plan(mission=mission.name, ignored=problem.ignored, routes=()),
             {port.robot: port},
-            way=way_of(mission, roads),
+            way=way_of(mission, robot_paths),
             travel=self._travel,
             replan=self._owned,
             now=now,
@@ -78,20 +80,20 @@ class Pilot:
 
     @property
     def idle(self) -> bool:
-        """Whether it has nothing to do, nor a way to go."""
+        """Whether it has neither a task nor a path left."""
         return self._executor.idle and (bool(self._hand.out) or not self._wanted)
 
     @property
     def used(self) -> float:
-        """Usage so far, in the mission's unit."""
+        """The usage so far, in the mission's unit."""
         return self._hand.used
 
     def usage(self, task: str) -> tuple[float, float]:
-        """Of a task that it has done: planned, flown."""
+        """The planned and flown usage of a task that it has done."""
         return self._executor.ledger.usage[task]
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
-        """Go on to a time, after what the body said then; returns what the robot did, and what befell its body."""
+        """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
             self._executor.plan_again("agreed", {})
@@ -101,8 +103,8 @@ class Pilot:
                 self._negotiator.finish(event.data["task"])
         return events
 
-    def befalls(self, event: Event) -> str | None:
-        """Take in what an operator says, for the whole team; returns why not, if it makes no sense."""
+    def take_event(self, event: Event) -> str | None:
+        """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
         try:
             if event.new_task is not None:
                 if not self._is_known(event.new_task):  # else it is said once more
@@ -120,19 +122,19 @@ class Pilot:
         return None
 
     def may_begin(self, task: str) -> bool:
-        """See `execution.Peers`."""
+        """As `execution.Peers.may_begin`."""
         return self._negotiator.begin(task)
 
     @property
     def _wanted(self) -> list[str]:
-        """What it owns, in order, without what has to wait for more robots: meanwhile it does the rest."""
+        """What it owns, in order, without tasks that have to wait for more robots."""
         still = {task.id for task in self._executor.ledger.open} - self._negotiator.held
         return [claim.task for claim in self._negotiator.route if claim.task in still]
 
     def _learn(self) -> None:
-        """Take in what others did, and what is new, as it is known among the robots.
+        """Process what other robots did, and new tasks, from the facts that the robots share.
 
-        A fact of a task that is not known yet waits until it is, and so does a new task for those that it waits for.
+        A fact of a task that is not known yet waits until it is, and so does a new task for its prerequisites.
         """
         if self._known == self._negotiator.known:
             return
@@ -156,7 +158,7 @@ class Pilot:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
 
     def _owned(self, rest: Rest) -> Revision:
-        """The plan of the rest is what the robot owns, but for what it cannot do: that it gives back."""
+        """The plan of the rest is what the robot owns. It gives back what it cannot do."""
         robot = self._negotiator.robot
         begun = {claim.task for claim in self._negotiator.route if claim.begun}
         once = self._negotiator.once
@@ -180,7 +182,7 @@ class Pilot:
             self._negotiator.release(route.pop())
 
     def _is_known(self, task: Task) -> bool:
-        """Whether it was heard that there is this task, wherever it is now."""
+        """Whether the robot has heard of this new task, even if it has moved since."""
         content = content_of(task)
         return any(fact.kind == "added" and fact.content == content for fact in self._negotiator.facts)
 
@@ -192,5 +194,5 @@ class Pilot:
 
 
 def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:
-    """What this robot does; what the others do, and whose a task was before, the team knows."""
+    """A revision of this robot's route alone; the team knows the rest."""
     return Revision(routes=routes, ahead=ahead, moved={}, forced=frozenset(), added={}, dropped=(), left_out={})

@@ -1,4 +1,4 @@
-"""The process of a robot that decides for itself: its part in the auction, and a pilot for its body."""
+"""The main loop of a robot's process: negotiation, control of its body, and reports to the starter."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
 from muster.negotiation.node import Node
 from muster.negotiation.process_reports import Ready
-from muster.negotiation.team_process import Orders, Seat, Teller
-from muster.running.negotiated.pipe_messages import Befalls, Did, Radio, Sense, Steer
-from muster.running.negotiated.robot_control import Pilot
+from muster.negotiation.team_process import ProcessContext, ProgressReporter, StarterCommands
+from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster.running.negotiated.robot_control import RobotControl
 
 _STEP_S = 0.02
-"""How often at least the robot looks what its body says."""
+"""The longest time between two looks at the body's state, seconds."""
 
 
-def decide_for_itself(seat: Seat) -> None:
-    """Take part, and do what it owns, until the starter has seen enough."""
-    orders, teller = Orders(seat.pipe), Teller(seat.pipe)
-    if seat.comes_late:
-        orders.go.wait()
-    with seat.node() as node:
-        robot = Being(seat, node)
-        if not seat.comes_late:
-            seat.pipe.send(Ready())
-            orders.go.wait()
-        while not orders.leave.is_set():
+def run_robot_process(context: ProcessContext) -> None:
+    """Take part and execute what the robot owns, until the starter has ended."""
+    commands, reporter = StarterCommands(context.pipe), ProgressReporter(context.pipe)
+    if context.comes_late:
+        commands.go.wait()
+    with context.node() as node:
+        worker = RobotWorker(context, node)
+        if not context.comes_late:
+            context.pipe.send(Ready())
+            commands.go.wait()
+        while not commands.leave.is_set():
             node.step(_STEP_S)
-            robot.hear(_all_of(orders.words.get_nowait))
-            robot.go_on()
-            teller.tell(node, orders)
+            worker.receive(_all_of(commands.messages.get_nowait))
+            worker.step()
+            reporter.report(node, commands)
 
 
 class PipePort:
     """The body of a robot at the other end of a pipe; a `RobotPort`."""
 
-    def __init__(self, robot: str, steer: Callable[[Steer], None], orders: int, said: Telemetry) -> None:
+    def __init__(self, robot: str, steer: Callable[[SteerCommand], None], orders: int, said: Telemetry) -> None:
         self._robot, self._steer, self._orders = robot, steer, orders
         self.said = said
 
@@ -48,7 +48,7 @@ class PipePort:
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         self._orders += 1
-        self._steer(Steer(tuple(waypoints)))
+        self._steer(SteerCommand(tuple(waypoints)))
         return self._orders
 
     def cancel(self) -> int:
@@ -58,71 +58,71 @@ class PipePort:
         return self.said
 
 
-class Being:
+class RobotWorker:
     """What the process does beside the auction."""
 
-    def __init__(self, seat: Seat, node: Node) -> None:
-        self._seat, self._node = seat, node
-        self._pilot: Pilot | None = None
+    def __init__(self, context: ProcessContext, node: Node) -> None:
+        self._context, self._node = context, node
+        self._control: RobotControl | None = None
         self._now_s = 0.0
         self._heard = 0
-        self._befallen: list[Event] = []
+        self._events: list[Event] = []
         self._refused: list[str] = []
-        self._told: Did | None = None
+        self._reported: WorkReport | None = None
 
-    def hear(self, words: Sequence[object]) -> None:
-        for word in words:
-            if isinstance(word, Sense):
-                self._sense(word)
-            elif isinstance(word, Radio):
-                self._node.in_reach = word.on
-            elif isinstance(word, Befalls):
-                self._befallen.append(word.event)
+    def receive(self, messages: Sequence[object]) -> None:
+        for message in messages:
+            if isinstance(message, BodyState):
+                self._sense(message)
+            elif isinstance(message, RadioState):
+                self._node.in_reach = message.on
+            elif isinstance(message, OperatorEvent):
+                self._events.append(message.event)
 
-    def go_on(self) -> None:
-        """Do what there is to do, and tell what was done."""
-        pilot = self._pilot
-        if pilot is None:
+    def step(self) -> None:
+        """Control the body, and report what was done."""
+        control = self._control
+        if control is None:
             return
-        for event in self._befallen:
+        for event in self._events:
             self._heard += 1
-            why_not = pilot.befalls(event)
+            why_not = control.take_event(event)
             self._refused += [] if why_not is None else [why_not]
-        self._befallen.clear()
-        events = [(event.time_s, event.kind, event.data) for event in pilot.tick(self._now_s)]
+        self._events.clear()
+        events = [(event.time_s, event.kind, event.data) for event in control.tick(self._now_s)]
         events += [(self._now_s, "event_refused", {"reason": reason}) for reason in self._refused]
         self._refused.clear()
-        did = Did(
+        did = WorkReport(
             events=events,
-            used=pilot.used,
-            usages={str(data["task"]): pilot.usage(data["task"]) for _, kind, data in events if kind == "ends"},
-            idle=pilot.idle,
+            used=control.used,
+            usages={str(data["task"]): control.usage(data["task"]) for _, kind, data in events if kind == "ends"},
+            idle=control.idle,
             settled=self._node.negotiator.settled,
             heard=self._heard,
         )
-        if did != self._told:
-            self._told = replace(did, events=[], usages={})
-            self._seat.pipe.send(did)
+        if did != self._reported:
+            self._reported = replace(did, events=[], usages={})
+            self._context.pipe.send(did)
 
-    def _steer(self, steer: Steer) -> None:
-        """Steer the body, after what the robot has begun by that is kept: in its next life it must know."""
+    def _steer(self, steer: SteerCommand) -> None:
+        """Store what the robot has begun, which it must know after a restart; then send way points to the body."""
         self._node.keep()
-        self._seat.pipe.send(steer)
+        self._context.pipe.send(steer)
 
-    def _sense(self, sense: Sense) -> None:
+    def _sense(self, sense: BodyState) -> None:
         self._now_s = sense.now_s
-        if self._pilot is None:
-            seat = self._seat
-            self._port = PipePort(seat.robot, self._steer, sense.orders, sense.telemetry)
-            self._pilot = Pilot(seat.problem, self._port, self._node.negotiator, sense.now_s, sense.used)
+        if self._control is None:
+            context = self._context
+            self._port = PipePort(context.robot, self._steer, sense.orders, sense.telemetry)
+            self._control = RobotControl(context.problem, self._port, self._node.negotiator, sense.now_s, sense.used)
         else:
             self._port.said = sense.telemetry
 
 
 def _all_of(get: Callable[[], object]) -> list[object]:
-    words = []
+    messages = []
     while True:
         try:
-            words.append(get())
+            messages.append(get())
         except Empty:
-            return words
+            return messages

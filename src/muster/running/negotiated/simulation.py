@@ -1,4 +1,4 @@
-"""A mission carried out by robots that are processes, in a simulated world, at the pace of real time."""
+"""Simulates a mission that robots carry out without a central planner, one process per robot, in real time."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
-from muster.negotiation.process_reports import Order
-from muster.negotiation.team import Team, patience_here
+from muster.negotiation.process_reports import TeamSetup
+from muster.negotiation.team import Team, timeouts_for
 from muster.running.camera_search import OnLook, lookout_for, with_found
-from muster.running.negotiated.robot_bodies import MOST_SPEED, Theatre
-from muster.running.negotiated.robot_process import decide_for_itself
-from muster.running.negotiated.team_log import Log
+from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
+from muster.running.negotiated.robot_process import run_robot_process
+from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
 from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise
@@ -37,7 +37,7 @@ class Negotiation:
     method, transport
         names of METHODS and TRANSPORTS.
     params
-        of the method's allocator; None: its own.
+        of the method's allocator; None: its defaults.
     limit_s
         real seconds within which they have to agree before the mission begins.
     """
@@ -64,24 +64,24 @@ def negotiate_and_carry_out(
     halt: threading.Event | None = None,
     on_look: OnLook | None = None,
 ) -> Report:
-    """Let robots agree, and carry out what they agree on, each for itself; the mission's events happen meanwhile.
+    """Let robots agree and execute their tasks, while the mission's events happen.
 
     The mission begins when all have agreed for the first time.
 
     Parameters
     ----------
     problem
-        what about, without robots that join later.
+        the mission, without robots that join later.
     speed
-        how many times as fast as real time robots move, at most 10; None: once. They talk in real time: the faster
-        they move, the longer their talk takes in the mission's time.
+        the speed-up over real time, at most 10; None: 1. Messages travel in real time: the faster robots move, the
+        longer communication takes in the mission's time.
     others
-        as `_carrying_out.carry_out` takes them.
+        as for `running.carry_out`.
 
     Raises
     ------
     ParameterError
-        if robots are to move faster than that.
+        if `speed` is larger.
     MusterError
         if there is no agreement in time, or a robot cannot take part.
     """
@@ -94,19 +94,19 @@ def negotiate_and_carry_out(
         )
         if on_world is not None:
             on_world(bodies)
-        order = order_of(problem, negotiation, memory)
-        log = Log(order.problem, recorder or NoObserver(), on_event or (lambda event: None), order.late)
-        theatre = Theatre(problem.mission, bodies, order, log)
-        lookout = lookout_for(problem.mission, bodies, theatre.ports, noise=noise, seed=seed, on_look=on_look)
+        setup = setup_of(problem, negotiation, memory)
+        log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
+        robot_bodies = RobotBodies(problem.mission, bodies, setup, log)
+        lookout = lookout_for(problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look)
         if lookout is not None:
             stack.callback(lookout.close)
-            theatre.lookout = lookout
-        theatre.team = stack.enter_context(Team(order, theatre.hear))
+            robot_bodies.lookout = lookout
+        robot_bodies.team = stack.enter_context(Team(setup, robot_bodies.take_report))
         halt = halt or threading.Event()
-        theatre.agree_first(negotiation.limit_s, halt)
-        while not halt.is_set() and not theatre.over:
-            theatre.go_on(1.0 if speed is None else speed)
-        if theatre.over:
+        robot_bodies.await_agreement(negotiation.limit_s, halt)
+        while not halt.is_set() and not robot_bodies.over:
+            robot_bodies.step(1.0 if speed is None else speed)
+        if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         report = with_found(report, lookout)
@@ -115,33 +115,33 @@ def negotiate_and_carry_out(
         return report
 
 
-def order_of(problem: Problem, negotiation: Negotiation, memory: Path) -> Order:
-    """What the robots' processes are to do: robots that join, or start again, have theirs from the beginning, too."""
+def setup_of(problem: Problem, negotiation: Negotiation, memory: Path) -> TeamSetup:
+    """The setup of the robots' processes, with those of robots that join later or restart."""
     mission = problem.mission
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
     whole = Problem.compile(mission.at_once(robots=(*mission.robots, *joining)), problem.objective, problem.ignored)
     method = method_named(negotiation.method)
-    return Order(
+    return TeamSetup(
         problem=whole.ready(),
         terms=method.allocator.parameters() if negotiation.params is None else negotiation.params,
         key=new_key(),
         method=negotiation.method,
         transport=negotiation.transport,
-        patience=patience_here(len(whole.robots)),
+        timeouts=timeouts_for(len(whole.robots)),
         late=frozenset(robot.id for robot in joining),
-        lives=_lives(mission.events),
+        starts=_starts(mission.events),
         memory=memory,
-        part=decide_for_itself,
+        part=run_robot_process,
     )
 
 
-def _lives(events: Sequence[Event]) -> dict[str, int]:
-    """How often those robots start that start again after they have failed."""
-    failed, lives = set[str](), dict[str, int]()
+def _starts(events: Sequence[Event]) -> dict[str, int]:
+    """The number of starts of each robot that restarts after a failure."""
+    failed, starts = set[str](), dict[str, int]()
     for event in sorted(events, key=lambda event: event.at_s):
         if event.robot_fails is not None:
             failed.add(event.robot_fails)
         elif event.robot_returns in failed and event.robot_returns is not None:
             failed.remove(event.robot_returns)
-            lives[event.robot_returns] = lives.get(event.robot_returns, 1) + 1
-    return lives
+            starts[event.robot_returns] = starts.get(event.robot_returns, 1) + 1
+    return starts

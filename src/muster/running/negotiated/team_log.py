@@ -1,4 +1,4 @@
-"""What a team did, put together from what its robots tell: events, states of tasks, the plan, the figures."""
+"""The log of a negotiated mission, put together from the robots' reports: events, task states, plans, figures."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from muster.verification import verify
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
 
 
-class Log:
-    """Keeps what happens, and tells it to an observer. No robot sees this: it knows more than each of them.
+class TeamLog:
+    """Records events and forwards them to an observer. It contains more than each robot knows, and no robot sees it.
 
     Parameters
     ----------
     problem
-        what the team negotiates about.
+        the mission that the team negotiates about.
     observer
-        is told all.
+        receives events, telemetry and plans.
     on_event
-        is told what happens.
+        receives events.
     late
-        robots that are not there before they join.
+        robots that are absent before they join.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Log:
         self._now_s = 0.0
 
     def is_out(self, robot: str) -> bool:
-        """Whether a robot takes no part any more, as far as all know."""
+        """Whether a robot has failed or is stuck, as far as is known."""
         return robot in self._out
 
     @property
@@ -64,7 +64,7 @@ class Log:
         return bool(self.ledger.open)
 
     def take(self, robot: str, at_s: float, kind: str, data: Mapping[str, Any], used: float) -> None:
-        """Take in what a robot tells of itself."""
+        """Process an event that a robot reports of itself."""
         self.used[robot] = used
         task = str(data.get("task", ""))
         if kind == "arrives":
@@ -79,11 +79,11 @@ class Log:
         self.tell(at_s, kind, data)
 
     def note_usage(self, task: str, usage: tuple[float, float]) -> None:
-        """What a task that was done has cost: planned, flown."""
+        """Note the planned and flown usage of a task that was done."""
         self.ledger.usage.setdefault(task, usage)
 
-    def befalls(self, event: Event, now_s: float) -> bool:
-        """Take in an event of the mission; whether it changes anything."""
+    def take_event(self, event: Event, now_s: float) -> bool:
+        """Process an event of the mission; return whether it changes anything."""
         ((kind, said),) = ((key, value) for key, value in plain(event).items() if key != "at_s")
         task = said["task"] if kind in ("move_task", "delay_task") else said
         if kind in _OF_A_TASK and (task in self.ledger.ends_s or task in self.ledger.cancelled):
@@ -108,12 +108,12 @@ class Log:
         return True
 
     def see(self, robot: str, telemetry: Telemetry, now_s: float) -> None:
-        """Take in where a robot says that it is."""
+        """Process a robot's telemetry."""
         self._now_s = max(self._now_s, now_s)
         self._observer.on_telemetry(self._now_s, robot, telemetry)
 
     def agreed(self, plan: Plan, now_s: float) -> None:
-        """Take in what robots agree on: the plan of the whole mission."""
+        """Process the plan of the whole mission on which robots have agreed."""
         self._plans.append(plan)
         if len(self._plans) > 1:
             causes, self._causes = self._causes, []
@@ -121,7 +121,7 @@ class Log:
         self._observer.on_plan(max(now_s, self._now_s), plan)
 
     def tell(self, at_s: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something has happened; what is heard late of it is kept as it is heard, so that times do not go back."""
+        """Record an event. Late reports get the time at which they arrive, so that times never decrease."""
         self._now_s = max(self._now_s, at_s)
         event = ExecutionEvent(self._now_s, kind, data)
         self.events.append(event)
@@ -142,7 +142,7 @@ class Log:
 
     @property
     def account(self) -> Account:
-        """What it took, so far or in all."""
+        """The figures so far, or of the whole mission."""
         planned, usages = None, dict[str, float]()
         if self._plans:
             planned = self._plans[0].objective_value
@@ -174,7 +174,7 @@ class Log:
             self._note_begun(robot, task)
 
     def _end(self, robot: str, task: str, at_s: float) -> None:
-        """A task counts for the robot that ends it first, whoever else was at it, or had given it up."""
+        """Record the end of a task. It counts for the robot that ends it first, even if another robot was at it."""
         self._at_work.pop(task, None)
         if task not in self.ledger.ends_s:
             self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
@@ -186,7 +186,7 @@ class Log:
         self.ledger.begin(task, self._began_s[robot, task])
 
     def _lose(self, robot: str, why: str) -> None:
-        """A robot is out: what it was at is given up."""
+        """A robot is out: its task under way is given up."""
         self._out[robot] = why
         for task in [task for task, at in self._at_work.items() if at == robot]:
             del self._at_work[task]
@@ -194,7 +194,7 @@ class Log:
 
 
 def _difference(before: Plan, after: Plan) -> dict[str, Any]:
-    """What has changed, as `execution.Revision.difference` tells it."""
+    """The changes between two plans, as `execution.Revision.difference` lists them."""
     old, new = _robots(before), _robots(after)
     left_out = {item.task: ", ".join(reason.reason for reason in item.reasons) for item in after.unassigned}
     return {

@@ -2,8 +2,8 @@
 
 A robot that crashed at the last moment is suspected after `suspect_s`; by distant robots, or after links were cut,
 after FAR times as long. Half as long again is allowed for robots that heard from it last. A robot that was excluded is
-back after at most eight times `mute_s`. Then all rounds follow, with declarations before and agreement after them. A
-message takes its delay, and a lost one the time until it is requested again; on average it is sent 1 / (1 - loss)
+back after at most eight times `exclusion_s`. Then all rounds follow, with declarations before and agreement after them.
+A message takes its delay, and a lost one the time until it is requested again; on average it is sent 1 / (1 - loss)
 times, and twice that is allowed for each round and hop. Loss has no upper bound, so agreement has none either: that
 trials keep this deadline is an observation.
 """
@@ -24,17 +24,17 @@ OTHER_WORDS = 3
 
 def someone_is_left_out(nodes: Collection[Negotiator], now: float) -> bool:
     """Whether a running robot regards another running robot as muted."""
-    return any(a.members.is_muted(b.robot, now) for a in nodes for b in nodes if a is not b)
+    return any(a.members.is_excluded(b.robot, now) for a in nodes for b in nodes if a is not b)
 
 
 def deadline_s(scenario: Scenario, group: Sequence[str], rounds: int, *, left_out: bool) -> float:
     """The deadline for a group that needs this number of rounds, seconds after the last incident."""
-    patience, weather = scenario.patience, scenario.weather
-    word_s = (patience.retry_s + TICK_S + weather.delay_s + weather.jitter_s) / (1 - weather.loss)
-    alone_s = 8 * patience.mute_s if left_out else 0.0
+    timeouts, conditions = scenario.timeouts, scenario.conditions
+    word_s = (timeouts.retry_s + TICK_S + conditions.delay_s + conditions.jitter_s) / (1 - conditions.loss)
+    alone_s = 8 * timeouts.exclusion_s if left_out else 0.0
     hops = _hops(scenario.links, group)
-    far = hops > 1 or any(incident.kind in ("cut", "deafen") for incident in scenario.incidents)
-    missed_s = 1.5 * patience.suspect_s * (FAR if far else 1.0)
+    far = hops > 1 or any(incident.kind in ("cut", "block") for incident in scenario.incidents)
+    missed_s = 1.5 * timeouts.suspect_s * (FAR if far else 1.0)
     return missed_s + alone_s + 2 * (rounds + OTHER_WORDS) * hops * word_s
 
 

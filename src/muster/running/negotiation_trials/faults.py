@@ -20,14 +20,14 @@ class Incident:
     Parameters
     ----------
     kind
-        "start", "crash", "restart", "forget" (restart without memory), "cut", "deafen", "heal", "announce", "cancel",
+        "start", "crash", "restart", "forget" (restart without memory), "cut", "block", "heal", "announce", "cancel",
         "release", "withdraw".
     robot
         the robot concerned; "" for none.
     groups
         of "cut": the groups within which robots still hear each other.
     links
-        of "deafen": the links on which all messages are lost.
+        of "block": the links on which all messages are lost.
     task
         of "announce": the task; of "cancel" its id.
     """

@@ -20,7 +20,7 @@ from muster.running.negotiation_trials.scenario import Scenario
 from muster.verification import verify
 
 
-class Judgement:
+class Invariants:
     """Checks the invariants for the robots of one scenario; the observer knows which robot has begun which task."""
 
     def __init__(self, scenario: Scenario, problem: Problem, observer: Observer) -> None:
@@ -54,9 +54,7 @@ class Judgement:
         past = {task for tasks in begun.past.values() for task in tasks}
         ahead = {robot: [t for t in node.valuer.route(robot) if t not in past] for robot in self._rules.robots}
         asked = (
-            METHODS[self._scenario.method]
-            .negotiator(self._problem, self._scenario.terms, node.robot, incarnation=1)
-            .valuer
+            METHODS[self._scenario.method].negotiator(self._problem, self._scenario.terms, node.robot, incarnation=1).valuer
         )
         closed = self._closed(node, nodes).intersection(self._rules.with_added(base.added).tasks)
         asked.begin(replace(begun, ahead=ahead, closed=closed))

@@ -1,8 +1,8 @@
-"""Moving partitions: partitions change while tasks are carried out, so that one majority after the other can continue.
+"""Moving partitions: cuts that change while tasks are carried out, so that one majority after another may go on.
 
-At-most-once rests on the fact that any two majorities have a robot in common that remembers. Here they mostly have a
-single robot in common, which crashes, and may lose its memory, at unfavourable moments; links are one-way; partitions
-heal when a robot is about to begin a task.
+At-most-once tasks rest on the fact that any two majorities have a robot in common that remembers. So here consecutive
+majorities have only one robot in common, and it crashes, and may lose its memory, at critical moments; links work in
+one direction only; cuts heal when a robot is about to begin a task.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from muster.running.negotiation_trials.faults import Incident, Links, orders
 from muster.running.negotiation_trials.random_missions import random_task
 
 _MOVING = ("next majority",) * 3 + ("ambush",)
-_MIXED = ("next majority", "any cut", "deafen", "deafen", "heal", "ambush")
+_MIXED = ("next majority", "any cut", "block", "block", "heal", "ambush")
 
 
-def siege(
+def moving_partitions(
     mission: Mission, names: Sequence[str], until_s: float, suspect_s: float, random: Random
 ) -> Iterator[Incident]:
     """The incidents of a team whose robots suspect a robot after `suspect_s` without a message from it."""
@@ -49,8 +49,8 @@ class _Waves:
                 yield from self._next_majority(self._danger)
             elif kind == "any cut":
                 yield Incident(self._now, "cut", groups=_apart(self._names, random))
-            elif kind == "deafen":
-                yield Incident(self._now, "deafen", links=_one_way(self._names, random))
+            elif kind == "block":
+                yield Incident(self._now, "block", links=_one_way(self._names, random))
             else:
                 yield Incident(self._now, "heal")
             if random.random() < 0.5:

@@ -1,4 +1,4 @@
-"""Random scenarios of trials, by a seed: mission, terms, network conditions, links, and incidents with their times."""
+"""Random scenarios of trials, by a seed: mission, terms, conditions, links, and incidents with their times."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from muster.allocation import consensus_bundle
 from muster.allocation.auction import Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
-from muster.negotiation.members import Patience
-from muster.negotiation.memory_network import Weather
+from muster.negotiation.members import Timeouts
+from muster.negotiation.memory_network import LinkConditions
 from muster.running.negotiation_trials.faults import Incident, Links, incidents
-from muster.running.negotiation_trials.moving_partitions import siege
+from muster.running.negotiation_trials.moving_partitions import moving_partitions
 from muster.running.negotiation_trials.random_missions import random_mission
 
 MOVING_PARTITIONS = 0.3
@@ -39,7 +39,7 @@ class Scenario:
         the time that a robot needs for a task; None: robots agree only.
     begin_probability
         the probability with which an idle robot begins one of its tasks in the next tenth of a second.
-    patience
+    timeouts
         of the robots.
     incidents
         in no order.
@@ -51,23 +51,23 @@ class Scenario:
     mission: Mission
     method: str
     terms: Any
-    weather: Weather
+    conditions: LinkConditions
     links: Links | None
     work_s: float | None
     incidents: tuple[Incident, ...]
     quiet_s: float
     begin_probability: float = 1.0
-    patience: Patience = field(default_factory=Patience)
+    timeouts: Timeouts = field(default_factory=Timeouts)
 
     def described(self) -> Iterator[str]:
         """Lines for people."""
-        weather = self.weather
+        conditions = self.conditions
         terms = ", ".join(f"{name} {value}" for name, value in asdict(self.terms).items())
         mission = self.mission
         yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; {self.method}, {terms}"
-        yield f"loss {weather.loss:.0%}, delay {weather.delay_s:.3f} s and up to {weather.jitter_s:g} s"
-        yield f"suspected after {self.patience.suspect_s:g} s; begin probability {self.begin_probability:g}"
-        yield f"duplication {weather.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
+        yield f"loss {conditions.loss:.0%}, delay {conditions.delay_s:.3f} s and up to {conditions.jitter_s:g} s"
+        yield f"suspected after {self.timeouts.suspect_s:g} s; begin probability {self.begin_probability:g}"
+        yield f"duplication {conditions.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
         if self.links is not None:
             yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
         for what in sorted(self.incidents, key=lambda incident: incident.at_s):
@@ -95,7 +95,7 @@ def _with_random_faults(seed: int, random: Random) -> Scenario:
         seed,
         mission,
         *_terms(random),
-        weather=_weather(random),
+        conditions=_conditions(random),
         links=_links(names, random) if random.random() < 0.25 else None,
         work_s=random.choice((None, random.uniform(0.3, 3.0))),
         incidents=tuple(incidents(mission, names, quiet_s, random)),
@@ -108,22 +108,24 @@ def _with_moving_partitions(seed: int, random: Random) -> Scenario:
     robots, tasks = random.choice((2, 3, 3, 3, 4, 5)), random.randint(1, 9)
     once, free = random.choice((0.6, 1.0, 1.0)), random.random() < 0.8
     mission = random_mission(random, robots=robots, tasks=tasks, once=once, free=free)
-    names, weather, patience = [robot.id for robot in mission.robots], _weather(random), Patience()
-    if random.random() < 0.7:  # early suspicion separates robots more often, and needs most heartbeats
-        patience = Patience(suspect_s=1.2, bid_s=1.8, mute_s=1.5)
-        weather = Weather(loss=0.3 * weather.loss, delay_s=0.3 * weather.delay_s, jitter_s=0.1 * weather.jitter_s)
-    quiet_s = patience.suspect_s * random.uniform(5, 20)
+    names, conditions, timeouts = [robot.id for robot in mission.robots], _conditions(random), Timeouts()
+    if random.random() < 0.7:  # robots with short timeouts can be lost more often, but must hear most heartbeats
+        timeouts = Timeouts(suspect_s=1.2, bid_s=1.8, exclusion_s=1.5)
+        conditions = LinkConditions(
+            loss=0.3 * conditions.loss, delay_s=0.3 * conditions.delay_s, jitter_s=0.1 * conditions.jitter_s
+        )
+    quiet_s = timeouts.suspect_s * random.uniform(5, 20)
     return Scenario(
         seed,
         mission,
         *_terms(random),
-        weather=weather,
+        conditions=conditions,
         links=None,
-        work_s=patience.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
-        incidents=tuple(siege(mission, names, quiet_s, patience.suspect_s, random)),
+        work_s=timeouts.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
+        incidents=tuple(moving_partitions(mission, names, quiet_s, timeouts.suspect_s, random)),
         quiet_s=quiet_s,
         begin_probability=random.choice((0.1, 0.3, 0.6)),
-        patience=patience,
+        timeouts=timeouts,
     )
 
 
@@ -135,8 +137,8 @@ def _terms(random: Random) -> tuple[str, Any]:
     return "auction", terms
 
 
-def _weather(random: Random) -> Weather:
-    return Weather(
+def _conditions(random: Random) -> LinkConditions:
+    return LinkConditions(
         loss=random.choice((0.0, random.uniform(0, 0.5))),
         delay_s=random.uniform(0.001, 0.1),
         jitter_s=random.choice((0.0, 0.05, 0.3)),

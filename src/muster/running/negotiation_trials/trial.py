@@ -17,7 +17,7 @@ from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
 from muster.running.negotiation_trials.deadline import deadline_s, someone_is_left_out
 from muster.running.negotiation_trials.faults import Incident
-from muster.running.negotiation_trials.invariants import Judgement
+from muster.running.negotiation_trials.invariants import Invariants
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import Scenario, scenario_of
 
@@ -70,13 +70,13 @@ class Trial:
             self._negotiator,
             [robot.id for robot in self.problem.robots],
             given.seed,
-            given.weather,
+            given.conditions,
             None if links is None else lambda one, other: (one, other) in links,
             lambda robot: self.observer.look(robot),
         )
         once = {i.task.id for i in given.incidents if i.task is not None and i.task.across_partition == "at-most-once"}
         self.observer = Observer(self.network.nodes, {*self.rules.once, *once})
-        self.judgement = Judgement(given, self.problem, self.observer)
+        self.invariants = Invariants(given, self.problem, self.observer)
 
     def run(self) -> Report:
         for incident in self.scenario.incidents:
@@ -107,7 +107,7 @@ class Trial:
         def all_have() -> bool:
             for group in [group for group in left if self._agrees(group)]:
                 left.remove(group)
-                self.report.failures += self.judgement.wrong([nodes[robot] for robot in group])
+                self.report.failures += self.invariants.wrong([nodes[robot] for robot in group])
                 if group not in waiting:
                     self._note_time(group, self.network.now - began_s, left_out=left_out)
             return not left
@@ -135,7 +135,7 @@ class Trial:
             self.scenario.terms,
             robot,
             incarnation=incarnation,
-            patience=self.scenario.patience,
+            timeouts=self.scenario.timeouts,
             remembered=self._memory.pop(robot, None),
             forgot=robot in self._forgot,
         )
@@ -143,10 +143,10 @@ class Trial:
     def _happen(self, incident: Incident) -> None:
         kind, robot, nodes = incident.kind, incident.robot, self.network.nodes
         node = nodes.get(robot)
-        if kind in ("cut", "deafen", "heal"):
+        if kind in ("cut", "block", "heal"):
             self.network.heal()
             self.network.cut(*incident.groups)
-            self.network.deafen(incident.links)
+            self.network.block(incident.links)
         elif kind in ("start", "restart", "forget"):
             self._start(robot, forgets=kind == "forget")
         elif node is None:

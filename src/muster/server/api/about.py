@@ -11,7 +11,7 @@ from fastapi import APIRouter
 
 from muster.exchange.mission_control import Role
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import TheServices, TheUser
 
 API = 1
 """Of the paths under /api/v1; grows when what a client relies on changes."""
@@ -39,7 +39,7 @@ class About:
 
 @dataclass(frozen=True, kw_only=True)
 class Me:
-    """Who asks, as the server sees it."""
+    """The user, as the server sees them."""
 
     name: str
     role: Role
@@ -47,22 +47,22 @@ class Me:
 
 
 @router.get("/about", summary="See what this server is")
-async def about(desk: TheDesk) -> About:
+async def about(services: TheServices) -> About:
     """Versions and limits."""
-    worlds = ["kinematic", "physics", *desk.settings.bridges]
-    return About(muster=_version(), api=API, worlds=worlds, upload_bytes=desk.settings.upload_bytes)
+    worlds = ["kinematic", "physics", *services.settings.bridges]
+    return About(muster=_version(), api=API, worlds=worlds, upload_bytes=services.settings.upload_bytes)
 
 
 @router.get("/me", summary="See who asks")
-async def me(who: Asker) -> Me:
+async def me(who: TheUser) -> Me:
     """The role `watch` may read everything and change nothing."""
     return Me(name=who.name, role=who.role, address=who.address)
 
 
 @router.get("/allocators", summary="List allocators")
-async def allocators(desk: TheDesk) -> list[dict[str, Any]]:
+async def allocators(services: TheServices) -> list[dict[str, Any]]:
     """Algorithms that plan, with their parameters."""
-    return list(await desk.plans.allocators())
+    return list(await services.plans.allocators())
 
 
 @cache

@@ -6,13 +6,15 @@ from fastapi import APIRouter
 
 from muster.exchange.mission_control import Action
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheDesk
+from muster.server.api.dependencies import TheServices
 from muster.server.api.parameter_types import Before, Limit, RunQuery
 
 router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute)
 
 
 @router.get("", summary="Read the audit log")
-async def actions(desk: TheDesk, run: RunQuery = None, limit: Limit = 200, before: Before = None) -> list[Action]:
+async def actions(
+    services: TheServices, run: RunQuery = None, limit: Limit = 200, before: Before = None
+) -> list[Action]:
     """Newest first; ask again with `before` the last `id` for more."""
-    return list(await desk.actions.list(run=run, limit=limit, before=before))
+    return list(await services.actions.list(run=run, limit=limit, before=before))

@@ -8,26 +8,26 @@ from fastapi import Depends, FastAPI
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.api import about, actions, jobs, missions, plans, records, runs
 from muster.server.api.dependencies import require_known_query
 from muster.server.api.description import describe, listing
 from muster.server.api.problems import add_handlers
 from muster.server.api.responses import ALWAYS, errors
-from muster.server.security import who_of as usual_who_of
-from muster.server.services.services import Desk
+from muster.server.security import user_of as usual_who_of
+from muster.server.services.services import Services
 
 PREFIX = "/api/v1"
 
 
-def api(desk_of: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] = usual_who_of) -> FastAPI:
+def api(services_of: Callable[[], Services], user_of: Callable[[HTTPConnection], User] = usual_who_of) -> FastAPI:
     """An application to be mounted at PREFIX.
 
     Parameters
     ----------
-    desk_of
+    services_of
         gives the services; called at each request, so that the app can be made before they are there.
-    who_of
+    user_of
         says who asks; raises where nobody may.
     """
     app = FastAPI(
@@ -37,7 +37,7 @@ def api(desk_of: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] = u
         responses=errors(*ALWAYS),
         dependencies=[Depends(require_known_query)],
     )
-    app.state.desk_of, app.state.who_of = desk_of, who_of
+    app.state.services_of, app.state.user_of = services_of, user_of
     add_handlers(app)
     for part in (missions, plans, jobs, runs, records, actions, about):
         app.include_router(part.router)

@@ -28,7 +28,7 @@ class BoundedRequest(Request):
 
     async def stream(self) -> AsyncGenerator[bytes, None]:
         """The body in pieces; everything that reads it comes through here."""
-        most: int = self.app.state.desk_of().settings.upload_bytes
+        most: int = self.app.state.services_of().settings.upload_bytes
         length = self.headers.get("content-length", "")
         if length.isdecimal() and (len(length) > 18 or int(length) > most):
             raise too_long(most)

@@ -1,4 +1,4 @@
-"""What every route needs: the desk, who asks, and that nothing unknown is asked."""
+"""What every route needs: the services, who asks, and that nothing unknown is asked."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.near_matches import did_you_mean
-from muster.server.services.services import Desk
+from muster.server.services.services import Services
 from muster.server.store.request_keys import RequestKey
 
 
-def _desk(connection: HTTPConnection) -> Desk:
-    found: Desk = connection.app.state.desk_of()
+def _services(connection: HTTPConnection) -> Services:
+    found: Services = connection.app.state.services_of()
     return found
 
 
-def _asker(connection: HTTPConnection) -> Who:
-    found: Who = connection.app.state.who_of(connection)
+def _user(connection: HTTPConnection) -> User:
+    found: User = connection.app.state.user_of(connection)
     return found
 
 
@@ -57,7 +57,7 @@ def _require_known(where: str, given: Mapping[str, Any], known: Sequence[str]) -
         raise RequestValidationError(unknown)
 
 
-def key_of(who: Who, key: str | None, path: str, body: BaseModel) -> RequestKey | None:
+def key_of(who: User, key: str | None, path: str, body: BaseModel) -> RequestKey | None:
     """The key of a request, with a digest of what it asks for."""
     if key is None:
         return None
@@ -75,5 +75,5 @@ IdempotencyKey = Annotated[
         description="The same request with the same key, within a day, makes nothing again: it is answered as before.",
     ),
 ]
-TheDesk = Annotated[Desk, Depends(_desk)]
-Asker = Annotated[Who, Depends(_asker)]
+TheServices = Annotated[Services, Depends(_services)]
+TheUser = Annotated[User, Depends(_user)]

@@ -17,11 +17,11 @@ by WebSockets (`/jobs/{id}/stream`, `/runs/{id}/stream`), which docs/mission-con
 token is needed unless the server was given a file of tokens. The role `watch` may read, `command` may do all."""
 _TAGS = {
     "missions": "What is to be done, by whom; every change is a new version.",
-    "plans": "Who does what, in which order.",
+    "plans": "Which robot does what, in which order.",
     "jobs": "Long work.",
     "runs": "Plans that are carried out.",
     "records": "What happened.",
-    "actions": "Who commanded what.",
+    "actions": "What users did.",
     "about": "This server.",
 }
 _PAGE = """<!doctype html>

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, WebSocket
 
 from muster.exchange.mission_control import Job, JobState
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk
+from muster.server.api.dependencies import TheServices, TheUser
 from muster.server.api.parameter_types import JobId, Limit, MissionQuery
 from muster.server.api.responses import errors
 from muster.server.api.sockets import message, tell
@@ -20,40 +20,40 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 
 @router.get("", summary="List jobs")
 async def jobs(
-    desk: TheDesk,
+    services: TheServices,
     state: Annotated[JobState | None, Query(description="Only those.")] = None,
     mission: MissionQuery = None,
     limit: Limit = 200,
 ) -> list[Job]:
     """Newest first."""
-    return list(await desk.jobs.list(state, mission, limit))
+    return list(await services.jobs.list(state, mission, limit))
 
 
 @router.get("/{job}", summary="See how far a job is")
-async def job(desk: TheDesk, job: JobId) -> Job:
+async def job(services: TheServices, job: JobId) -> Job:
     """Its `progress`; when it is done its `result`, when it failed its `error`."""
-    return await desk.jobs.get(job)
+    return await services.jobs.get(job)
 
 
 @router.delete("/{job}", summary="Cancel a job", responses=errors(409))
-async def cancel(desk: TheDesk, who: Asker, job: JobId) -> Job:
+async def cancel(services: TheServices, who: TheUser, job: JobId) -> Job:
     """Its process ends at once."""
-    return await desk.jobs.cancel(who, job)
+    return await services.jobs.cancel(who, job)
 
 
 @router.post("/{job}/stop", status_code=202, summary="Stop a job with what it has", responses=errors(409))
-async def stop(desk: TheDesk, who: Asker, job: JobId) -> Job:
+async def stop(services: TheServices, who: TheUser, job: JobId) -> Job:
     """Its search ends with the best plan so far, or with the first, and it is soon `done`.
 
     One that waits for its turn is `cancelled`. Asked once more, it leaves out the reasons for tasks left out.
     """
-    return await desk.jobs.stop(who, job)
+    return await services.jobs.stop(who, job)
 
 
 @router.websocket("/{job}/stream")
-async def stream(socket: WebSocket, desk: TheDesk, job: JobId) -> None:
+async def stream(socket: WebSocket, services: TheServices, job: JobId) -> None:
     """Each change of a job as `{"type": "job", ...}`, beginning with how it is, until it is over."""
-    await tell(socket, _changes(desk.jobs, job))
+    await tell(socket, _changes(services.jobs, job))
 
 
 async def _changes(jobs: Jobs, job: int) -> AsyncIterator[str]:

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, TheDesk, require_known_form
+from muster.server.api.dependencies import TheServices, TheUser, require_known_form
 from muster.server.api.parameter_types import (
     LARGEST,
     BeforeVersion,
@@ -29,7 +29,7 @@ from muster.server.api.parameter_types import (
     Text,
     VersionNumber,
 )
-from muster.server.api.responses import Responses, a_file, errors, file_answer, with_location
+from muster.server.api.responses import Responses, errors, file_described, file_response, with_location
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
 
@@ -104,22 +104,22 @@ class MissionToCheck(Body):
 
 
 @router.get("", summary="List missions")
-async def missions(desk: TheDesk) -> list[MissionEntry]:
+async def missions(services: TheServices) -> list[MissionEntry]:
     """All of them: those that were made here, and those that ship with Muster."""
-    return list(await desk.missions.list())
+    return list(await services.missions.list())
 
 
 @router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
-async def create(desk: TheDesk, who: Asker, response: Response, body: NewMission) -> MissionText:
+async def create(services: TheServices, who: TheUser, response: Response, body: NewMission) -> MissionText:
     """The mission is checked first: one with errors is not kept. Its id is made of its name."""
-    made = await desk.missions.create(who, body.text, body.files, body.name)
+    made = await services.missions.create(who, body.text, body.files, body.name)
     return _made(response, made)
 
 
 @router.post("/check", summary="Check a mission")
-async def check(desk: TheDesk, body: MissionToCheck) -> Checked:
+async def check(services: TheServices, body: MissionToCheck) -> Checked:
     """What is wrong with it, with lines; and the tasks that nobody can ever do. Nothing is kept."""
-    found = await desk.missions.check(body.text, body.files, ignore=body.ignore, time_limit=body.time_limit)
+    found = await services.missions.check(body.text, body.files, ignore=body.ignore, time_limit=body.time_limit)
     return Checked(**found)
 
 
@@ -131,13 +131,13 @@ async def check(desk: TheDesk, body: MissionToCheck) -> Checked:
     dependencies=[Depends(require_known_form)],
 )
 async def upload(
-    desk: TheDesk,
-    who: Asker,
+    services: TheServices,
+    who: TheUser,
     response: Response,
     file: Annotated[UploadFile, File(description="YAML, CSV, TSPLIB, or .plan.")],
 ) -> MissionText:
     """A file of any kind that Muster reads: it is turned into a mission file."""
-    made = await desk.missions.upload(who, _base_name(file.filename), await file.read())
+    made = await services.missions.upload(who, _base_name(file.filename), await file.read())
     return _made(response, made)
 
 
@@ -147,10 +147,10 @@ async def upload(
     responses=_WITH_ETAG,
 )
 async def mission(
-    desk: TheDesk, mission: MissionId, response: Response, version: OptionalVersion = None
+    services: TheServices, mission: MissionId, response: Response, version: OptionalVersion = None
 ) -> MissionText:
     """Its text, and what files it names."""
-    found = await desk.missions.get(mission, version)
+    found = await services.missions.get(mission, version)
     response.headers["ETag"] = _etag(found)
     return _text(found)
 
@@ -161,7 +161,12 @@ async def mission(
     responses=_WITH_ETAG | errors(409, 428),
 )
 async def save(
-    desk: TheDesk, who: Asker, mission: MissionId, response: Response, body: ChangedMission, if_match: _IfMatch = None
+    services: TheServices,
+    who: TheUser,
+    mission: MissionId,
+    response: Response,
+    body: ChangedMission,
+    if_match: _IfMatch = None,
 ) -> MissionText:
     """Keep a new version.
 
@@ -169,43 +174,43 @@ async def save(
     answer is 409 and nothing is lost.
     """
     base = _base(if_match, body.base_version)
-    saved = await desk.missions.save(who, mission, body.text, base, body.files, body.note)
+    saved = await services.missions.save(who, mission, body.text, base, body.files, body.note)
     response.headers["ETag"] = _etag(saved)
     return _text(saved)
 
 
 @router.delete("/{mission}", status_code=204, summary="Delete a mission", responses=errors(409))
-async def delete(desk: TheDesk, who: Asker, mission: MissionId) -> None:
+async def delete(services: TheServices, who: TheUser, mission: MissionId) -> None:
     """It is not listed any more; its plans and runs stay."""
-    await desk.missions.delete(who, mission)
+    await services.missions.delete(who, mission)
 
 
 @router.get("/{mission}/versions", summary="List the versions of a mission")
 async def versions(
-    desk: TheDesk, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
+    services: TheServices, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
 ) -> list[VersionEntry]:
     """Newest first; ask again with `before` the last `version` for more."""
-    return list(await desk.missions.versions(mission, limit, before))
+    return list(await services.missions.versions(mission, limit, before))
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")
-async def version(desk: TheDesk, mission: MissionId, number: VersionNumber) -> MissionText:
+async def version(services: TheServices, mission: MissionId, number: VersionNumber) -> MissionText:
     """As it was then."""
-    return _text(await desk.missions.get(mission, number))
+    return _text(await services.missions.get(mission, number))
 
 
 @router.get(
     "/{mission}/files/{name}",
     summary="Read a file of a mission",
     response_class=Response,
-    responses=a_file("application/octet-stream", what="The file."),
+    responses=file_described("application/octet-stream", what="The file."),
 )
-async def file(desk: TheDesk, mission: MissionId, name: FileName, version: OptionalVersion = None) -> Response:
+async def file(services: TheServices, mission: MissionId, name: FileName, version: OptionalVersion = None) -> Response:
     """A floor plan, a table: what the mission names."""
-    found = await desk.missions.get(mission, version)
+    found = await services.missions.get(mission, version)
     if name not in found.files:
         raise NotFoundError(f"no file {name} in mission {mission}; expected one of {', '.join(found.files) or 'none'}")
-    return file_answer(found.files[name], name, "application/octet-stream")
+    return file_response(found.files[name], name, "application/octet-stream")
 
 
 @router.put(
@@ -220,8 +225,8 @@ async def file(desk: TheDesk, mission: MissionId, name: FileName, version: Optio
     },
 )
 async def put_file(
-    desk: TheDesk,
-    who: Asker,
+    services: TheServices,
+    who: TheUser,
     mission: MissionId,
     name: FileName,
     request: Request,
@@ -231,8 +236,8 @@ async def put_file(
 ) -> MissionText:
     """The body is the file. This makes a new version of the mission."""
     base, data = _base(if_match, base_version), await request.body()
-    found = await desk.missions.get(mission, base)
-    saved = await desk.missions.save(who, mission, found.text, base, {**found.files, name: data}, f"file {name}")
+    found = await services.missions.get(mission, base)
+    saved = await services.missions.save(who, mission, found.text, base, {**found.files, name: data}, f"file {name}")
     response.headers["ETag"] = _etag(saved)
     return _text(saved)
 

@@ -10,7 +10,7 @@ from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from muster.mission.model import IGNORABLE
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.server.services import uploads
 
 LARGEST = 2**31 - 1
@@ -80,5 +80,5 @@ IgnoredQuery = Annotated[
     Ignored | None,
     Query(description="Rules that do not hold. Default: those that were ignored when the server made the plan."),
 ]
-"""Words that the planning request checks, with the command's texts; their schema names them all the same."""
+"""The planning request checks the values, with the texts of the command; the schema lists them."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

@@ -11,7 +11,7 @@ from muster.exchange.mission_control import Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, IdempotencyKey, TheDesk, key_of
+from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import (
     LARGEST,
     Before,
@@ -28,19 +28,21 @@ from muster.server.api.parameter_types import (
     Seed,
     TaskQuery,
 )
-from muster.server.api.responses import a_file, errors, file_answer, parcel_answer, with_location
+from muster.server.api.responses import archive_response, errors, file_described, file_response, with_location
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
 Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
 Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
-ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
+ExportTo = Annotated[
+    str, Query(max_length=50, description="qgc, geojson, gpx, kml, csv, plan, or a format of an installed package.")
+]
 PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
 _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
 
 
-class Wanted(Body):
+class PlanToMake(Body):
     """How a mission is to be planned; what is left out is as `muster solve` has it."""
 
     allocator: Name | None = Field(default=None, description=HELP["allocator"], examples=["search"])
@@ -68,17 +70,17 @@ class Wanted(Body):
     responses=with_location(202, "It is under way; the job says how far it is.") | errors(409),
 )
 async def ask(
-    desk: TheDesk,
-    who: Asker,
+    services: TheServices,
+    who: TheUser,
     mission: MissionId,
     response: Response,
-    body: Wanted,
+    body: PlanToMake,
     idempotency_key: IdempotencyKey = None,
 ) -> Job:
     """Long work: the answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
     given = body.model_dump(exclude={"version"}, exclude_none=True, exclude_defaults=True)
     request = key_of(who, idempotency_key, f"/missions/{mission}/plans", body)
-    job = await desk.jobs.ask_plan(who, mission, body.version, request=request, **given)
+    job = await services.jobs.ask_plan(who, mission, body.version, request=request, **given)
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job
 
@@ -90,59 +92,61 @@ async def ask(
     responses=with_location(201, "It is kept.") | errors(409),
 )
 async def upload(
-    desk: TheDesk,
-    who: Asker,
+    services: TheServices,
+    who: TheUser,
     mission: MissionId,
     response: Response,
     plan: Annotated[dict[str, Any], Field(examples=[_PLAN])],
 ) -> PlanEntry:
     """The body is a plan file (`muster-plan/1`), also one of another program."""
-    entry = await desk.plans.upload(who, mission, plan)
+    entry = await services.plans.upload(who, mission, plan)
     response.headers["Location"] = f"/api/v1/plans/{entry.id}"
     return entry
 
 
 @router.get("/plans", summary="List plans")
 async def plans(
-    desk: TheDesk, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
+    services: TheServices, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
 ) -> list[PlanEntry]:
     """Newest first, without their routes, histories and books; ask again with `before` the last `id` for more."""
-    return list(await desk.plans.list(mission, limit, before))
+    return list(await services.plans.list(mission, limit, before))
 
 
 @router.get("/plans/{plan}", summary="Read a plan")
-async def plan(desk: TheDesk, plan: PlanId) -> PlanEntry:
+async def plan(services: TheServices, plan: PlanId) -> PlanEntry:
     """Its `plan` is a plan file."""
-    return await desk.plans.get(plan)
+    return await services.plans.get(plan)
 
 
 @router.get("/plans/{plan}/verdict", summary="Judge a plan")
 async def verdict(
-    desk: TheDesk,
+    services: TheServices,
     plan: PlanId,
     ignore: IgnoredQuery = None,
     objective: Annotated[Objective | None, Query(description="That was to be minimised.")] = None,
 ) -> dict[str, Any]:
     """Whether it is admissible, all figures, who is where when: from scratch, by code that no allocator uses."""
-    return dict(await desk.plans.verdict(plan, ignore, objective))
+    return dict(await services.plans.verdict(plan, ignore, objective))
 
 
 @router.get("/plans/{plan}/explain", summary="Say why")
-async def explain(desk: TheDesk, plan: PlanId, task: TaskQuery = None, ignore: IgnoredQuery = None) -> dict[str, Any]:
+async def explain(
+    services: TheServices, plan: PlanId, task: TaskQuery = None, ignore: IgnoredQuery = None
+) -> dict[str, Any]:
     """Why tasks are left out; of one task, why this robot does it and not another."""
-    return dict(await desk.plans.explain(plan, task, ignore))
+    return dict(await services.plans.explain(plan, task, ignore))
 
 
 @router.get(
     "/plans/{plan}/export",
     summary="Write a plan for other tools",
     response_class=Response,
-    responses=a_file(
+    responses=file_described(
         "application/octet-stream", "application/zip", what="The file; of qgc a ZIP with a file for each robot."
     ),
 )
 async def export(
-    desk: TheDesk,
+    services: TheServices,
     plan: PlanId,
     to: ExportTo,
     ignore: IgnoredQuery = None,
@@ -153,30 +157,30 @@ async def export(
 ) -> Response:
     """As `muster export` writes it."""
     options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
-    files = await desk.plans.export(
+    files = await services.plans.export(
         plan, to, {name: value for name, value in options.items() if value is not None}, ignore
     )
-    return await parcel_answer(files, f"plan-{plan}")
+    return await archive_response(files, f"plan-{plan}")
 
 
 @router.get(
     "/plans/{plan}/picture",
     summary="Draw a plan",
     response_class=Response,
-    responses=a_file(*_PICTURES.values(), what="The picture."),
+    responses=file_described(*_PICTURES.values(), what="The picture."),
 )
 async def picture(
-    desk: TheDesk,
+    services: TheServices,
     plan: PlanId,
     what: Annotated[Literal["routes", "gantt"], Query(description="On the map, or in time.")] = "routes",
     form: Annotated[Literal["png", "svg"], Query(alias="format")] = "svg",
 ) -> Response:
     """Routes on the map, or the time chart."""
-    data = await desk.plans.picture(plan, what, form)
-    return file_answer(data, f"plan-{plan}-{what}.{form}", _PICTURES[form], shown_in_place=True)
+    data = await services.plans.picture(plan, what, form)
+    return file_response(data, f"plan-{plan}-{what}.{form}", _PICTURES[form], shown_in_place=True)
 
 
 @router.get("/plans/{plan}/compare/{other}", summary="Compare two plans")
-async def compare(desk: TheDesk, plan: PlanId, other: PlanId) -> dict[str, Any]:
+async def compare(services: TheServices, plan: PlanId, other: PlanId) -> dict[str, Any]:
     """What differs: figures, and who does which task."""
-    return dict(await desk.plans.compare(plan, other))
+    return dict(await services.plans.compare(plan, other))

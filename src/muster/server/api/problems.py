@@ -38,7 +38,7 @@ _SAID: Mapping[str, str] = {
 log = logging.getLogger("muster.api")
 
 
-class FoundWrong(BaseModel):
+class ProblemFinding(BaseModel):
     """One thing that is wrong, and where."""
 
     file: str
@@ -55,7 +55,7 @@ class Problem(BaseModel):
     title: str = Field(description="The type in words.")
     status: int = Field(description="The status of HTTP.")
     error: str = Field(description="For a person; one line, or one for each finding.")
-    findings: list[FoundWrong]
+    findings: list[ProblemFinding]
 
 
 def problem(

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Response
 
 from muster.exchange.mission_control import Run
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheDesk
+from muster.server.api.dependencies import TheServices
 from muster.server.api.parameter_types import Limit, RunId
-from muster.server.api.responses import a_file, errors, file_answer, parcel_answer
+from muster.server.api.responses import archive_response, errors, file_described, file_response
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 
@@ -18,47 +18,48 @@ ExportTo = Literal["csv", "geojson", "gpx", "kml", "json"]
 
 
 @router.get("", summary="List records")
-async def records(desk: TheDesk, limit: Limit = 200) -> list[Run]:
+async def records(services: TheServices, limit: Limit = 200) -> list[Run]:
     """Runs that are over, newest first."""
-    return list(await desk.records.list(limit))
+    return list(await services.records.list(limit))
 
 
 @router.get(
     "/{run}/page.html",
     summary="Replay a record",
     response_class=Response,
-    responses=a_file("text/html", what="A page that needs nothing but itself.") | errors(409),
+    responses=file_described("text/html", what="A page that needs nothing but itself.") | errors(409),
 )
-async def page(desk: TheDesk, run: RunId) -> Response:
+async def page(services: TheServices, run: RunId) -> Response:
     """The page that `muster replay --html` writes."""
-    html = await desk.records.page(run)
-    return file_answer(html.encode(), f"run-{run}.html", "text/html; charset=utf-8", shown_in_place=True)
+    html = await services.records.page(run)
+    return file_response(html.encode(), f"run-{run}.html", "text/html; charset=utf-8", shown_in_place=True)
 
 
 @router.get(
     "/{run}/record.mcap",
     summary="Take a record away",
     response_class=Response,
-    responses=a_file("application/octet-stream", what="An MCAP file, for `muster replay` and Foxglove.") | errors(409),
+    responses=file_described("application/octet-stream", what="An MCAP file, for `muster replay` and Foxglove.")
+    | errors(409),
 )
-async def mcap(desk: TheDesk, run: RunId) -> Response:
+async def mcap(services: TheServices, run: RunId) -> Response:
     """What happened, as docs/records.md describes it."""
-    return file_answer(await desk.records.mcap(run), f"run-{run}.mcap", "application/octet-stream")
+    return file_response(await services.records.mcap(run), f"run-{run}.mcap", "application/octet-stream")
 
 
 @router.get("/{run}/flown", summary="Compare what was planned and flown", responses=errors(409))
-async def flown(desk: TheDesk, run: RunId) -> dict[str, Any]:
+async def flown(services: TheServices, run: RunId) -> dict[str, Any]:
     """Of the whole, of each robot, of each task."""
-    return dict(await desk.records.flown(run))
+    return dict(await services.records.flown(run))
 
 
 @router.get(
     "/{run}/export",
     summary="Write a record for other tools",
     response_class=Response,
-    responses=a_file("application/octet-stream", "application/zip", what="The file, or a ZIP of several.")
+    responses=file_described("application/octet-stream", "application/zip", what="The file, or a ZIP of several.")
     | errors(409),
 )
-async def export(desk: TheDesk, run: RunId, to: ExportTo) -> Response:
+async def export(services: TheServices, run: RunId, to: ExportTo) -> Response:
     """Tracks and events for spreadsheets and maps."""
-    return await parcel_answer(await desk.records.export(run, to), f"run-{run}")
+    return await archive_response(await services.records.export(run, to), f"run-{run}")

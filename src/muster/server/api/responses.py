@@ -9,7 +9,7 @@ from urllib.parse import quote
 from starlette.responses import Response
 
 from muster.server.problem import MEDIA_TYPE
-from muster.server.services.archives import parcel
+from muster.server.services.archives import archive_of
 
 Responses = dict[int | str, dict[str, Any]]
 
@@ -37,7 +37,7 @@ def errors(*statuses: int) -> Responses:
     return {status: {"description": _WHY[status], "content": {MEDIA_TYPE: {"schema": schema}}} for status in statuses}
 
 
-def a_file(*kinds: str, what: str) -> Responses:
+def file_described(*kinds: str, what: str) -> Responses:
     """The description of an answer that is a file of one of these media types."""
     schema = {"type": "string", "contentMediaType": "application/octet-stream"}
     header = {"description": "How the file is called.", "schema": {"type": "string"}}
@@ -53,7 +53,7 @@ def with_location(status: int, what: str, *, etag: bool = False) -> Responses:
     return {status: {"description": what, "headers": headers}}
 
 
-def file_answer(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:
+def file_response(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:
     """A file as it is: a browser keeps it, or shows it without letting it reach anything of this site."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "._- ") else "_" for c in name) or "file"
     how = "inline" if shown_in_place else "attachment"
@@ -66,7 +66,7 @@ def file_answer(data: bytes, name: str, kind: str, *, shown_in_place: bool = Fal
     return Response(data, headers=headers, media_type=kind)
 
 
-async def parcel_answer(files: Mapping[str, str], name: str) -> Response:
+async def archive_response(files: Mapping[str, str], name: str) -> Response:
     """Files by their names, in base64, as one answer: as it is if it is one, otherwise packed into a ZIP."""
-    data, called = await parcel(files, name)
-    return file_answer(data, called, "application/octet-stream" if len(files) == 1 else "application/zip")
+    data, called = await archive_of(files, name)
+    return file_response(data, called, "application/octet-stream" if len(files) == 1 else "application/zip")

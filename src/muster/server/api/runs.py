@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
-from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run, World
+from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run
 from muster.mission.errors import ParameterError
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import Asker, IdempotencyKey, TheDesk, key_of
+from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import LARGEST, After, Body, Limit, Name, RunId
 from muster.server.api.responses import errors, with_location
 from muster.server.api.sockets import message, tell
@@ -28,14 +28,14 @@ class NewRun(Body):
     """A plan to be carried out."""
 
     plan: int = Field(ge=1, le=LARGEST, description="Its id.", examples=[1])
-    world: World = "kinematic"
+    world: Name = Field(default="kinematic", description="GET /about says which there are.")
     speed: Speed | None = Field(default=1.0, description="Times real time; null: as fast as it goes.")
     settings: dict[Name, Any] = Field(
         default={}, max_length=50, description="`seed`, `dt_s`, `avoidance`, `noise`; of a bridge what it needs."
     )
 
 
-class Wish(Body):
+class ActionToTake(Body):
     """What is to be done to a run."""
 
     verb: Literal["pause", "resume", "speed", "cancel", "event"]
@@ -49,48 +49,50 @@ class Wish(Body):
 
 @router.post("", status_code=201, summary="Start a run", responses=with_location(201, "It has begun.") | errors(409))
 async def start(
-    desk: TheDesk, who: Asker, response: Response, body: NewRun, idempotency_key: IdempotencyKey = None
+    services: TheServices, who: TheUser, response: Response, body: NewRun, idempotency_key: IdempotencyKey = None
 ) -> Run:
     """A process of its own carries the plan out, and goes on after a crash of the server."""
     if taken := sorted(body.settings.keys() & _NO_SETTINGS):
         raise ParameterError(f"settings: {taken[0]}; expected it beside settings, if at all")
     request = key_of(who, idempotency_key, "/runs", body)
-    run = await desk.runs.start(who, body.plan, world=body.world, speed=body.speed, request=request, **body.settings)
+    run = await services.runs.start(
+        who, body.plan, world=body.world, speed=body.speed, request=request, **body.settings
+    )
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run
 
 
 @router.get("", summary="List runs")
-async def runs(desk: TheDesk, limit: Limit = 200) -> list[Run]:
+async def runs(services: TheServices, limit: Limit = 200) -> list[Run]:
     """Newest first."""
-    return list(await desk.runs.list(limit))
+    return list(await services.runs.list(limit))
 
 
 @router.get("/{run}", summary="See how a run is")
-async def run(desk: TheDesk, run: RunId) -> Run:
+async def run(services: TheServices, run: RunId) -> Run:
     """Its state, and its report when it is over."""
-    return await desk.runs.get(run)
+    return await services.runs.get(run)
 
 
 @router.post("/{run}/actions", status_code=202, summary="Act upon a run", responses=errors(409))
-async def act(desk: TheDesk, who: Asker, run: RunId, body: Wish) -> Action:
+async def act(services: TheServices, who: TheUser, run: RunId, body: ActionToTake) -> Action:
     """Pause, go on, change the speed, cancel; or let an event happen: a new task, a robot that fails or is recalled.
 
     Its `outcome` is told by the stream, and by GET /actions.
     """
-    return await desk.runs.act(who, run, body.verb, body.data)
+    return await services.runs.act(who, run, body.verb, body.data)
 
 
 @router.get("/{run}/events", summary="Read the log of a run")
-async def events(desk: TheDesk, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
+async def events(services: TheServices, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
     """In order; ask again with `after` the last `seq` for more."""
-    return list(await desk.runs.entries(run, after, limit))
+    return list(await services.runs.entries(run, after, limit))
 
 
 @router.get("/{run}/report", summary="Read the report of a run", responses=errors(409))
-async def report(desk: TheDesk, run: RunId) -> dict[str, Any]:
+async def report(services: TheServices, run: RunId) -> dict[str, Any]:
     """What it took: as `muster simulate --format json` prints it; 409 as long as it goes on."""
-    found = await desk.runs.get(run)
+    found = await services.runs.get(run)
     if found.report is None:
         why = "has no report" if found.state in OVER else f"is {found.state}"
         raise ConflictError(f"run {run} {why}; expected one that has ended")
@@ -99,11 +101,11 @@ async def report(desk: TheDesk, run: RunId) -> dict[str, Any]:
 
 @router.websocket("/{run}/stream")
 async def stream(
-    socket: WebSocket, desk: TheDesk, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
+    socket: WebSocket, services: TheServices, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
 ) -> None:
     """What happens, as it happens: docs/mission-control-api.md describes the messages."""
-    feed = desk.runs.feed(run)
-    await tell(socket, _past(desk.runs, run, after) if feed is None else feed.watch(after))
+    feed = services.runs.feed(run)
+    await tell(socket, _past(services.runs, run, after) if feed is None else feed.watch(after))
 
 
 async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:

@@ -1,12 +1,12 @@
-"""The web page of mission control: views of what the desk can do, by NiceGUI. Nothing of it comes from elsewhere.
+"""The web page of mission control: views of what the services can do, by NiceGUI. Nothing of it comes from elsewhere.
 
 | part | what it does |
 |---|---|
 | `frame` | what every view has: header, navigation, keyboard help, theme |
-| `asking` | who looks at a page, and at which desk |
+| `visitor` | the user of a page, and the services that it shows |
 | `sockets` | whose page it is: nobody presses the buttons of another's |
-| `notices` | errors of the desk, and news, for a person |
-| `pressing` | buttons that do something once, however often they are clicked |
+| `notices` | errors of the services, and news, for a person |
+| `buttons` | buttons that do something once, however often they are clicked |
 | `map` | the map, an element with its own scripts |
 """
 
@@ -21,27 +21,29 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.errors import MissingExtraError
 from muster.server.pages.sockets import OwnUploads, guard_sockets
-from muster.server.pages.visitor import Asked, WithDesk
+from muster.server.pages.visitor import PageContext, WithServices
 
 if TYPE_CHECKING:
-    from muster.server.services.services import Desk
+    from muster.server.services.services import Services
 
 _VIEWS = ("missions", "plan", "live", "records")
 _ICON = Path(__file__).parent / "assets" / "icon.svg"
 
 
-def mount(app: FastAPI, desk: Callable[[], Desk], who_of: Callable[[HTTPConnection], Who] | None = None) -> None:
+def mount(
+    app: FastAPI, services: Callable[[], Services], user_of: Callable[[HTTPConnection], User] | None = None
+) -> None:
     """Put the pages under `app`, after its other routes.
 
     Parameters
     ----------
-    desk
-        gives the desk, when the application has started.
-    who_of
-        says who asks; without it `security.who_of`.
+    services
+        gives the services, when the application has started.
+    user_of
+        says who asks; without it `security.user_of`.
 
     Raises
     ------
@@ -53,16 +55,16 @@ def mount(app: FastAPI, desk: Callable[[], Desk], who_of: Callable[[HTTPConnecti
         from nicegui import ui
     except ModuleNotFoundError:
         raise MissingExtraError("web", "mission control") from None
-    if who_of is None:
-        who_of = import_module("muster.server.security").who_of
-        assert who_of is not None
+    if user_of is None:
+        user_of = import_module("muster.server.security").user_of
+        assert user_of is not None
     for view in _VIEWS:
         if find_spec(f"{__name__}.{view}"):
             import_module(f"{__name__}.{view}")
     pages.middleware_stack = None  # so that a second server in one process (a test) may add its own
     guard_sockets()
     app.add_middleware(OwnUploads)
-    app.add_middleware(WithDesk, asked=Asked(desk, who_of))
+    app.add_middleware(WithServices, context=PageContext(services, user_of))
     ui.run_with(
         app,
         title="Muster",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nicegui import app, ui
 
-from muster.server.pages.visitor import is_logged_in, on_the_wall, the_asker
+from muster.server.pages.visitor import is_logged_in, on_the_wall, the_user
 
 VIEWS = (("Missions", "/", "m"), ("Plan", "/plan", "p"), ("Live", "/live", "l"), ("Records", "/records", "r"))
 _KEYS = {
@@ -35,7 +35,8 @@ def frame(view: str, title: str = "", keys: Mapping[str, str] | None = None) -> 
     """
     wall = on_the_wall()
     ui.page_title(f"{title or view} · Muster")
-    ui.query("body").classes("wall" if wall else "desk")
+    if wall:
+        ui.query("body").classes("wall")
     content = ui.element("div").classes("view").props(f'aria-label="{view}"')
     if not wall:
         _header(view)
@@ -56,7 +57,7 @@ def _header(view: str) -> None:
                 link = ui.link(name, path).classes("view-link")
                 if name == view:
                     link.classes("here").props('aria-current="page"')
-        who = the_asker()
+        who = the_user()
         may = "may command" if who.role == "command" else "may only watch"
         with ui.element("div").classes("who").props(f'title="{may}"'):
             ui.label(who.name)

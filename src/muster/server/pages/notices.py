@@ -1,4 +1,4 @@
-"""Errors of the desk, and news, for a person: never a traceback, and never silence."""
+"""Errors of the services, and news, for a person: never a traceback, and never silence."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from urllib.parse import parse_qs
 from nicegui import Client, core
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from muster.server.pages.visitor import who_in
+from muster.server.pages.visitor import user_in
 from muster.server.security.refusal import RefusalError
 
 _SAID = ("handshake", "event", "javascript_response", "ack")
@@ -55,10 +55,10 @@ def guard_sockets() -> None:
 
         return said
 
-    async def unheard(sid: str, message: Any) -> None: ...
+    async def ignored(sid: str, message: Any) -> None: ...
 
     core.sio.on("connect", connect)
-    core.sio.on("log", unheard)
+    core.sio.on("log", ignored)
     for name in _SAID:
         core.sio.on(name, asked(name))
 
@@ -81,5 +81,5 @@ def is_own(page: str, scope: Scope) -> bool:
     client = Client.instances.get(page)
     if client is None:
         return False
-    opened, now = who_in(client.request.scope), who_in(scope)
+    opened, now = user_in(client.request.scope), user_in(scope)
     return (opened.name, opened.role) == (now.name, now.role)

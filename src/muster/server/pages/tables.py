@@ -8,7 +8,7 @@ from html import escape
 from nicegui import ui
 
 Cell = str | tuple[str, str]
-"""Words, or words and the address that they link to."""
+"""Text, or words and the address that they link to."""
 
 
 def table(

@@ -1,4 +1,4 @@
-"""Who looks at a page, and at which desk: known from the request with which the page was opened."""
+"""The user of a page and the services that it shows, known from the request with which the page was opened."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from nicegui import ui
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from muster.exchange.mission_control import Who
-from muster.server.security.authentication import SCOPE_KEY, Asker
+from muster.exchange.mission_control import User
+from muster.server.security.authentication import SCOPE_KEY, Caller
 
 if TYPE_CHECKING:
-    from muster.server.services.services import Desk
+    from muster.server.services.services import Services
 
 PATIENCE_S = 20.0
 """For each page: NiceGUI answers with an error page where one is not built, or as far as `is_seen`, within this.
@@ -25,50 +25,50 @@ _KEY = "muster.pages"
 
 
 @dataclass(frozen=True)
-class Asked:
+class PageContext:
     """What pages need of the server that they are mounted in."""
 
-    desk: Callable[[], Desk]
-    who_of: Callable[[HTTPConnection], Who]
+    services: Callable[[], Services]
+    user_of: Callable[[HTTPConnection], User]
 
 
-class WithDesk:
-    """Middleware: requests know the desk, so that pages, which NiceGUI keeps once a process, ask the right one."""
+class WithServices:
+    """Middleware: requests know the services, so that pages, which NiceGUI keeps once a process, ask the right one."""
 
-    def __init__(self, app: ASGIApp, asked: Asked) -> None:
+    def __init__(self, app: ASGIApp, context: PageContext) -> None:
         self._app = app
-        self._asked = asked
+        self._context = context
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        scope[_KEY] = self._asked
+        scope[_KEY] = self._context
         await self._app(scope, receive, send)
 
 
-def the_desk() -> Desk:
-    """The desk of the page that is built or used now."""
-    return _asked().desk()
+def the_services() -> Services:
+    """The services of the page that is built or used now."""
+    return _context().services()
 
 
-def the_asker() -> Who:
-    """Who looks at the page that is built or used now."""
-    return _asked().who_of(ui.context.client.request)
+def the_user() -> User:
+    """The user of the page that is built or used now."""
+    return _context().user_of(ui.context.client.request)
 
 
 def is_logged_in() -> bool:
-    """Whether whoever looks came by the page's own login, and may leave by it."""
-    asker = ui.context.client.request.scope.get(SCOPE_KEY)
-    return isinstance(asker, Asker) and asker.session is not None
+    """Whether the user came by the page's own login, and may leave by it."""
+    caller = ui.context.client.request.scope.get(SCOPE_KEY)
+    return isinstance(caller, Caller) and caller.session is not None
 
 
-def who_in(scope: Scope) -> Who:
-    """Who asks, of any request or WebSocket of the application."""
-    asked: Asked = scope[_KEY]
-    return asked.who_of(HTTPConnection(scope))
+def user_in(scope: Scope) -> User:
+    """The user of any request or WebSocket of the application."""
+    context: PageContext = scope[_KEY]
+    return context.user_of(HTTPConnection(scope))
 
 
 def may_command() -> bool:
-    """Whether whoever looks may do more than that."""
-    return the_asker().role == "command"
+    """Whether the user may do more than watch."""
+    return the_user().role == "command"
 
 
 def on_the_wall() -> bool:
@@ -87,6 +87,6 @@ async def is_seen() -> bool:
     return not client.is_deleted
 
 
-def _asked() -> Asked:
-    asked: Asked = ui.context.client.request.scope[_KEY]
-    return asked
+def _context() -> PageContext:
+    context: PageContext = ui.context.client.request.scope[_KEY]
+    return context

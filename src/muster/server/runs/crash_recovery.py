@@ -13,7 +13,7 @@ from typing import Any
 from muster.execution import Deed, Past
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
-from muster.report.record.mission_state import Situation
+from muster.report.record.mission_state import MissionState
 
 BARRED = "it was begun before a crash, and may be begun at most once; its end is not known"
 _OURS = ("plan", "report", "command", "resumed", "robot_joins")
@@ -31,7 +31,7 @@ class Aftermath:
 
 def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Aftermath:
     """What a log says: entries with `time_s`, `kind`, `data`."""
-    situation = Situation(mission)
+    situation = MissionState(mission)
     arrives: dict[str, float] = {}
     starts: dict[str, float] = {}
     done: dict[str, Deed] = {}

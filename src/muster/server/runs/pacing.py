@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from muster.mission.clock import Clock
 
-_LATE_S = 0.5
+_LATE_S = 5.0
 """Seconds by which it may be late and still makes up for it."""
 
 

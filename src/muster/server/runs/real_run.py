@@ -100,6 +100,9 @@ class RealCourse:
         self._live.executor.come_to(self.time_s)
         self._live.executor.report(event)
 
+    def replan(self) -> None:
+        """Nothing: the rest is planned again at the next look at the robots."""
+
     def break_off(self, reason: str) -> Report:
         self._fleet.stop()
         report = broken_off(self._live.result(), self._live.executor.account, reason)

@@ -18,7 +18,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import plan_from
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
-from muster.report.record.mission_state import Situation
+from muster.report.record.mission_state import MissionState
 from muster.server.runs.exports import EXPORTS
 from muster.server.runs.tracks import VALUES, Steps, unpacked
 from muster.server.work.missions import mission_of
@@ -53,7 +53,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches: Sequence[Steps]) -> None:
     """Tell a run's log and tracks to a writer of records, in the order of time, steps before events."""
-    situation, steps = Situation(mission), _steps(stretches)
+    situation, steps = MissionState(mission), _steps(stretches)
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
         for entry in log:

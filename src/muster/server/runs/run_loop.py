@@ -18,6 +18,8 @@ from muster.server.runs.user_events import event_given
 STATES_S, STATUS_S, SHARE_S = 0.095, 0.5, 0.5
 """Seconds of the wall clock between two tellings of where robots are, what they do, how far a crash is made good."""
 HEAR_S = 0.05
+STEPS_FIRST_S = 0.5
+"""After orders time goes on for so many seconds of the wall clock, if it is behind its pace, before more are heard."""
 CANCELLED = "not done when the run was cancelled"
 
 
@@ -36,6 +38,7 @@ class Course(Protocol):
     def status(self) -> Status: ...
     def go_on(self) -> None: ...
     def report(self, event: Event) -> None: ...
+    def replan(self) -> None: ...
     def break_off(self, reason: str) -> Report: ...
     def pause(self) -> None: ...
     def resume(self) -> None: ...
@@ -71,7 +74,8 @@ class Performance:
         self._course, self._scribe, self._inbox, self._outbox = course, scribe, inbox, outbox
         self._clock, self._ended = clock or SystemClock(), ended
         self._pace = Pace(self._clock, speed, course.time_s)
-        self._paused = self._cancelled = False
+        self._paused = self._cancelled = self._must_replan = False
+        self._steps_until = -1e9
         self._obeyed: set[int] = set()
         self._told: Mapping[str, Any] | None = None
         self._states_at = self._status_at = self._share_at = -1e9
@@ -87,7 +91,7 @@ class Performance:
         for entry in log:
             if entry["kind"] == "command":
                 self._go_to(entry["time_s"], until_s)
-                self._obey(_asked(entry["data"]))
+                self._obey(_asked(entry["data"]), more=entry["data"].get("more", False))
         self._go_to(until_s, until_s)
         if self._scribe.catching_up:
             raise DivergedError("simulated again, it ends before the log does")
@@ -116,9 +120,9 @@ class Performance:
         self._pace.set(self._pace.speed, self._course.time_s)
         self._tell(at_once=True)
         while not self._over and not self._ended():
-            asked = self._inbox.take(self._wait_s)
-            if asked is not None:
-                self._obey(asked)
+            orders = self._waiting_orders()
+            if orders:
+                self._obey_all(orders)
             elif self._outbox.full and not self._course.real:
                 time.sleep(HEAR_S)
             elif self._course.real or not (self._paused or self._pace.wait_s(self._course.next_s) > 0):
@@ -137,6 +141,27 @@ class Performance:
             return 0.0  # robots are heard meanwhile, which takes its time
         return None if self._paused else self._pace.wait_s(self._course.next_s)
 
+    def _waiting_orders(self) -> list[Mapping[str, Any]]:
+        """All that users have asked for by now, waited for until time goes on.
+
+        After orders time goes on first, for a while: planning for them may have taken longer than the pace allows.
+        """
+        wait_s = self._wait_s
+        if wait_s == 0 and self._clock.now() < self._steps_until and not self._course.real:
+            return []
+        orders, order = [], self._inbox.take(wait_s)
+        while order is not None:
+            orders.append(order)
+            order = self._inbox.take(0.0)
+        return [order for order in orders if order["id"] not in self._obeyed]
+
+    def _obey_all(self, orders: Sequence[Mapping[str, Any]]) -> None:
+        """Do what users asked for, in order; the rest is planned again once for all of it."""
+        for order, *later in (orders[k:] for k in range(len(orders))):
+            self._obey(order, more=bool(later))
+        self._steps_until = self._clock.now() + STEPS_FIRST_S
+        self._tell(at_once=True)
+
     def _go_to(self, time_s: float, until_s: float) -> None:
         while not self._over and self._course.time_s < time_s - 1e-9:
             self._course.go_on()
@@ -144,8 +169,14 @@ class Performance:
                 self._share_at = self._clock.now()
                 self._outbox.say({"type": "resuming", "share": round(self._course.time_s / max(until_s, 1e-9), 3)})
 
-    def _obey(self, asked: Mapping[str, Any]) -> None:
-        """Do what a user asked for; the log has it before what follows from it."""
+    def _obey(self, asked: Mapping[str, Any], *, more: bool) -> None:
+        """Do what a user asked for; the log has it before what follows from it.
+
+        Parameters
+        ----------
+        more
+            whether the rest is planned again only after what is asked for next; the log keeps that, for crashes.
+        """
         if asked["id"] in self._obeyed or self._over:
             return
         self._obeyed.add(asked["id"])
@@ -156,8 +187,11 @@ class Performance:
         except MusterError as error:
             outcome = str(error)
         said = {"action": asked["id"], "verb": asked["verb"], "data": asked["data"], "who": asked["who"]}
-        self._scribe.write_first(self._course.time_s, "command", said | {"outcome": outcome})
-        self._tell(at_once=True)
+        said |= {"outcome": outcome} | ({"more": True} if more else {})
+        self._scribe.write_first(self._course.time_s, "command", said)
+        if self._must_replan and not more and not self._over:
+            self._must_replan = False
+            self._course.replan()
 
     def _do(self, verb: str, data: Mapping[str, Any]) -> None:
         if verb == "pause":
@@ -177,6 +211,7 @@ class Performance:
             self._course.break_off(CANCELLED)
         else:
             self._course.report(event_given(data, self._course.time_s))
+            self._must_replan = True
 
     def _require(self, holds: bool, otherwise: str) -> None:
         if not holds:

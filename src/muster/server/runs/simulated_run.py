@@ -58,7 +58,11 @@ class SimulatedCourse:
             self._simulation.advance(until_s)
 
     def report(self, event: Event) -> None:
-        self._simulation.report(event)
+        self._simulation.report(event, replan=False)
+
+    def replan(self) -> None:
+        """Plan the rest again if what was reported asks for that."""
+        self._simulation.replan()
 
     def break_off(self, reason: str) -> Report:
         return self._simulation.break_off(reason)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from muster.exchange.mission_control import Action, Who
+from muster.exchange.mission_control import Action, User
 
 _1970 = datetime(1970, 1, 1, tzinfo=UTC)
 
@@ -20,7 +20,7 @@ def number_at(at: datetime) -> int:
     return -((at - _1970) // timedelta(microseconds=1))
 
 
-def unkept(who: Who, verb: str, data: Mapping[str, Any], run: int, at: datetime) -> Action:
+def unkept(who: User, verb: str, data: Mapping[str, Any], run: int, at: datetime) -> Action:
     """An action without a number of the database."""
     return Action(
         id=number_at(at), at=at, who=who.name, role=who.role, address=who.address, verb=verb, data=data, run=run

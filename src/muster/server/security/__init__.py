@@ -6,7 +6,7 @@
 | `tokens` | the file of tokens with roles; how a new one is made |
 | `sessions` | the page's signed cookie |
 | `origins` | which host a request may name, and from which origin it may come |
-| `asking` | who asks: a bearer's token, a session, a proxy's header, or whoever sits at this machine |
+| `authenticator` | who asks: a bearer's token, a session, a proxy's header, or whoever sits at this machine |
 | `limits` | how often, how much, how long, how many |
 | `headers` | what every answer tells browsers to forbid |
 | `refusals` | what was refused, in the audit log, without filling it |
@@ -14,6 +14,6 @@
 | `login` | the page's login and logout |
 """
 
-from muster.server.security.authentication import who_of
+from muster.server.security.authentication import user_of
 
-__all__ = ["who_of"]
+__all__ = ["user_of"]

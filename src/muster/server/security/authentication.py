@@ -1,4 +1,4 @@
-"""Who asks: a bearer's token, a session of the page, a reverse proxy's header, or whoever sits at this machine."""
+"""Who a request comes from: a token's holder, a session, a user whom a proxy names, or the user of this machine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.errors import ParameterError
 from muster.server.security.origins import address_in
 from muster.server.security.refusal import RefusalError, printable
@@ -19,7 +19,7 @@ from muster.server.security.sessions import COOKIE, SECURE_COOKIE, Session, Sess
 from muster.server.security.tokens import Holder, Tokens
 from muster.server.settings import Settings
 
-SCOPE_KEY = "muster.asker"
+SCOPE_KEY = "muster.caller"
 SECRET_HEADER = "x-muster-proxy-secret"  # noqa: S105 - the name of a header
 """In which a reverse proxy shows the secret that it shares with this server."""
 _SECRET_BYTES = (16, 1024)
@@ -27,10 +27,10 @@ _FORWARDED = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-real-ip")
 
 
 @dataclass(frozen=True)
-class Asker:
-    """Who asks, and how that is known: neither a holder nor a session for whoever sits at this machine."""
+class Caller:
+    """The user of a request, and how they are known: without holder and session, it is the user of this machine."""
 
-    who: Who
+    who: User
     holder: Holder | None = None
     session: Session | None = None
 
@@ -42,10 +42,10 @@ class WrongTokenError(RefusalError):
         super().__init__(401, "nobody has this token; expected one of the server's tokens file")
 
 
-def who_of(connection: HTTPConnection) -> Who:
-    """Who asks; of every request and WebSocket behind the guard, and of a page: `who_of(client.request)`."""
-    asker: Asker = connection.scope[SCOPE_KEY]
-    return asker.who
+def user_of(connection: HTTPConnection) -> User:
+    """The user of a request or WebSocket behind the guard; of a page: `user_of(client.request)`."""
+    caller: Caller = connection.scope[SCOPE_KEY]
+    return caller.who
 
 
 def read_proxy_secret(file: Path) -> bytes:
@@ -118,7 +118,7 @@ class Proxies:
         return peer
 
 
-class Asking:
+class Authenticator:
     """Finds out who asks.
 
     Parameters
@@ -138,7 +138,7 @@ class Asking:
         self._user_header = user_header.lower() if user_header else None
 
     @classmethod
-    def of(cls, settings: Settings) -> Asking:
+    def of(cls, settings: Settings) -> Authenticator:
         """As the server was asked to be; reads the tokens, and makes the secret of sessions where there is none."""
         secret = None if settings.proxy_secret is None else read_proxy_secret(settings.proxy_secret)
         proxies = Proxies(settings.trusted_proxies, secret)
@@ -153,8 +153,8 @@ class Asking:
         counting = {"host", "origin", "authorization", "content-length", SECRET_HEADER}
         return frozenset(counting | ({self._user_header} if self._user_header else set()))
 
-    def asker(self, headers: Mapping[str, str], peer: str, address: str) -> Asker | None:
-        """Who asks; None: they do not say.
+    def caller(self, headers: Mapping[str, str], peer: str, address: str) -> Caller | None:
+        """The caller; None if the request names nobody.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class Asking:
         if self.tokens is None:
             if any(name in headers for name in _FORWARDED):
                 raise RefusalError(403, "it came through a proxy; expected a server with --tokens behind one")
-            return Asker(Who("local", "command", address))
+            return Caller(User("local", "command", address))
         user = self._user(headers)
         if user and self.proxies.may_name_users(peer, headers):
             holder = self.tokens.named(user) or self.tokens.named("*")
@@ -194,7 +194,7 @@ class Asking:
         user = headers.get(self._user_header, "").strip() if self._user_header else ""
         return "" if user == "*" else user
 
-    def _of_session(self, cookies: str, address: str) -> Asker | None:
+    def _of_session(self, cookies: str, address: str) -> Caller | None:
         assert self.tokens is not None
         assert self.sessions is not None
         for value in _session_cookies(cookies):
@@ -204,17 +204,17 @@ class Asking:
                 return _held(holder, address, session)
         return None
 
-    def holds(self, asker: Asker) -> bool:
+    def holds(self, caller: Caller) -> bool:
         """Whether who asked a while ago may still do the same; asked of WebSockets, which stay."""
-        if asker.holder is None or self.tokens is None or self.sessions is None:
+        if caller.holder is None or self.tokens is None or self.sessions is None:
             return True
-        if self.tokens.named(asker.holder.name) != asker.holder:
+        if self.tokens.named(caller.holder.name) != caller.holder:
             return False
-        return asker.session is None or self.sessions.holds(asker.session)
+        return caller.session is None or self.sessions.holds(caller.session)
 
 
-def _held(holder: Holder, address: str, session: Session | None = None, name: str | None = None) -> Asker:
-    return Asker(Who(printable(name or holder.name, 64), holder.role, address), holder, session)
+def _held(holder: Holder, address: str, session: Session | None = None, name: str | None = None) -> Caller:
+    return Caller(User(printable(name or holder.name, 64), holder.role, address), holder, session)
 
 
 def _session_cookies(header: str) -> Iterator[str]:

@@ -16,11 +16,11 @@ from urllib.parse import quote
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.server.problem import MEDIA_TYPE
-from muster.server.security.authentication import SCOPE_KEY, Asker, Asking, WrongTokenError
+from muster.server.security.authentication import SCOPE_KEY, Authenticator, Caller, WrongTokenError
 from muster.server.security.headers import is_page, is_static, with_security
-from muster.server.security.limits import Body, Buckets, Places, network_of
+from muster.server.security.limits import Buckets, LimitedBody, SocketLimit, network_of
 from muster.server.security.origins import Hosts
 from muster.server.security.refusal import RefusalError, printable
 from muster.server.security.refusal_log import Audit
@@ -39,11 +39,11 @@ _PAGES_PER_S, _PAGES_AT_ONCE = 2.0, 40.0  # however few requests there may be
 _MESSAGES_PER_S = 100.0
 _FAILED_PER_S, _FAILED_AT_ONCE = 0.1, 10.0
 
-Observe = Callable[["Answered"], None]
+Observe = Callable[["CompletedRequest"], None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answered:
+class CompletedRequest:
     """A request that is over, for logs and metrics; `path` is without the query, which may hold anything."""
 
     id: str
@@ -51,15 +51,15 @@ class Answered:
     path: str
     status: int
     seconds: float
-    who: Who
+    who: User
 
 
-class Shield:
+class GuardState:
     """What the guard of one server knows; login and metrics look at it too."""
 
-    def __init__(self, settings: Settings, asking: Asking, audit: Audit) -> None:
+    def __init__(self, settings: Settings, authenticator: Authenticator, audit: Audit) -> None:
         self.settings = settings
-        self.asking = asking
+        self.authenticator = authenticator
         self.audit = audit
         self.hosts = Hosts.of(settings)
         self.tls = settings.certificate is not None
@@ -69,11 +69,11 @@ class Shield:
         pages = max(_PAGES_PER_S, rate / _REQUESTS_A_PAGE)
         self.pages = Buckets(pages, _PAGES_AT_ONCE / _PAGES_PER_S * pages)
         self.failed = Buckets(_FAILED_PER_S, _FAILED_AT_ONCE)
-        self.places = Places(settings.sockets, settings.sockets_per_address)
+        self.sockets = SocketLimit(settings.sockets, settings.sockets_per_address)
 
     def warning(self) -> str:
         """What whoever looks after the server should mend."""
-        return "" if self.asking.tokens is None else self.asking.tokens.look()
+        return "" if self.authenticator.tokens is None else self.authenticator.tokens.look()
 
     def count_wrong_token(self, address: str) -> None:
         """Count a wrong token of an address. A right token is never refused: others may share the address.
@@ -116,9 +116,9 @@ class Guard:
         is told of every request that is over.
     """
 
-    def __init__(self, app: ASGIApp, shield: Shield, observe: Observe = lambda _: None) -> None:
+    def __init__(self, app: ASGIApp, guard_state: GuardState, observe: Observe = lambda _: None) -> None:
         self.app = app
-        self._shield = shield
+        self._shield = guard_state
         self._observe = observe
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -128,17 +128,17 @@ class Guard:
         answer = _Answer(scope, send, tls=self._shield.tls)
         peer = (scope.get("client") or ("",))[0]
         request = _Request(scope, {}, peer)
-        asker = None
+        caller = None
         began = time.perf_counter()
         try:
             request = self._read(scope, peer)
-            asker = self._admitted(request, peer)
-            scope[SCOPE_KEY] = asker
-            CURRENT_USER.set(asker.who.name or network_of(request.address))
+            caller = self._admitted(request, peer)
+            scope[SCOPE_KEY] = caller
+            CURRENT_USER.set(caller.who.name or network_of(request.address))
             scope[REQUEST_KEY] = answer.id
-            await (self._socket if request.socket else self._http)(request, asker, receive, answer)
+            await (self._socket if request.socket else self._http)(request, caller, receive, answer)
         except RefusalError as refusal:
-            who = asker.who if asker else Who("", "watch", request.address)
+            who = caller.who if caller else User("", "watch", request.address)
             if refusal.status_code != 401 or isinstance(refusal, WrongTokenError):
                 self._shield.audit.refused(who, refusal.detail, answer.path, refusal.status_code)
             await answer.refuse(refusal, request)
@@ -153,12 +153,12 @@ class Guard:
                 RefusalError(500, f"internal error; the server's log says more of {answer.id}"), request
             )
         finally:
-            who = asker.who if asker else Who("", "watch", request.address)
+            who = caller.who if caller else User("", "watch", request.address)
             seconds = time.perf_counter() - began
-            answered = Answered(
+            completed = CompletedRequest(
                 id=answer.id, scope=scope, path=answer.path, status=answer.status, seconds=seconds, who=who
             )
-            self._observe(answered)
+            self._observe(completed)
 
     def _read(self, scope: Scope, peer: str) -> _Request:
         """The headers, each name once; where the request comes from.
@@ -171,64 +171,64 @@ class Guard:
         headers: dict[str, str] = {}
         for raw_name, raw in scope["headers"]:
             name, value = raw_name.decode("latin-1").lower(), raw.decode("latin-1")
-            if name in headers and name in self._shield.asking.once:
+            if name in headers and name in self._shield.authenticator.once:
                 raise RefusalError(400, f"header {name} twice; expected it once")
             headers[name] = f"{headers[name]}; {value}" if name == "cookie" and name in headers else value
-        return _Request(scope, headers, self._shield.asking.proxies.address(peer, headers))
+        return _Request(scope, headers, self._shield.authenticator.proxies.address(peer, headers))
 
-    def _admitted(self, request: _Request, peer: str) -> Asker:
-        """Who asks, if the request may be answered.
+    def _admitted(self, request: _Request, peer: str) -> Caller:
+        """The caller, if the request may be answered.
 
         Raises
         ------
         RefusalError
             if it may not.
         """
-        shield, path = self._shield, request.scope["path"]
-        if why := shield.hosts.why_not_host(request.headers.get("host", "")):
+        guard_state, path = self._shield, request.scope["path"]
+        if why := guard_state.hosts.why_not_host(request.headers.get("host", "")):
             raise RefusalError(421, why)
         if not is_static(path):
-            _take(shield.by_address, network_of(request.address))
-        asker = self._asker(request, peer)
+            _take(guard_state.by_address, network_of(request.address))
+        caller = self._caller(request, peer)
         reads_all = path.startswith("/_nicegui_ws/")  # as a request a socket of NiceGUI is, while it is polled
-        why = shield.hosts.why_not_origin(
+        why = guard_state.hosts.why_not_origin(
             request.headers,
             "https" if request.scope["scheme"] in ("https", "wss") else "http",
             changes=request.changes or reads_all,
-            by_cookie=asker is not None and asker.session is not None,
+            by_cookie=caller is not None and caller.session is not None,
         )
         if why:
             raise RefusalError(403, why)
-        if asker is None:
+        if caller is None:
             if is_static(path):
-                _take(shield.by_address, network_of(request.address))
+                _take(guard_state.by_address, network_of(request.address))
             if request.socket or request.scope["method"] not in OPEN_TO_ALL.get(path, ()):
                 raise RefusalError(401, "who asks is not known; expected Authorization: Bearer TOKEN, or a login")
-            return Asker(Who("", "watch", request.address))
-        if asker.holder is not None and not is_static(path):
-            _take(shield.by_user, asker.who.name)
+            return Caller(User("", "watch", request.address))
+        if caller.holder is not None and not is_static(path):
+            _take(guard_state.by_user, caller.who.name)
         if is_page(path):
-            _take(shield.pages, asker.who.name if asker.holder is not None else network_of(request.address))
-        return asker
+            _take(guard_state.pages, caller.who.name if caller.holder is not None else network_of(request.address))
+        return caller
 
-    def _asker(self, request: _Request, peer: str) -> Asker | None:
+    def _caller(self, request: _Request, peer: str) -> Caller | None:
         try:
-            return self._shield.asking.asker(request.headers, peer, request.address)
+            return self._shield.authenticator.caller(request.headers, peer, request.address)
         except WrongTokenError:
             self._shield.count_wrong_token(request.address)
             raise
 
-    async def _http(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
-        body = Body(receive, self._shield.settings.upload_bytes)
+    async def _http(self, request: _Request, caller: Caller, receive: Receive, answer: _Answer) -> None:
+        body = LimitedBody(receive, self._shield.settings.upload_bytes)
         body.require_announced(request.headers.get("content-length"))
         answer.body = body
         await self.app(request.scope, body.receive, answer.send)
         if body.refused is not None:
             raise body.refused
 
-    async def _socket(self, request: _Request, asker: Asker, receive: Receive, answer: _Answer) -> None:
+    async def _socket(self, request: _Request, caller: Caller, receive: Receive, answer: _Answer) -> None:
         """As long as who opened it may watch; messages that come too fast are read later."""
-        holds = self._shield.asking.holds
+        holds = self._shield.authenticator.holds
         pace = Buckets(_MESSAGES_PER_S, 4 * _MESSAGES_PER_S)
         over = False
 
@@ -242,7 +242,7 @@ class Guard:
                 return {"type": "websocket.disconnect", "code": 1008}
             message = await receive()
             if message["type"] == "websocket.receive":
-                if not holds(asker):
+                if not holds(caller):
                     await end()
                     return {"type": "websocket.disconnect", "code": 1008}
                 while wait_s := pace.take(""):
@@ -252,12 +252,12 @@ class Guard:
         async def checked(message: Message) -> None:
             if over:
                 raise OSError("the login is over")
-            if message["type"] == "websocket.send" and not holds(asker):
+            if message["type"] == "websocket.send" and not holds(caller):
                 await end()
                 raise OSError("the login is over")  # as of a connection that broke
             await answer.send(message)
 
-        with self._shield.places.place(request.address):
+        with self._shield.sockets.place(request.address):
             await self.app(request.scope, paced, checked)
 
 
@@ -279,7 +279,7 @@ class _Answer:
         self.path = printable(scope["path"])  # before mounts change it
         self.id = uuid.uuid4().hex[:12]
         self.status = 101 if scope["type"] == "websocket" else 500
-        self.body: Body | None = None
+        self.body: LimitedBody | None = None
 
     async def send(self, message: Message) -> None:
         if self.body is not None and self.body.refused is not None and not self._begun:

@@ -63,7 +63,7 @@ class Buckets:
         return min(self._burst, level + (now - since) * self._rate)
 
 
-class Places:
+class SocketLimit:
     """How many WebSockets are open, in all and of one address."""
 
     def __init__(self, most: int, most_of_one: int) -> None:
@@ -97,7 +97,7 @@ class Places:
                 del self._open[key]
 
 
-class Body:
+class LimitedBody:
     """A request's body, which may only be so large, and must come at some speed.
 
     Attributes

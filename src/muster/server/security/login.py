@@ -9,9 +9,9 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from muster.exchange.mission_control import Who
-from muster.server.security.authentication import SCOPE_KEY, Asker
-from muster.server.security.guard import Shield
+from muster.exchange.mission_control import User
+from muster.server.security.authentication import SCOPE_KEY, Caller
+from muster.server.security.guard import GuardState
 from muster.server.security.refusal import RefusalError
 from muster.server.security.sessions import COOKIE, SECURE_COOKIE
 
@@ -53,22 +53,22 @@ _PAGE = """<!doctype html>
 """
 
 
-def login_routes(shield: Shield) -> list[Route]:
+def login_routes(guard_state: GuardState) -> list[Route]:
     """`/login`, and `/logout`, to which the page posts."""
 
     async def show(request: Request) -> Response:
-        if shield.asking.tokens is None:
+        if guard_state.authenticator.tokens is None:
             return RedirectResponse("/", 303)
         return _form(request.query_params.get("next", "/"))
 
     async def log_in(request: Request) -> Response:
-        return await _logged_in(shield, request)
+        return await _logged_in(guard_state, request)
 
     async def log_out(request: Request) -> Response:
-        asker: Asker = request.scope[SCOPE_KEY]
-        if asker.session is not None and shield.asking.sessions is not None:
-            shield.asking.sessions.end(asker.session)
-            shield.audit.logged_out(asker.who)
+        caller: Caller = request.scope[SCOPE_KEY]
+        if caller.session is not None and guard_state.authenticator.sessions is not None:
+            guard_state.authenticator.sessions.end(caller.session)
+            guard_state.audit.logged_out(caller.who)
         response = RedirectResponse("/login", 303)
         for name in (COOKIE, SECURE_COOKIE):
             response.delete_cookie(name, secure=name == SECURE_COOKIE, httponly=True, samesite="strict")
@@ -81,21 +81,21 @@ def login_routes(shield: Shield) -> list[Route]:
     ]
 
 
-async def _logged_in(shield: Shield, request: Request) -> Response:
+async def _logged_in(guard_state: GuardState, request: Request) -> Response:
     """A session for a right token; the form again for a wrong one."""
-    asking = shield.asking
-    if asking.tokens is None or asking.sessions is None:
+    authenticator = guard_state.authenticator
+    if authenticator.tokens is None or authenticator.sessions is None:
         return RedirectResponse("/", 303)
-    asker: Asker = request.scope[SCOPE_KEY]
-    address = asker.who.address
+    caller: Caller = request.scope[SCOPE_KEY]
+    address = caller.who.address
     form = await _fields(request)
-    holder = asking.tokens.holder(form.get("token", "").strip())
+    holder = authenticator.tokens.holder(form.get("token", "").strip())
     if holder is None:
-        shield.count_wrong_token(address)
-        shield.audit.refused(Who("", "watch", address), "wrong token at login", "/login", 403)
+        guard_state.count_wrong_token(address)
+        guard_state.audit.refused(User("", "watch", address), "wrong token at login", "/login", 403)
         return _form(form.get("next", "/"), "Nobody has this token.", status=403)
-    shield.audit.logged_in(Who(holder.name, holder.role, address))
-    cookie, lasts_s = asking.sessions.begin(holder)
+    guard_state.audit.logged_in(User(holder.name, holder.role, address))
+    cookie, lasts_s = authenticator.sessions.begin(holder)
     response = RedirectResponse(_own_path(form.get("next", "/")), 303)
     secure = request.url.scheme == "https" or request.headers.get("origin", "").startswith("https://")
     name = SECURE_COOKIE if secure else COOKIE

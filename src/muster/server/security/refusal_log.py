@@ -8,12 +8,12 @@ import time
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.errors import MusterError
 from muster.server.security.limits import Buckets, network_of
 
 log = logging.getLogger("muster.security")
-Keep = Callable[[Who, str, Mapping[str, Any]], Awaitable[object]]
+Keep = Callable[[User, str, Mapping[str, Any]], Awaitable[object]]
 
 _OF_ONE_S = 10.0
 _IN_ALL_S = 10.0
@@ -41,15 +41,15 @@ class Audit:
         self._left_out = 0
         self._under_way: set[asyncio.Task[None]] = set()
 
-    def refused(self, who: Who, why: str, path: str, status: int) -> None:
+    def refused(self, who: User, why: str, path: str, status: int) -> None:
         """Note that a request was refused."""
         self._refuse(who, {"why": why, "path": path, "status": status})
 
-    def forbade(self, who: Who, verb: str, why: str) -> None:
+    def forbade(self, who: User, verb: str, why: str) -> None:
         """Note that somebody who may only watch wanted to command, over the API or by a page."""
         self._refuse(who, {"why": why, "command": verb})
 
-    def _refuse(self, who: Who, data: dict[str, Any]) -> None:
+    def _refuse(self, who: User, data: dict[str, Any]) -> None:
         if self._of_one.take(network_of(who.address)) or self._in_all.take("") or len(self._under_way) >= _WAITING:
             self._left_out += 1
             return
@@ -59,21 +59,21 @@ class Audit:
             self._left_out = 0
         self._note(who, "refused", data)
 
-    def logged_in(self, who: Who) -> None:
+    def logged_in(self, who: User) -> None:
         """Note a login."""
         log.info("login of %s", who.name, extra={"user": who.name, "address": who.address})
         self._note(who, "login", {"role": who.role})
 
-    def logged_out(self, who: Who) -> None:
+    def logged_out(self, who: User) -> None:
         """Note a logout."""
         self._note(who, "logout", {})
 
-    def _note(self, who: Who, verb: str, data: Mapping[str, Any]) -> None:
+    def _note(self, who: User, verb: str, data: Mapping[str, Any]) -> None:
         task = asyncio.get_running_loop().create_task(self._write(who, verb, data))
         self._under_way.add(task)
         task.add_done_callback(self._under_way.discard)
 
-    async def _write(self, who: Who, verb: str, data: Mapping[str, Any]) -> None:
+    async def _write(self, who: User, verb: str, data: Mapping[str, Any]) -> None:
         keep = self._keep()
         if keep is None:
             return

@@ -10,7 +10,7 @@ from muster.server.settings import Settings
 
 
 def require_safe(settings: Settings) -> None:
-    """Refuse to serve strangers without asking who they are, or in the clear without having been told to.
+    """Refuse to serve strangers without authenticator who they are, or in the clear without having been told to.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def require_safe(settings: Settings) -> None:
 
 
 def _require_proven_proxy(settings: Settings) -> None:
-    """Who asks is believed of a proxy that is known by its address and by a secret."""
+    """Require that a proxy that names users is known by its address and by a secret."""
     if settings.user_header is None:
         if settings.proxy_secret is not None:
             raise ParameterError(f"--proxy-secret {settings.proxy_secret} given without --user-header; expected both")

@@ -29,7 +29,7 @@ _MOST_ENDED = 10_000
 
 @dataclass(frozen=True)
 class Session:
-    """Who logged in, and until when that holds (Unix seconds); `id` tells it from others of the same person."""
+    """A login: of whom, and until when (Unix seconds); `id` tells it from others of the same user."""
 
     name: str
     token: str

@@ -159,7 +159,7 @@ class Tokens:
         return found
 
     def named(self, name: str) -> Holder | None:
-        """Who has this name."""
+        """The holder of this name."""
         self._refresh()
         return _first(holder for holder in self._holders if holder.name == name)
 

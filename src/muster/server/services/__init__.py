@@ -1,1 +1,1 @@
-"""All that mission control can do, a service a file; the API and the pages are its two faces."""
+"""What mission control can do, one service per file. The API and the pages call the same services."""

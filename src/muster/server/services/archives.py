@@ -1,4 +1,4 @@
-"""Several files as one: what is exported may be a file for each robot."""
+"""Several files packed into one: an export may be one file per robot."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from base64 import b64decode
 from collections.abc import Mapping
 
 
-async def parcel(files: Mapping[str, str], name: str) -> tuple[bytes, str]:
-    """Files by their names, in base64, as one and how it is called: as it is if it is one, otherwise a ZIP."""
-    return await asyncio.to_thread(_packed, files, name)  # which lets go of the interpreter while it packs
+async def archive_of(files: Mapping[str, str], name: str) -> tuple[bytes, str]:
+    """Pack files (base64, by name) into one file and its name: a ZIP, or the file itself if there is only one."""
+    return await asyncio.to_thread(_packed, files, name)  # zlib releases the interpreter lock
 
 
 def _packed(files: Mapping[str, str], name: str) -> tuple[bytes, str]:

@@ -1,4 +1,4 @@
-"""Two plans of one mission side by side: figures, and who does what."""
+"""Compares two plans of one mission: their figures, and which robot does which task."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _head(entry: PlanEntry, verdict: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _doers(verdict: Mapping[str, Any]) -> dict[str, str]:
-    """Who does each task."""
+    """Which robot does each task."""
     return {task: route["robot"] for route in verdict["routes"] for task in route["tasks"]}
 
 

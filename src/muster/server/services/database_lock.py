@@ -50,28 +50,28 @@ AND mode = 'ExclusiveLock' AND pid <> pg_backend_pid()
 
 
 class TakenError(StoreError):
-    """Another server has the database: this one may neither write nor carry anything out."""
+    """Another server uses the database: this server may neither write nor carry out runs."""
 
 
 class Lock:
-    """That no other server uses the database. This one is of SQLite, and cannot be lost."""
+    """The exclusive use of a database. This lock is that of SQLite, which cannot be lost."""
 
     def look(self) -> None:
-        """Take it anew if it was lost; whoever does not reach the database may look again.
+        """Take the lock again if it was lost. Call it again if the database cannot be reached.
 
         Raises
         ------
         TakenError
-            if another server has it.
+            if another server has the lock.
         """
 
     def require(self, connection: Connection) -> None:
-        """Raise StoreError unless a transaction that begins may write; none of another server's may until it ends."""
+        """Raise StoreError unless this transaction may write; until it ends no other server's transaction may."""
 
 
 @contextmanager
 def alone_with(url: str) -> Iterator[Lock]:
-    """As long as no other server may use the database.
+    """Hold the lock of a database within the block.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def _file_locked(file: Path) -> Iterator[None]:
             raise TakenError(
                 f"{file.resolve()}: in use by {whose}; expected one server a database (--db names another)"
             ) from None
-        with suppress(OSError):  # on a full disk nobody is told which process it is; whether it can be used shows later
+        with suppress(OSError):  # a full disk: the process id is left out
             os.ftruncate(descriptor, 0)
             os.write(descriptor, f"{os.getpid()}\n".encode())
         yield
@@ -114,11 +114,10 @@ def _file_locked(file: Path) -> Iterator[None]:
 
 
 def lock_of_runs(settings: Settings) -> Path:
-    """In which runners of real robots lock their runs: the same file for every server that may have left one behind.
+    """The file that runners of real robots lock, the same for all servers of this database on this machine.
 
-    That is one with this database, however its URL is spelt, on this machine: of SQLite any that has the file, beside
-    which it is; of PostgreSQL those of this user, or with the same `XDG_DATA_HOME`. Where a server ended on another
-    machine, or as another user, nobody waits for its runners, which tell their robots to stand when it is gone.
+    With SQLite it is beside the database. With PostgreSQL it is in the data folder of this user (`XDG_DATA_HOME`), so
+    runners of another machine or user are not waited for; they stop their robots when their server ends.
     """
     address = database_url(settings.database)
     file = sqlite_file(address)
@@ -129,13 +128,13 @@ def lock_of_runs(settings: Settings) -> Path:
 
 
 def _beside(file: Path, ending: str) -> Path:
-    """A file beside that of a database, by which SQLite knows it, too: two names of one file are one database."""
+    """A file beside a database; links to the database are resolved first, as SQLite does."""
     whole = file.resolve()
     return whole.with_name(f"{whole.name}{ending}")
 
 
 class _SessionLock(Lock):
-    """Of PostgreSQL: held by a session of its own."""
+    """The lock of PostgreSQL, held by a separate session."""
 
     def __init__(self, url: URL, name: str) -> None:
         self._url, self._name = url, name
@@ -171,7 +170,7 @@ class _SessionLock(Lock):
         except StoreError:
             return
         try:
-            with suppress(psycopg.Error):  # where the network was gone, the session that was ours lives on
+            with suppress(psycopg.Error):  # after a loss of the network our old session may still be open
                 self._session.execute(_END_OURS, (self._own,))
             self._take()
         except psycopg.Error:
@@ -183,7 +182,7 @@ class _SessionLock(Lock):
             raise StoreError(f"{self._name}: it was gone, and another server may have it; wait a moment")
 
     def close(self) -> None:
-        """Wait for no `look`, which may hang with the database: it ends the session itself, or the process does."""
+        """End the session without waiting for `look`, which may hang and then ends the session itself."""
         self._is_over = True
         if self._looking.acquire(blocking=False):
             self._session.close()

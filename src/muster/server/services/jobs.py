@@ -1,4 +1,4 @@
-"""Jobs: planning that is asked for, waits its turn, is done by a worker, and survives the server."""
+"""Jobs: planning requests that are queued, done by a worker, and kept across restarts of the server."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ from muster.exchange.mission_control import (
     JobState,
     NotFoundError,
     StoreError,
-    Who,
+    User,
 )
 from muster.mission.errors import MusterError
-from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.missions import Missions
 from muster.server.services.plan_requests import PLANS, checked_request
 from muster.server.services.repeated_requests import made_once
-from muster.server.services.uploads import for_work
+from muster.server.services.uploads import mission_input
 from muster.server.settings import Settings
 from muster.server.store import Store
 from muster.server.store.request_keys import RequestKey
-from muster.server.work import Halt, Pool, WorkerDied, WorkError
+from muster.server.work import Pool, StopRequest, WorkerDied, WorkError
 
-_AGAIN_S = 2.0  # until a database that refuses is asked again
-_TOLD_EVERY_S = 0.1  # followers, at most
+_AGAIN_S = 2.0  # between two attempts to write to a database that fails
+_TOLD_EVERY_S = 0.1  # at most
 
 _log = logging.getLogger(__name__)
 
 
 class Jobs:
-    """The queue, kept in the database: what waited or was under way when the server ended goes on when it is back."""
+    """The queue of jobs. It is kept in the database: unfinished jobs continue after a restart of the server."""
 
-    def __init__(self, store: Store, pool: Pool, settings: Settings, refused: Refused = unheard) -> None:
+    def __init__(self, store: Store, pool: Pool, settings: Settings, refused: Refused = ignore_refusal) -> None:
         self._store = store
         self._pool = pool
         self._settings = settings
@@ -47,34 +47,34 @@ class Jobs:
         self._actions = Actions(store, refused)
         self._queue: asyncio.Queue[int] = asyncio.Queue()
         self._queued: set[int] = set()
-        self._newest: dict[int, Job] = {}  # jobs of which more is known here than in the database
+        self._newest: dict[int, Job] = {}  # states that are newer than the database's
         self._at_work: dict[int, asyncio.Task[None]] = {}
-        self._halts: dict[int, Halt] = {}  # of jobs at work
+        self._stop_requests: dict[int, StopRequest] = {}  # of running jobs
         self._followers: dict[int, set[asyncio.Event]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._hands: list[asyncio.Task[None]] = []
         self._closing = False
 
     async def start(self) -> None:
-        """Go on with what is in the database, in order."""
+        """Queue the unfinished jobs of the database in order."""
         for job in await asyncio.to_thread(self._store.jobs.requeue):
             self._enqueue(job.id)
         self._hands = [asyncio.create_task(self._work()) for _ in range(self._settings.workers)]
 
     async def close(self) -> None:
-        """Stop; what is under way stays so in the database, and begins anew when the server is back."""
+        """Stop working. Running jobs stay `running` in the database and begin anew when the server starts again."""
         self._closing = True
         for task in (*self._hands, *self._at_work.values()):
             task.cancel()
         await asyncio.gather(*self._hands, *self._tasks, return_exceptions=True)
 
     async def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
-        """Jobs, of one state and one mission or of all, the newest first."""
+        """Jobs of one state and mission or of all, newest first."""
         found = await asyncio.to_thread(self._store.jobs.list, state, mission, limit)
         return [self._newest.get(job.id, job) for job in found]
 
     async def get(self, job: int) -> Job:
-        """One job, with its newest progress.
+        """A job with its newest progress.
 
         Raises
         ------
@@ -86,19 +86,19 @@ class Jobs:
 
     async def ask_plan(
         self,
-        who: Who,
+        who: User,
         mission: str,
         version: int | None = None,
         *,
         request: RequestKey | None = None,
         **options: Any,
     ) -> Job:
-        """Ask for a plan of a mission, of its newest version if none is named.
+        """Queue a planning request for a version of a mission, by default the newest.
 
         Parameters
         ----------
         request
-            one that came before gives the job that it made then.
+            its key; a repeated request returns the job of the first.
         options
             the options of a planning request, by the names of `PlanningOptions`; and `start` and `fixed`, the ids of
             plans.
@@ -117,7 +117,7 @@ class Jobs:
         return await made_once(self._store, request, ask, self.get)
 
     async def _ask_plan(
-        self, who: Who, mission: str, version: int | None, options: Mapping[str, Any], request: RequestKey | None
+        self, who: User, mission: str, version: int | None, options: Mapping[str, Any], request: RequestKey | None
     ) -> Job:
         async with self._actions.of(who, "plan.ask", {"mission": mission, "version": version, **options}):
             checked_request(options, self._settings.job_s)
@@ -139,8 +139,8 @@ class Jobs:
             checked = {name: value for name, value in options.items() if name not in PLANS}
             await self._pool.run("check_request", checked)
 
-    async def cancel(self, who: Who, job: int) -> Job:
-        """End a job that is not over; its process is gone at once.
+    async def cancel(self, who: User, job: int) -> Job:
+        """Cancel a job that is not over; its process is killed.
 
         Raises
         ------
@@ -151,10 +151,10 @@ class Jobs:
         async with self._actions.of(who, "job.cancel", {"job": job}):
             return await self._cancelled(job)
 
-    async def stop(self, who: Who, job: int) -> Job:
-        """Ask a job under way to end with the best plan that it has, or the first; one that waits is cancelled.
+    async def stop(self, who: User, job: int) -> Job:
+        """End a running job with the best plan so far, or with the first one; a queued job is cancelled.
 
-        Asked once more, it leaves out the reasons for tasks that are not in the plan.
+        A second call also leaves out the reasons for unassigned tasks.
 
         Raises
         ------
@@ -163,28 +163,28 @@ class Jobs:
         NotFoundError, ForbiddenError
         """
         async with self._actions.of(who, "job.stop", {"job": job}):
-            halt = self._halts.get(job)
-            if halt is None:
+            stop_request = self._stop_requests.get(job)
+            if stop_request is None:
                 return await self._cancelled(job)
-            halt.ask()
+            stop_request.ask()
             return await self.get(job)
 
     async def _cancelled(self, job: int) -> Job:
         at_work = self._at_work.pop(job, None)
         if at_work is not None:
             at_work.cancel()
-        self._halts.pop(job, None)
+        self._stop_requests.pop(job, None)
         self._queued.discard(job)
         try:
             ended = await asyncio.to_thread(self._store.jobs.end, job, "cancelled")
-        except StoreError:  # nobody works on it any more, which the database is to know later
+        except StoreError:  # its process has ended; write that later
             self._see_to(self._end(job, "cancelled"))
             raise
         self._forget(job)
         return ended
 
     async def follow(self, job: int) -> AsyncIterator[Job]:
-        """A job as it is and at each change, at most ten times a second, until it is over.
+        """Yield a job now and after each change, at most ten times a second, until it is over.
 
         Raises
         ------
@@ -213,17 +213,17 @@ class Jobs:
         self._queue.put_nowait(job)
 
     async def _work(self) -> None:
-        """Have one job after the other done."""
+        """Do one job after the other."""
         while True:
             job = await self._queue.get()
             if job not in self._queued:  # cancelled meanwhile
                 continue
             self._queued.discard(job)
-            halt = self._halts[job] = Halt()
-            task = self._at_work[job] = self._see_to(self._do(job, halt))
+            stop_request = self._stop_requests[job] = StopRequest()
+            task = self._at_work[job] = self._see_to(self._do(job, stop_request))
             await asyncio.wait([task])
             self._at_work.pop(job, None)
-            self._halts.pop(job, None)
+            self._stop_requests.pop(job, None)
 
     def _see_to(self, what: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.create_task(what)
@@ -231,18 +231,18 @@ class Jobs:
         task.add_done_callback(self._tasks.discard)
         return task
 
-    async def _do(self, number: int, halt: Halt) -> None:
-        """Do a job, and say what came of it."""
+    async def _do(self, number: int, stop_request: StopRequest) -> None:
+        """Do a job and write its result."""
         try:
             job = await self._moved(self._store.jobs.begin, number)
             if job is not None:
                 self._learn(job)
-                done = await self._planned(job, halt)
-                self._at_work.pop(number, None)  # what is written down now is not to be broken off
+                done = await self._planned(job, stop_request)
+                self._at_work.pop(number, None)  # cancelling must not interrupt what is being written
                 progress = self._newest[number].progress
                 await self._moved(self._store.jobs.end_with_plan, number, done["plan"], done["why"], progress)
             self._forget(number)
-        except StoreError as why:  # the server closes: it begins anew when that is back
+        except StoreError as why:  # the server closes: the job begins anew at the next start
             _log.error("job %d: %s", number, why)
         except MusterError as error:
             await self._end(number, "failed", " ".join(str(error).split()))
@@ -250,10 +250,10 @@ class Jobs:
             _log.exception("job %d", number)
             await self._end(number, "failed", "internal error; the server's log says more")
 
-    async def _planned(self, job: Job, halt: Halt) -> dict[str, Any]:
-        """What a worker answers; one that dies under it may be chance, a second one is not."""
+    async def _planned(self, job: Job, stop_request: StopRequest) -> dict[str, Any]:
+        """The answer of a worker. If the worker dies, the job is tried once more."""
         mission = await self._patiently(job.id, self._store.missions.get, job.mission, job.mission_version)
-        wishes = {**job.arguments, "mission": for_work(mission.text, mission.files, job.mission)}
+        wishes = {**job.arguments, "mission": mission_input(mission.text, mission.files, job.mission)}
         for name in PLANS:
             if wishes.get(name) is not None:
                 wishes[name] = (await self._patiently(job.id, self._store.plans.get, wishes[name])).plan
@@ -261,7 +261,9 @@ class Jobs:
         def hear(progress: dict[str, Any]) -> None:
             self._learn(replace(job, progress=progress))
 
-        ask = partial(self._pool.run, "plan", wishes, on_progress=hear, limit_s=self._settings.job_s, halt=halt)
+        ask = partial(
+            self._pool.run, "plan", wishes, on_progress=hear, limit_s=self._settings.job_s, stop_request=stop_request
+        )
         try:
             return await ask()
         except WorkerDied as error:
@@ -272,8 +274,8 @@ class Jobs:
             raise WorkError(f"{error}, for the second time") from None
 
     async def _end(self, number: int, state: JobState, error: str = "") -> None:
-        """Write down how a job ended, with its last progress; one that was cancelled meanwhile stays so."""
-        self._at_work.pop(number, None)  # what is written down now is not to be broken off
+        """Write how a job ended, with its last progress; a job that was cancelled meanwhile stays cancelled."""
+        self._at_work.pop(number, None)  # cancelling must not interrupt what is being written
         newest = self._newest.get(number)
         if newest is not None and newest.progress is not None:
             await self._patiently(number, self._store.jobs.progress, number, newest.progress)
@@ -281,7 +283,7 @@ class Jobs:
         self._forget(number)
 
     async def _moved(self, move: Callable[..., Job], number: int, *arguments: Any) -> Job | None:
-        """A job in its next state; None where it was cancelled meanwhile."""
+        """The job in its next state; None if it was cancelled meanwhile."""
         try:
             moved: Job = await self._patiently(number, move, number, *arguments)
         except (ConflictError, NotFoundError):
@@ -289,7 +291,7 @@ class Jobs:
         return moved
 
     async def _patiently(self, number: int, ask: Callable[..., Any], *arguments: Any) -> Any:
-        """Ask the database for something of a job, however long it refuses; the job says so meanwhile."""
+        """Call the database until it answers; the job's `error` says meanwhile that it waits."""
         while True:
             try:
                 return await asyncio.to_thread(ask, *arguments)
@@ -303,12 +305,12 @@ class Jobs:
                 await asyncio.sleep(_AGAIN_S)
 
     def _learn(self, job: Job) -> None:
-        """What is known of a job beyond the database."""
+        """Keep a state of a job that is newer than the database's, and notify its followers."""
         self._newest[job.id] = job
         self._tell(job.id)
 
     def _forget(self, job: int) -> None:
-        """The database knows all of it."""
+        """Drop the state of a job that the database has now."""
         self._newest.pop(job, None)
         self._tell(job)
 

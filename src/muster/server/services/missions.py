@@ -1,6 +1,6 @@
-"""Missions: the list, their versions, and how they are checked, saved and uploaded.
+"""Missions: the list, their versions, checking, saving and uploading.
 
-A text is parsed in a worker alone, never here. Only missions that can be read are stored.
+Texts are parsed by workers only. Only missions that can be read are stored.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from muster.exchange.mission_control import (
     MissionEntry,
     MissionVersion,
     NotFoundError,
+    User,
     VersionEntry,
-    Who,
 )
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
-from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
-from muster.server.services.uploads import as_text, check_sizes, findings_of, for_work, require_file_name
+from muster.server.services.uploads import as_text, check_sizes, findings_of, mission_input, require_file_name
 from muster.server.store import Store
 
 _READ_AS_THEY_ARE = (".yaml", ".yml")
@@ -31,21 +31,21 @@ _CONVERTED = (".csv", ".tsp", ".plan")
 
 
 class Workers(Protocol):
-    """What is needed of the pool of workers."""
+    """The part of the pool of workers that `Missions` needs."""
 
     async def run(self, task: str, arguments: Mapping[str, Any]) -> dict[str, Any]: ...
 
 
 class Missions:
-    """What can be done with missions. Those that come with Muster are listed, too, and stored once they are used."""
+    """The missions of a server. Shipped missions are listed too, and stored when they are first used."""
 
-    def __init__(self, store: Store, pool: Workers, refused: Refused = unheard) -> None:
+    def __init__(self, store: Store, pool: Workers, refused: Refused = ignore_refusal) -> None:
         self._table = store.missions
         self._actions = Actions(store, refused)
         self._pool = pool
 
     async def get(self, mission: str, version: int | None = None) -> MissionVersion:
-        """A version with its files; without a number the newest, which is 0 of a shipped mission that nobody has used.
+        """A version with its files, by default the newest; a shipped mission that is not stored has version 0.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class Missions:
         return await asyncio.to_thread(self._get, mission, version)
 
     async def stored(self, mission: str) -> MissionVersion:
-        """The newest version, which is in the database afterwards: plans and runs refer to it.
+        """The newest version, stored in the database if it was not: plans and runs refer to it.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Missions:
         return await asyncio.to_thread(self._stored, mission)
 
     async def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
-        """Versions, the newest first; those below `before`, if given.
+        """Versions, newest first; only those below `before`, if given.
 
         Raises
         ------
@@ -84,38 +84,38 @@ class Missions:
         ParameterError
             if it is too large, a file may not be called so, or a rule to ignore does not exist.
         WorkError
-            if no worker can say: it takes too long, or too much memory.
+            if the check takes too much time or memory.
         """
         check_sizes(text, files)
         ignored_rules(ignore)
         asked = {"ignore": list(ignore), "time_limit": time_limit}
-        return await self._pool.run("check", {"mission": for_work(text, files, "mission"), **asked})
+        return await self._pool.run("check", {"mission": mission_input(text, files, "mission"), **asked})
 
-    async def ground(self, mission: MissionVersion) -> dict[str, Any]:
-        """What lies under a mission: `floor` and `earth`, as `work.tasks.ground` says.
+    async def floor_plan(self, mission: MissionVersion) -> dict[str, Any]:
+        """The floor plan of a mission and its place on the earth: see `work.tasks.floor_plan`.
 
         Raises
         ------
         WorkError
             if it cannot be read.
         """
-        return await self._pool.run("floor_plan", {"mission": for_work(mission.text, mission.files, "mission")})
+        return await self._pool.run("floor_plan", {"mission": mission_input(mission.text, mission.files, "mission")})
 
     async def edit(self, text: str, change: str, *arguments: object) -> str:
-        """A text with one of `work.editing.changes.CHANGES`; nothing is kept.
+        """A text after one of `work.editing.changes.CHANGES`; nothing is stored.
 
         Raises
         ------
         WorkError
-            if it cannot be changed so.
+            if the text cannot be changed in this way.
         ParameterError
         """
         check_sizes(text, {})
         wanted = {"text": text, "change": change, "with": arguments}
         return str((await self._pool.run("edit", wanted))["text"])
 
-    async def look(self, text: str, *keys: str) -> dict[str, Any]:
-        """What stands at some keys of a text, right or wrong.
+    async def read_keys(self, text: str, *keys: str) -> dict[str, Any]:
+        """The values of some keys of a mission's text, valid or not.
 
         Raises
         ------
@@ -127,9 +127,9 @@ class Missions:
         return dict((await self._pool.run("read_mission", {"text": text, "keys": keys}))["data"])
 
     async def create(
-        self, who: Who, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None
+        self, who: User, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None
     ) -> MissionVersion:
-        """A new mission, called `name`, or as its text says.
+        """Create a mission, named `name` or as its text says.
 
         Raises
         ------
@@ -142,19 +142,19 @@ class Missions:
 
     async def save(
         self,
-        who: Who,
+        who: User,
         mission: str,
         text: str,
         base_version: int,
         files: Mapping[str, bytes] | None = None,
         note: str = "",
     ) -> MissionVersion:
-        """A new version, made from `base_version`; without `files` it has those of that version.
+        """Save a new version based on `base_version`; without `files` it keeps the files of that version.
 
         Raises
         ------
         ConflictError
-            if somebody else saved meanwhile.
+            if another version was saved since.
         MissionError
             with everything that is wrong with it.
         NotFoundError, ForbiddenError, ParameterError, WorkError
@@ -162,18 +162,18 @@ class Missions:
         async with self._actions.of(who, "mission.save", {"mission": mission, "base_version": base_version}):
             if base_version == 0 and mission in shipped_entries():
                 await self.stored(mission)
-                base_version = 1  # which is the same
+                base_version = 1  # the same text
             kept = (await self.get(mission, base_version)).files if files is None else files
             summary = await self._summary(text, kept, mission)
             return await asyncio.to_thread(self._table.save, mission, text, kept, summary, who.name, note, base_version)
 
-    async def delete(self, who: Who, mission: str) -> None:
-        """Take it out of the list; its plans and runs stay.
+    async def delete(self, who: User, mission: str) -> None:
+        """Hide a mission from the list; its plans and runs stay.
 
         Raises
         ------
         ConflictError
-            if it comes with Muster.
+            if the mission ships with Muster.
         NotFoundError, ForbiddenError
         """
         async with self._actions.of(who, "mission.delete", {"mission": mission}):
@@ -181,8 +181,8 @@ class Missions:
                 raise ConflictError(f"mission {mission} comes with Muster; expected one that was made here")
             await asyncio.to_thread(self._table.delete, mission)
 
-    async def restore(self, who: Who, mission: str) -> None:
-        """Take a deleted mission back into the list.
+    async def restore(self, who: User, mission: str) -> None:
+        """List a deleted mission again.
 
         Raises
         ------
@@ -192,12 +192,12 @@ class Missions:
             await asyncio.to_thread(self._table.restore, mission)
 
     async def upload(
-        self, who: Who, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
+        self, who: User, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
     ) -> MissionVersion:
-        """A new mission from a file: YAML as it is; a task-list CSV, TSPLIB or a plan of QGroundControl converted.
+        """Create a mission from a file: YAML as it is; task-list CSV, TSPLIB and plans of QGroundControl converted.
 
-        `beside` are files that belong to it; `options` are those of the task `convert`: `robots` and `suitability`,
-        which name some of them, `salesmen`, `depot`.
+        `beside` are further files that the file needs. `options` are those of the worker task `convert`: `robots` and
+        `suitability` (names of files of `beside`), `salesmen`, `depot`.
 
         Raises
         ------
@@ -222,7 +222,7 @@ class Missions:
             return await self._create(who, text, kept, None, file=path.stem)
 
     async def _create(
-        self, who: Who, text: str, files: Mapping[str, bytes], name: str | None, file: str = "mission"
+        self, who: User, text: str, files: Mapping[str, bytes], name: str | None, file: str = "mission"
     ) -> MissionVersion:
         summary = await self._summary(text, files, name or file)
         called = name or str(summary["name"])
@@ -231,9 +231,9 @@ class Missions:
         )
 
     async def _summary(self, text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:
-        """What the list has of a mission that is about to be stored; one with errors is refused."""
+        """The summary that the list shows of a mission; raises MissionError if it has errors."""
         check_sizes(text, files)
-        found = await self._pool.run("check", {"mission": for_work(text, files, name), "brief": True})
+        found = await self._pool.run("check", {"mission": mission_input(text, files, name), "brief": True})
         if found["errors"] or found["summary"] is None:
             raise MissionError(findings_of(found["errors"]))
         summary: dict[str, Any] = found["summary"]
@@ -257,7 +257,7 @@ class Missions:
             return self._table.create(
                 mission, newest.text, newest.files, shipped_summary(mission), AUTHOR, shipped=True
             )
-        except ConflictError:  # somebody else was quicker
+        except ConflictError:  # another request stored it first
             return self._table.get(mission)
 
     def _versions(self, mission: str, limit: int, before: int | None) -> list[VersionEntry]:
@@ -269,7 +269,7 @@ class Missions:
             return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
 
     async def list(self) -> list[MissionEntry]:
-        """Missions that were made here, the last changed first, then those that come with Muster."""
+        """Missions made on this server, last changed first, then the shipped ones."""
         stored = {entry.id: entry for entry in await asyncio.to_thread(self._table.list)}
         shipped = await asyncio.to_thread(shipped_entries)
         own = [entry for entry in stored.values() if not entry.shipped]

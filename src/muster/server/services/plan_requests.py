@@ -1,4 +1,4 @@
-"""What may be asked for of a plan: refused at once, not after the job has waited for its turn."""
+"""Checks planning requests before they are queued, so that a wrong one is refused at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LONGEST_NAME = 200
 
 
 def checked_request(asked: Mapping[str, Any], longest_s: float) -> None:
-    """Refuse a planning request that cannot be met whatever the mission; None stands for the default.
+    """Refuse a planning request that no mission can meet; None stands for the default.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Plans: the list, what the judge says of one, why it is so, files and pictures of it, and two side by side."""
+"""Plans: listed, uploaded, judged, explained, exported, drawn and compared."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from muster.exchange.mission_control import PlanEntry, Who
+from muster.exchange.mission_control import PlanEntry, User
 from muster.mission.errors import ParameterError
-from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.comparison import compared
 from muster.server.services.missions import Missions
-from muster.server.services.uploads import for_work
+from muster.server.services.uploads import mission_input
 from muster.server.store import Store
 from muster.server.work import Pool
 
-_MOST_VERDICTS = 16  # that are kept: plans never change
+_MOST_VERDICTS = 16  # in the cache: plans never change
 
 
 class Plans:
-    """What can be done with plans. What takes thought is done by workers."""
+    """The plans of a server. Workers do what takes computation."""
 
-    def __init__(self, store: Store, pool: Pool, refused: Refused = unheard) -> None:
+    def __init__(self, store: Store, pool: Pool, refused: Refused = ignore_refusal) -> None:
         self._store = store
         self._pool = pool
         self._missions = Missions(store, pool)
@@ -33,7 +33,7 @@ class Plans:
         self._verdicts: OrderedDict[tuple[object, ...], dict[str, Any]] = OrderedDict()
 
     async def get(self, plan: int) -> PlanEntry:
-        """One plan, whole.
+        """A plan.
 
         Raises
         ------
@@ -43,23 +43,23 @@ class Plans:
         return await asyncio.to_thread(self._store.plans.get, plan)
 
     async def allocators(self) -> list[dict[str, Any]]:
-        """Name, summary, whether it is anytime, whether it is the default, and parameters of each allocator."""
+        """Each allocator's name, summary and parameters, and whether it is anytime and the default."""
         if not self._allocators:
             self._allocators = (await self._pool.run("allocators", {}))["allocators"]
         return self._allocators
 
-    async def upload(self, who: Who, mission: str, plan: Mapping[str, Any]) -> PlanEntry:
-        """Keep a plan of the newest version of a mission, also one from elsewhere, admissible or not.
+    async def upload(self, who: User, mission: str, plan: Mapping[str, Any]) -> PlanEntry:
+        """Store a plan for the newest version of a mission, from any program, valid or not.
 
         Raises
         ------
         WorkError
-            with everything that is wrong with it as a plan file.
+            with everything that is wrong with the plan file.
         NotFoundError, ForbiddenError
         """
         async with self._actions.of(who, "plan.upload", {"mission": mission}):
             version = await self._missions.stored(mission)
-            given = for_work(version.text, version.files, mission)
+            given = mission_input(version.text, version.files, mission)
             adopted = (await self._pool.run("upload_plan", {"mission": given, "plan": plan}))["plan"]
             return await asyncio.to_thread(
                 self._store.plans.add, mission, version.version, "uploaded", who.name, adopted
@@ -68,7 +68,7 @@ class Plans:
     async def verdict(
         self, plan: int, ignore: Sequence[str] | None = None, objective: str | None = None
     ) -> dict[str, Any]:
-        """What the judge says: as the task `judge` gives it.
+        """The judge's verdict: see `work.tasks.judge`.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class Plans:
         return self._verdicts[key]
 
     async def explain(self, plan: int, task: str | None = None, ignore: Sequence[str] | None = None) -> dict[str, Any]:
-        """Why tasks are left out; of one task, why this robot does it and not another: data, and `words`.
+        """Why tasks are unassigned, or why one task is done by its robot: data, and `words` for people.
 
         Raises
         ------
@@ -105,13 +105,13 @@ class Plans:
         options: Mapping[str, Any] | None = None,
         ignore: Sequence[str] | None = None,
     ) -> dict[str, str]:
-        """Files for other tools by their names, in base64; what a person has to know before it flies is in NOTES.txt.
+        """Files for other programs (base64, by name); NOTES.txt holds what a person must know before the flight.
 
         Raises
         ------
         NotFoundError
         WorkError
-            also if the plan is not admissible.
+            also if the plan is not valid.
         """
         answer = await self._asked("export", plan, to=to, options=dict(options or {}), ignore=ignore)
         files: dict[str, str] = answer["files"]
@@ -131,12 +131,12 @@ class Plans:
         return base64.b64decode(answer["data"])
 
     async def compare(self, a: int, b: int) -> dict[str, Any]:
-        """Two plans of one mission side by side: see `compared`.
+        """The comparison of two plans of one mission: see `compared`.
 
         Raises
         ------
         ParameterError
-            if they are of two missions.
+            if they are of different missions.
         NotFoundError, WorkError
         """
         first, second = await self.get(a), await self.get(b)
@@ -145,24 +145,21 @@ class Plans:
         return compared(first, await self.verdict(a), second, await self.verdict(b))
 
     async def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
-        """Plans, of one mission or all, the newest first, without routes, histories and books.
-
-        With ids below `before`, if given.
-        """
+        """Plans of one mission or of all, newest first, without their routes and histories; ids below `before`."""
         return await asyncio.to_thread(self._store.plans.list, mission, limit, before)
 
     async def _asked(self, what: str, plan: int, /, **arguments: Any) -> dict[str, Any]:
-        """What a worker says of a plan and its mission."""
+        """A worker's answer about a plan and its mission."""
         return await self._pool.run(what, partial(self._given, plan, arguments))
 
     def _given(self, plan: int, arguments: Mapping[str, Any]) -> dict[str, Any]:
-        """What the worker needs, from the database."""
+        """Read the worker's arguments from the database."""
         entry = self._store.plans.get(plan)
         mission = self._store.missions.get(entry.mission, entry.mission_version)
         given = {name: value for name, value in arguments.items() if value is not None}
         rules = {"ignore": entry.ignored, "objective": entry.objective}
         return {
-            "mission": for_work(mission.text, mission.files, entry.mission),
+            "mission": mission_input(mission.text, mission.files, entry.mission),
             "plan": dict(entry.plan),
             **rules,
             **given,

@@ -1,6 +1,6 @@
-"""Records: runs that are over, to be replayed, compared with what was planned, taken away.
+"""Records: runs that are over, replayed, compared with the plan, and exported.
 
-A record is made from the log by a worker when somebody asks for it: nothing is kept twice.
+A worker makes a record from the log of a run on request; records are not stored.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ FORMATS = ("csv", "geojson", "gpx", "kml", "json")
 
 
 class Records:
-    """Of all runs of a database; `runs` knows of those that have just ended."""
+    """The records of a database; `runs` knows runs that have just ended."""
 
     def __init__(self, store: Store, pool: Pool, runs: Runs) -> None:
         self._store, self._pool, self._runs = store, pool, runs
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, the newest first."""
+        """Runs that are over, newest first."""
         return await self._runs.over(limit)
 
     async def page(self, run: int) -> str:
@@ -38,11 +38,11 @@ class Records:
         Raises
         ------
         NotFoundError
-            if there is no such run. So do the others.
+            if there is no such run; so do the other methods.
         ConflictError
-            if it is not over, or nothing of it was kept.
+            if the run is not over, or has no log.
         StoreError
-            if the database refuses what it is made from.
+            if the log cannot be read.
         """
         return (await self._file(run, "page")).decode()
 
@@ -51,18 +51,18 @@ class Records:
         return await self._file(run, "mcap")
 
     async def flown(self, run: int) -> Mapping[str, Any]:
-        """What was planned beside what was flown: of the whole, of each robot and task, and where the ways led."""
+        """What was planned and what was carried out: in all, per robot and task, and the paths."""
         return await self._made(run, "flown")
 
     async def export(self, run: int, to: str) -> Mapping[str, str]:
-        """Tracks and events for other tools: files by their names, in base64.
+        """Tracks and events for other programs: files (base64, by name).
 
         Raises
         ------
         ParameterError
             if there is no such format.
         WorkError
-            if it needs the mission's place on the earth, and that is not known.
+            if the format needs the mission's place on the earth, and the mission has none.
         """
         if to not in FORMATS:
             raise ParameterError(f"to: {to}; expected {', '.join(FORMATS)}{did_you_mean(to, FORMATS)}")
@@ -81,7 +81,7 @@ class Records:
         return await self._pool.run("record", partial(self._given, run, to))
 
     def _given(self, number: int, to: str) -> dict[str, Any]:
-        """What the worker needs, from the database."""
+        """Read the worker's arguments from the database."""
         run = self._store.runs.get(number)
         entries = self._store.log.entries(number)
         if not entries:

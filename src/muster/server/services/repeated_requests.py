@@ -1,4 +1,4 @@
-"""A request that is sent again, because its answer did not arrive, makes nothing again."""
+"""Repeated requests: a request that is sent again, because its answer did not arrive, makes nothing again."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ T = TypeVar("T")
 async def made_once(
     store: Store, request: RequestKey | None, make: Callable[[], Awaitable[T]], get: Callable[[int], Awaitable[T]]
 ) -> T:
-    """What a request makes; where it came before, what it made then, as that is now.
+    """The result of a request; of a repeated request the result of the first, as it is now.
 
     Raises
     ------

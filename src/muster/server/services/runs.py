@@ -1,4 +1,4 @@
-"""Runs: plans are carried out, in simulated worlds or by real robots; watched, steered, and resumed after a crash."""
+"""Runs: plans carried out in simulated worlds or by real robots, watched, controlled, and resumed after a crash."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, Who, World
+from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
+from muster.running.worlds import WORLDS
 from muster.server.runs.robot_claims import claims_of
 from muster.server.runs.run_session import TOO_LATE, Carrying
-from muster.server.runs.run_settings import SIMULATED, require_action, require_speed, require_world
+from muster.server.runs.run_settings import require_action, require_speed, require_world
 from muster.server.runs.subscribers import Feed
 from muster.server.runs.unsaved_actions import unkept
-from muster.server.services.actions import Actions, Refused, outcome_of, unheard
+from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
 from muster.server.services.database_lock import lock_of_runs
 from muster.server.services.repeated_requests import made_once
 from muster.server.settings import Settings
@@ -29,44 +30,44 @@ if TYPE_CHECKING:
     from muster.server.store.store import Store
 
 PATIENCE_S = 0.7
-"""Seconds for the database to take what a user asks of a run, before it is obeyed without: robots may have to stop."""
+"""Seconds that a command to a run waits for the database; it takes effect then in any case."""
 
 _log = logging.getLogger("muster.runs")
 
 
 class Runs:
-    """All runs of a database, and those that are under way here."""
+    """The runs of a database, and the sessions of those that are under way."""
 
-    def __init__(self, store: Store, settings: Settings, refused: Refused = unheard) -> None:
+    def __init__(self, store: Store, settings: Settings, refused: Refused = ignore_refusal) -> None:
         self._store, self._settings = store, settings
         self._actions = Actions(store, refused)
         self._lock = lock_of_runs(settings)
         self._live: dict[int, Carrying] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
-        self._beginning: list[frozenset[str]] = []  # what runs that are not under way yet claim
+        self._beginning: list[frozenset[str]] = []  # robots of runs that are being started
         self._slow: set[asyncio.Task[Action]] = set()
         self._last = datetime.now(UTC)
 
     async def start_up(self) -> None:
-        """Go on with runs that a server left unfinished, however it ended."""
+        """Resume the runs that the last server left unfinished."""
         await asyncio.to_thread(sweep, OF_RUNS)
         unfinished = await asyncio.to_thread(self._store.runs.unfinished)
         for k, run in enumerate(unfinished):
             later = next((other for other in unfinished[k + 1 :] if _claims(run) & _claims(other)), None)
             if later is None:
                 self._carry(run)
-            else:  # which began when this one was over, and that could not be written
+            else:  # it started after this run had ended, which could not be written
                 await self._leave(run, f"run {later.id}, which began later, commands its robots")
 
     async def close(self) -> None:
-        """End all runners; the runs go on when a server is there again. Real robots are told to stand."""
+        """End all runners; the runs resume when a server starts again. Real robots are stopped."""
         await asyncio.gather(*(carrying.close() for carrying in self._live.values()))
         await asyncio.gather(*self._tasks.values())
         await asyncio.gather(*self._slow, return_exceptions=True)
 
     async def start(
         self,
-        who: Who,
+        who: User,
         plan: int,
         world: str = "kinematic",
         speed: float | None = 1.0,
@@ -74,23 +75,23 @@ class Runs:
         request: RequestKey | None = None,
         **settings: Any,
     ) -> Run:
-        """Begin to carry a plan out; a request that came before gives the run that it started then.
+        """Start to carry out a plan. A repeated request returns the run of the first.
 
         Raises
         ------
         ForbiddenError, NotFoundError, ParameterError
-            if they may only watch; there is no such plan; a world, speed or setting is none.
+            if the user may only watch; there is no such plan; the world, speed or a setting is wrong.
         ConflictError
-            if a run that is under way commands robots that this one would (`claims_of`).
+            if another run commands some of the robots (`claims_of`), or another request had the key.
         BusyError
-            if as many runs are under way as may be.
+            if the most runs are under way.
         """
         start = partial(self._start, who, plan, world, speed, settings, request)
         return await made_once(self._store, request, start, self.get)
 
     async def _start(
         self,
-        who: Who,
+        who: User,
         plan: int,
         world: str,
         speed: float | None,
@@ -101,7 +102,7 @@ class Runs:
         async with self._written_if_refused(who, "run.start", asked):
             require_world(world, self._settings.bridges, settings)
             speed = require_speed(speed)
-            if world not in SIMULATED and speed != 1.0:
+            if world not in WORLDS and speed != 1.0:
                 raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
             claims = claims_of(world, settings)
             self._require_unclaimed(claims)
@@ -114,23 +115,23 @@ class Runs:
                 self._beginning.remove(claims)
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
-        """The newest first."""
+        """Runs, newest first."""
         runs = await asyncio.to_thread(self._store.runs.list, limit)
         return [self._newest(run) for run in runs]
 
     def present(self) -> Sequence[Run]:
-        """Those under way, the newest first; the database is not asked."""
+        """Runs under way, newest first, without asking the database."""
         return [self._live[run].run for run in sorted(self._live, reverse=True) if not self._live[run].over]
 
     async def over(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, the newest first; also those of which the database does not know it yet."""
+        """Runs that are over, newest first, including those whose end is not written yet."""
         ended = {run: carrying.run for run, carrying in self._live.items() if carrying.over}
         kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
         found = {run.id: run for run in kept} | ended
         return [found[run] for run in sorted(found, reverse=True)[:limit]]
 
     async def get(self, run: int) -> Run:
-        """One run, as it is now.
+        """A run as it is now.
 
         Raises
         ------
@@ -139,11 +140,11 @@ class Runs:
         carrying = self._live.get(run)
         return carrying.run if carrying is not None else await asyncio.to_thread(self._store.runs.get, run)
 
-    async def act(self, who: Who, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
-        """Ask something of a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
+    async def act(self, who: User, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
+        """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
 
-        What comes of it is told to watchers, and is in the action later. It is in the database before it is obeyed;
-        where that refuses or takes its time, it is obeyed all the same, as robots may have to be stopped.
+        Subscribers receive the outcome, and the action has it later. The action is written before the command takes
+        effect. If the database fails or is slow, the command takes effect anyway: robots may have to be stopped.
 
         Raises
         ------
@@ -164,7 +165,7 @@ class Runs:
         return action
 
     async def entries(self, run: int, after: int = 0, limit: int | None = None) -> Sequence[Entry]:
-        """The log of a run beyond an entry.
+        """The log of a run after an entry.
 
         Raises
         ------
@@ -177,12 +178,12 @@ class Runs:
         return await asyncio.to_thread(self._store.log.entries, run, after, limit)
 
     async def kept(self, run: int) -> None:
-        """Wait until all that is known of a run here is in the database.
+        """Wait until all of a run's log is in the database.
 
         Raises
         ------
         StoreError
-            if that refuses it.
+            if it cannot be written.
         """
         carrying = self._live.get(run)
         if carrying is not None:
@@ -196,7 +197,7 @@ class Runs:
         return None if carrying is None else carrying.feed
 
     def pid(self, run: int) -> int | None:
-        """The process that carries a run out; None where there is none."""
+        """The process id of a run's runner; None if there is none."""
         carrying = self._live.get(run)
         return None if carrying is None else carrying.pid
 
@@ -207,41 +208,41 @@ class Runs:
 
     @property
     def watchers(self) -> int:
-        """How many watch, in all."""
+        """How many WebSockets and pages watch runs."""
         return sum(carrying.feed.watchers for carrying in self._live.values())
 
     @property
     def troubles(self) -> Sequence[str]:
-        """Why runs under way are not being kept, a line each."""
+        """Why logs of runs are not being written, one line per run."""
         live = tuple(self._live.items())
         return tuple(f"run {run}: {each.journal.trouble}" for run, each in live if each.journal.trouble)
 
     def statuses(self) -> Sequence[str]:
-        """The newest `status` of each run under way, as watchers were told it."""
+        """The newest `status` message of each run under way."""
         texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
         return tuple(text for text in texts if text)
 
     @asynccontextmanager
-    async def _written_if_refused(self, who: Who, verb: str, asked: Mapping[str, Any]) -> AsyncIterator[None]:
-        """Around what writes itself down once it is done: here it is if it is refused; of no run, as there may be none.
+    async def _written_if_refused(self, who: User, verb: str, asked: Mapping[str, Any]) -> AsyncIterator[None]:
+        """Write a refused action; the block writes its action itself if it succeeds.
 
-        Whoever asked is told why, whether the database takes it or not, however long that lasts.
+        The user gets the reason also if the database fails or is slow.
 
         Raises
         ------
         ForbiddenError
-            if they may only watch.
+            if the user may only watch.
         """
         self._actions.require_command(who, verb)
         try:
             yield
         except MusterError as error:
-            with suppress(MusterError):  # `_written` says so
+            with suppress(MusterError):  # `_written` logs it
                 await self._patiently(self._store.actions.refused, who, verb, asked, outcome_of(error))
             raise
 
     def _require_unclaimed(self, claims: frozenset[str]) -> None:
-        """Raise ConflictError where another run commands such robots, or begins to."""
+        """Raise ConflictError if another run commands some of these robots, or starts to."""
         others = [(f"run {run}", _claims(each.run)) for run, each in self._live.items() if not each.over]
         for whose, theirs in [*others, *(("another run", theirs) for theirs in self._beginning)]:
             if both := claims & theirs:
@@ -250,7 +251,7 @@ class Runs:
 
     def _add(
         self,
-        who: Who,
+        who: User,
         plan: int,
         world: str,
         speed: float | None,
@@ -262,7 +263,7 @@ class Runs:
             entry.mission,
             entry.mission_version,
             plan,
-            cast("World", world),
+            world,
             settings,
             speed,
             who.name,
@@ -277,9 +278,9 @@ class Runs:
         return carrying
 
     async def _leave(self, run: Run, why: str) -> None:
-        """Do not go on with a run."""
+        """Give a run up instead of resuming it."""
         _log.warning("run %d: not gone on with: %s", run.id, why)
-        with suppress(StoreError):  # the next server is to find out again
+        with suppress(StoreError):  # the next start tries again
             await asyncio.to_thread(self._store.runs.set, run.id, state="failed", remark=why)
 
     def _forget(self, run: int) -> None:
@@ -290,15 +291,15 @@ class Runs:
         carrying = self._live.get(run.id)
         return run if carrying is None else carrying.run
 
-    async def _added(self, action: Action, who: Who, carrying: Carrying) -> Action:
-        """An action as the database has it; or as it is, where that refuses it or takes its time."""
-        if carrying.journal.trouble or self._slow:  # it would do so again
+    async def _added(self, action: Action, who: User, carrying: Carrying) -> Action:
+        """The action as written; as given if the database fails or is slow."""
+        if carrying.journal.trouble or self._slow:  # the database fails or is slow
             return action
         what = (who, action.verb, action.data, action.run, action.at)
         return await self._patiently(self._store.actions.add, *what) or action
 
     async def _patiently(self, write: Callable[..., Action], *what: Any) -> Action | None:
-        """Have an action written down; None where the database refuses that, or takes its time and goes on with it."""
+        """Write an action; None if the database fails, or takes longer than PATIENCE_S and goes on writing."""
         writing = asyncio.create_task(asyncio.to_thread(write, *what))
         writing.add_done_callback(self._written)
         done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
@@ -316,7 +317,7 @@ class Runs:
             _log.warning("an action was not written down: %s", error)
 
     def _moment(self) -> datetime:
-        """Now, and later than the last time."""
+        """The present time, later than at the last call."""
         self._last = max(datetime.now(UTC), self._last + timedelta(microseconds=1))
         return self._last
 

@@ -1,4 +1,4 @@
-"""The desk: every service of mission control, opened and closed together."""
+"""All services of mission control, opened and closed together."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
 from threading import Thread
 
-from muster.server.services.actions import Actions, Refused, unheard
+from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.database_lock import Lock, TakenError, alone_with
 from muster.server.services.jobs import Jobs
 from muster.server.services.missions import Missions
@@ -22,15 +22,15 @@ from muster.server.store.timed_log import TimedLog
 from muster.server.work.pool import Pool
 
 _THREADS = 12
-"""That wait for the database, fewer than its connections: while some wait for a lock pages can still be read."""
+"""Threads for the database, fewer than its connections: pages can be read while some threads wait for a lock."""
 
 _LOOK_S = 1.0
-"""Until it is looked again whether the database is still this server's own."""
+"""Between two checks of the database lock."""
 
 
 @dataclass(frozen=True)
-class Desk:
-    """What the API and the pages call; `store` and `pool` are for health and metrics alone."""
+class Services:
+    """The services that the API and the pages call; `store` and `pool` are for health and metrics only."""
 
     missions: Missions
     plans: Plans
@@ -46,17 +46,17 @@ class Desk:
 
 
 @asynccontextmanager
-async def open_desk(
-    settings: Settings, appended: Callable[[float], None] = lambda _: None, refused: Refused = unheard
-) -> AsyncIterator[Desk]:
-    """The desk; queued jobs and unfinished runs go on, and are left where they are when it closes.
+async def open_services(
+    settings: Settings, appended: Callable[[float], None] = lambda _: None, refused: Refused = ignore_refusal
+) -> AsyncIterator[Services]:
+    """Open the services: queued jobs and unfinished runs go on, and are left where they are at the end.
 
     Parameters
     ----------
     appended
-        is told how many seconds each writing of a run's log took.
+        receives the seconds that each write of a run's log took.
     refused
-        is told of everybody who may only watch and wanted to command.
+        receives each command that a watcher tries.
 
     Raises
     ------
@@ -73,7 +73,7 @@ async def open_desk(
         pool = Pool(workers=settings.workers, memory_mb=settings.memory_mb)
         closing.push_async_callback(pool.close)
         runs = Runs(store, settings, refused)
-        desk = Desk(
+        services = Services(
             missions=Missions(store, pool, refused),
             plans=Plans(store, pool, refused),
             jobs=Jobs(store, pool, settings, refused),
@@ -84,17 +84,17 @@ async def open_desk(
             store=store,
             pool=pool,
         )
-        await desk.jobs.start()
-        closing.push_async_callback(desk.jobs.close)
-        await desk.runs.start_up()
-        closing.push_async_callback(desk.runs.close)
+        await services.jobs.start()
+        closing.push_async_callback(services.jobs.close)
+        await services.runs.start_up()
+        closing.push_async_callback(services.runs.close)
         watch = asyncio.create_task(_until_taken(lock, runs))
         closing.callback(watch.cancel)
-        yield replace(desk, taken=watch)
+        yield replace(services, taken=watch)
 
 
 async def _until_taken(lock: Lock, runs: Runs) -> None:
-    """Look after the lock, by threads of its own as others may all wait for the database.
+    """Check the lock every second, in separate threads: the pool's threads may all wait for the database.
 
     Raises
     ------
@@ -111,9 +111,9 @@ async def _until_taken(lock: Lock, runs: Runs) -> None:
 
 
 def _aside(work: Callable[[], None]) -> asyncio.Future[None]:
-    """What a thread does for which nobody waits at the end: no executor's, whose threads the interpreter joins."""
+    """Run in a daemon thread: the interpreter would join the threads of an executor at its end."""
     done: Future[None] = Future()
-    done.set_running_or_notify_cancel()  # whoever waits may be cancelled, the thread cannot
+    done.set_running_or_notify_cancel()  # the future may be cancelled, the thread cannot
 
     def go() -> None:
         try:

@@ -1,7 +1,6 @@
-"""Missions that come with Muster, as mission control shows and stores them: text, and the files that it names.
+"""Shipped missions as mission control lists and stores them: their texts and the files that they name.
 
-Nothing of them is parsed here: all shipped missions are written in one form (see `library.shelf`). Those without robots
-(TSPLIB) are not among them, nor any whose robots the user would have to add.
+They are not parsed here: all are written in one form (see `library.shelf`). Missions without robots are left out.
 """
 
 from __future__ import annotations
@@ -19,12 +18,12 @@ AUTHOR = "muster"
 
 @cache
 def shipped_entries() -> dict[str, MissionEntry]:
-    """Every shipped mission that nobody has used yet, by its id, which is its name."""
+    """All shipped missions by id, which is their name."""
     return {name: _entry(name) for name in mission_names() if _file(name) is not None}
 
 
 def shipped_version(name: str) -> MissionVersion:
-    """A shipped mission before it is stored: version 0. Its map goes beside it and is named so."""
+    """A shipped mission before it is stored (version 0), with its map among its files."""
     file = _file(name)
     if file is None:
         raise KeyError(name)
@@ -39,7 +38,7 @@ def shipped_version(name: str) -> MissionVersion:
 
 
 def shipped_summary(name: str) -> dict[str, Any]:
-    """What the list of missions has of one."""
+    """The summary of a shipped mission."""
     entry = shipped_entries()[name]
     return {"name": entry.name, "robots": entry.robots, "tasks": entry.tasks, "dimensions": entry.dimensions}
 

@@ -1,4 +1,4 @@
-"""Missions as strangers send them: how large their parts may be, and what files may be called."""
+"""Limits of uploaded missions: sizes, and names of files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _EXPECTED_NAME = f"letters, digits, and ._-+() or spaces between, at most {LONGE
 
 
 def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
-    """Refuse what is too large, and names that lead out of a mission's folder or would be hidden in it.
+    """Refuse missions that are too large, and file names that lead out of the mission's folder or are hidden.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
 
 
 def require_file_name(name: str) -> None:
-    """Raise ParameterError unless it may be the name of a file beside a mission."""
+    """Raise ParameterError unless a file of a mission may have this name."""
     if (
         len(name) > LONGEST_FILE_NAME
         or not re.fullmatch(FILE_NAME, name)
@@ -48,19 +48,19 @@ def require_file_name(name: str) -> None:
         raise ParameterError(f"a file called {shown(name)}; expected {_EXPECTED_NAME}")
 
 
-def for_work(text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:
-    """A mission as workers are given it."""
+def mission_input(text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:
+    """A mission as an argument of worker tasks."""
     packed = {file: base64.b64encode(data).decode("ascii") for file, data in files.items()}
     return {"text": text, "files": packed, "name": name}
 
 
 def as_text(name: str, data: bytes) -> str:
-    """A file's text.
+    """The text of a file.
 
     Raises
     ------
     MissionError
-        if it is none.
+        if it is not UTF-8.
     """
     try:
         return data.decode("utf-8").removeprefix("\ufeff")
@@ -71,5 +71,5 @@ def as_text(name: str, data: bytes) -> str:
 
 
 def findings_of(errors: list[dict[str, Any]]) -> list[Finding]:
-    """What a worker found wrong."""
+    """The findings of a worker."""
     return [Finding(**error) for error in errors]

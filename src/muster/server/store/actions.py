@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import Action, NotFoundError, Who
+from muster.exchange.mission_control import Action, NotFoundError, User
 from muster.server.store.database import Database
 from muster.server.store.schema import actions, runs
 
@@ -18,7 +18,7 @@ class ActionTable:
         self._database = database
 
     def add(
-        self, who: Who, verb: str, data: Mapping[str, Any], run: int | None = None, at: datetime | None = None
+        self, who: User, verb: str, data: Mapping[str, Any], run: int | None = None, at: datetime | None = None
     ) -> Action:
         """A new action, whose outcome is not known yet; of a run one of that very time is not added again.
 
@@ -31,7 +31,7 @@ class ActionTable:
             there = None if run is None or at is None else _of_that_time(connection, run, at)
             return there or add_action(connection, who, verb, data, run, at=at)
 
-    def refused(self, who: Who, verb: str, data: Mapping[str, Any], why: str) -> Action:
+    def refused(self, who: User, verb: str, data: Mapping[str, Any], why: str) -> Action:
         """A new action that was refused; of no run, as that of which it was asked may not be there."""
         with self._database.writing() as connection:
             return add_action(connection, who, verb, data, None, why)
@@ -87,7 +87,7 @@ def _of_that_time(connection: Connection, run: int, at: datetime) -> Action | No
 
 def add_action(
     connection: Connection,
-    who: Who,
+    who: User,
     verb: str,
     data: Mapping[str, Any],
     run: int | None,

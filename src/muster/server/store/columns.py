@@ -48,7 +48,7 @@ class Number(TypeDecorator[float]):
         return None if value is None else float(value)
 
 
-class Words(TypeDecorator[str]):
+class Text(TypeDecorator[str]):
     """A text. PostgreSQL cannot keep U+0000, nor either database half a character: nobody may write them."""
 
     impl = String

@@ -14,7 +14,7 @@ _COUNTED = (missions, mission_versions, plans, jobs, runs, entries, stretches, a
 
 
 @dataclass(frozen=True)
-class Contents:
+class DatabaseInfo:
     """How messages call a database, which tables it has, its size, and how many rows are in each."""
 
     database: str
@@ -23,7 +23,7 @@ class Contents:
     rows: Mapping[str, int]
 
 
-def contents(url: str) -> Contents:
+def database_info(url: str) -> DatabaseInfo:
     """Count what is in a database.
 
     Raises
@@ -40,4 +40,4 @@ def contents(url: str) -> Contents:
             }
             size = "page_count * page_size FROM pragma_page_count, pragma_page_size"
             query = f"SELECT {size}" if database.is_sqlite else "SELECT pg_database_size(current_database())"
-            return Contents(database.name, HEAD, connection.execute(text(query)).scalar_one(), rows)
+            return DatabaseInfo(database.name, HEAD, connection.execute(text(query)).scalar_one(), rows)

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, Who, World
+from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, User, World
 from muster.server.store.actions import add_action
 from muster.server.store.database import Database
 from muster.server.store.request_keys import RequestKey, keyed
@@ -30,7 +30,7 @@ class RunTable:
         settings: Mapping[str, Any],
         speed: float | None,
         author: str,
-        by: Who | None = None,
+        by: User | None = None,
         request: RequestKey | None = None,
     ) -> Run:
         """A new run, starting; in the same transaction the action of whoever starts it, so that none is without.

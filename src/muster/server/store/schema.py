@@ -21,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-from muster.server.store.columns import Instant, Number, Words
+from muster.server.store.columns import Instant, Number, Text
 
 HEAD = "0002"
 
@@ -57,7 +57,7 @@ def _of_a_version() -> ForeignKeyConstraint:
 missions = Table(
     "missions",
     metadata,
-    Column("id", Words, primary_key=True),
+    Column("id", Text, primary_key=True),
     _always("newest", Integer),
     _always("shipped", Boolean),
     _always("hidden", Boolean),
@@ -66,39 +66,39 @@ missions = Table(
 mission_versions = Table(
     "mission_versions",
     metadata,
-    Column("mission", Words, ForeignKey("missions.id"), primary_key=True),
+    Column("mission", Text, ForeignKey("missions.id"), primary_key=True),
     Column("version", Integer, primary_key=True),
-    _always("text", Words),
+    _always("text", Text),
     _always("summary", _json()),
-    _always("author", Words),
-    _always("note", Words),
+    _always("author", Text),
+    _always("note", Text),
     _always("at", Instant),
 )
 
 blobs = Table(
     "blobs",
     metadata,
-    Column("sha256", Words, primary_key=True),
+    Column("sha256", Text, primary_key=True),
     _always("data", LargeBinary),
 )
 
 mission_files = Table(
     "mission_files",
     metadata,
-    Column("mission", Words, primary_key=True),
+    Column("mission", Text, primary_key=True),
     Column("version", Integer, primary_key=True),
-    Column("name", Words, primary_key=True),
-    _always("sha256", Words, ForeignKey("blobs.sha256")),
+    Column("name", Text, primary_key=True),
+    _always("sha256", Text, ForeignKey("blobs.sha256")),
     ForeignKeyConstraint(["mission", "version"], ["mission_versions.mission", "mission_versions.version"]),
 )
 
 plans = _numbered(
     "plans",
-    _always("mission", Words),
+    _always("mission", Text),
     _always("mission_version", Integer),
     _always("version", Integer),
-    _always("origin", Words),
-    _always("author", Words),
+    _always("origin", Text),
+    _always("author", Text),
     _always("at", Instant),
     _always("head", _json()),
     _always("body", _json()),
@@ -108,37 +108,37 @@ plans = _numbered(
 
 jobs = _numbered(
     "jobs",
-    _always("kind", Words),
-    _always("state", Words),
-    _always("mission", Words),
+    _always("kind", Text),
+    _always("state", Text),
+    _always("mission", Text),
     _always("mission_version", Integer),
     _always("arguments", _json()),
-    _always("author", Words),
+    _always("author", Text),
     _always("asked_at", Instant),
     Column("begun_at", Instant),
     Column("ended_at", Instant),
     Column("progress", _json()),
     Column("result", _json()),
-    _always("error", Words),
+    _always("error", Text),
     _of_a_version(),
     Index(None, "state"),
 )
 
 runs = _numbered(
     "runs",
-    _always("mission", Words),
+    _always("mission", Text),
     _always("mission_version", Integer),
     _always("plan", Integer, ForeignKey("plans.id")),
-    _always("world", Words),
+    _always("world", Text),
     _always("settings", _json()),
     Column("speed", Number),
-    _always("state", Words),
+    _always("state", Text),
     _always("time_s", Number),
-    _always("author", Words),
+    _always("author", Text),
     _always("at", Instant),
     Column("ended_at", Instant),
     _always("resumed", Integer),
-    _always("remark", Words),
+    _always("remark", Text),
     Column("report", _json()),
     _of_a_version(),
     Index(None, "state"),
@@ -150,7 +150,7 @@ entries = Table(
     Column("run", Integer, ForeignKey("runs.id"), primary_key=True),
     Column("seq", Integer, primary_key=True),
     _always("time_s", Number),
-    _always("kind", Words),
+    _always("kind", Text),
     _always("data", _json()),
     _always("at", Instant),
 )
@@ -168,22 +168,22 @@ stretches = Table(
 actions = _numbered(
     "actions",
     _always("at", Instant),
-    _always("who", Words),
-    _always("role", Words),
-    _always("address", Words),
-    _always("verb", Words),
+    _always("who", Text),
+    _always("role", Text),
+    _always("address", Text),
+    _always("verb", Text),
     _always("data", _json()),
     Column("run", Integer, ForeignKey("runs.id"), index=True),
     Column("applied_s", Number),
-    _always("outcome", Words),
+    _always("outcome", Text),
 )
 
 request_keys = Table(
     "request_keys",
     metadata,
-    Column("user", Words, primary_key=True),
-    Column("key", Words, primary_key=True),
-    _always("digest", Words),
+    Column("user", Text, primary_key=True),
+    Column("key", Text, primary_key=True),
+    _always("digest", Text),
     _always("made", Integer),
     _always("at", Instant),
 )

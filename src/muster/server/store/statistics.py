@@ -16,7 +16,7 @@ _NEWEST = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class Figures:
+class Statistics:
     """Counts by state, and of the newest that are over the mean, None where there are none.
 
     Parameters
@@ -36,7 +36,7 @@ class Figures:
     flown: float | None
 
 
-def figures(store: Store) -> Figures:
+def statistics(store: Store) -> Statistics:
     """The figures as they are now; raises StoreError."""
     took = select(jobs.c.begun_at, jobs.c.ended_at).where(jobs.c.state == "done", jobs.c.begun_at.is_not(None))
     done = took.order_by(jobs.c.id.desc()).limit(_NEWEST)
@@ -50,7 +50,7 @@ def figures(store: Store) -> Figures:
         times = connection.execute(done).all()
         heads = [row.head for row in connection.execute(made)]
         reports = [row.report for row in connection.execute(ended)]
-    return Figures(
+    return Statistics(
         jobs=of_jobs,
         runs=of_runs,
         job_s=_mean((ended_at - begun_at).total_seconds() for begun_at, ended_at in times),

@@ -32,7 +32,7 @@ def mission_of(given: Mapping[str, Any]) -> Mission:
     MissionError
         with everything that is wrong with it; also if it names a file that is not among `files`.
     """
-    files = laid_down(given.get("files") or {})
+    files = written_files(given.get("files") or {})
     file = _file_name(str(given.get("name") or "mission"))
     text = given["text"]
     if _HALF_CHARACTER.search(text):
@@ -57,7 +57,7 @@ def plan_of(given: object, name: str = "plan") -> Plan:
     return plan_from(given, name)
 
 
-def laid_down(files: Mapping[str, str]) -> frozenset[str]:
+def written_files(files: Mapping[str, str]) -> frozenset[str]:
     """Write files (base64, by name) beside where a mission's own file would be; go there; where they are.
 
     Raises

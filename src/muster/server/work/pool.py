@@ -13,7 +13,7 @@ from typing import Any
 
 from muster.server.work.errors import TimedOut, WorkError
 from muster.server.work.process import PROGRAM, Progress, Worker
-from muster.server.work.stop_request import Halt
+from muster.server.work.stop_request import StopRequest
 from muster.server.work.tasks import TASKS, Task
 from muster.server.work.temporary_folders import OF_WORK, sweep
 from muster.server.work.turns import CURRENT_USER, Turns
@@ -72,7 +72,7 @@ class Pool:
         *,
         on_progress: Progress | None = None,
         limit_s: float | None = None,
-        halt: Halt | None = None,
+        stop_request: StopRequest | None = None,
         user: str | None = None,
     ) -> dict[str, Any]:
         """Have a task done; cancelling whoever awaits this kills the process at once.
@@ -87,7 +87,7 @@ class Pool:
             is told how far it is.
         limit_s
             how long it may take once it has begun; by default as the task says.
-        halt
+        stop_request
             asks it to end with what it has; tasks that cannot do that pass it over.
         user
             whose turn it takes; by default the turn of whoever sent the present request (`CURRENT_USER`).
@@ -106,7 +106,7 @@ class Pool:
             async with self._worker() as worker:
                 try:
                     async with asyncio.timeout(limit_s):
-                        return await worker.ask(task, given, on_progress, halt or Halt())
+                        return await worker.ask(task, given, on_progress, stop_request or StopRequest())
                 except TimeoutError:
                     raise TimedOut(f"it took longer than {limit_s:g} s, and was stopped") from None
 

@@ -20,7 +20,7 @@ from typing import Any
 from muster.mission.errors import Finding
 from muster.server.work.environment import without_secrets
 from muster.server.work.errors import OutOfMemory, WorkerDied, WorkError
-from muster.server.work.stop_request import Halt
+from muster.server.work.stop_request import StopRequest
 
 PROGRAM = (sys.executable, "-P", "-m", "muster.server.work.worker")
 STOP = b'{"stop": true}\n'
@@ -82,9 +82,9 @@ class Worker:
         return self._process.returncode is None and not self._spent
 
     async def ask(
-        self, task: str, arguments: Mapping[str, Any], on_progress: Progress | None, halt: Halt
+        self, task: str, arguments: Mapping[str, Any], on_progress: Progress | None, stop_request: StopRequest
     ) -> dict[str, Any]:
-        """Have it do a piece of work, which `halt` ends early.
+        """Have it do a piece of work, which `stop_request` ends early.
 
         Raises
         ------
@@ -97,7 +97,7 @@ class Worker:
         with suppress(BrokenPipeError, ConnectionResetError):  # what it has said before it ended counts
             self._process.stdin.write(request)
             await self._process.stdin.drain()
-        with halt.reaching(partial(self._process.stdin.write, STOP)):
+        with stop_request.reaching(partial(self._process.stdin.write, STOP)):
             return await self._answer(on_progress)
 
     async def _answer(self, on_progress: Progress | None) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 
-class Halt:
+class StopRequest:
     """Asks a piece of work to end with the best that it has, whether it has begun or not; not safe for threads."""
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Who is next: places that users take in turn, so that nobody's work keeps that of others waiting for long."""
+"""Fair queueing: places that users take in turn, so that nobody's work keeps that of others waiting for long."""
 
 from __future__ import annotations
 

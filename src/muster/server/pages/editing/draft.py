@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import Any
 
-from muster.exchange.mission_control import MissionVersion, Who
+from muster.exchange.mission_control import MissionVersion, User
 from muster.server.pages.editing.history import History
 
 _QUIET_S = 0.35  # without a change, before a text is checked
@@ -37,7 +37,7 @@ class Draft:
     Parameters
     ----------
     missions
-        the desk's missions.
+        the services' missions.
     base
         the version that the text came from.
     on_change, on_check, on_wait
@@ -102,7 +102,7 @@ class Draft:
         self._take(text, "typed")
 
     async def edit(self, change: str, *arguments: object) -> None:
-        """Take what a change makes of the text; raises what the desk's `edit` raises, and is then as before."""
+        """Take what a change makes of the text; raises what the services' `edit` raises, and is then as before."""
         with self._waiting():
             async with self._editing:  # one after the other, as each begins with what the last one made
                 before, made = None, ""
@@ -117,8 +117,8 @@ class Draft:
             pass
 
     async def look(self, *keys: str) -> Mapping[str, Any]:
-        """What stands at some keys of the text; raises what the desk's `look` raises."""
-        found: Mapping[str, Any] = await self.missions.look(self.text, *keys)
+        """What stands at some keys of the text; raises what the services' `look` raises."""
+        found: Mapping[str, Any] = await self.missions.read_keys(self.text, *keys)
         return found
 
     async def undo(self) -> None:
@@ -141,7 +141,7 @@ class Draft:
         self._history.change(version.text if text is None else text)
         self._tell("load")
 
-    async def save(self, who: Who, note: str = "") -> bool:
+    async def save(self, who: User, note: str = "") -> bool:
         """Save the text as a version, and say whether that was needed.
 
         Raises

@@ -12,7 +12,7 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
-from muster.exchange.mission_control import Who
+from muster.exchange.mission_control import User
 from muster.mission.errors import MusterError
 from muster.server.pages.notices import words_of
 
@@ -28,14 +28,14 @@ class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_c
     Parameters
     ----------
     runs
-        the desk's service: commands are given to its `act`.
+        the services' service: commands are given to its `act`.
     who
         looks at it; without the role `command` there is nothing to press.
     wall
         large, and nothing to press.
     """
 
-    def __init__(self, runs: Any, run: int, who: Who, *, wall: bool) -> None:
+    def __init__(self, runs: Any, run: int, who: User, *, wall: bool) -> None:
         super().__init__()
         self._runs, self._run, self._who = runs, run, who
         self.props["path"] = f"/api/v1/runs/{run}/stream"

@@ -14,7 +14,7 @@ from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import told, words_of
 from muster.server.pages.plan.map_scene import TILES, image_of
 from muster.server.pages.tables import table
-from muster.server.pages.visitor import PATIENCE_S, is_seen, on_the_wall, the_asker, the_desk
+from muster.server.pages.visitor import PATIENCE_S, is_seen, on_the_wall, the_services, the_user
 
 KEYS = {
     "space": "pause, go on",
@@ -40,8 +40,8 @@ async def runs_page() -> None:
         @ui.refreshable
         async def listed() -> None:
             with told():
-                _under_way(the_desk().runs.present())
-                _over(await the_desk().runs.over(_ENDED))
+                _under_way(the_services().runs.present())
+                _over(await the_services().runs.over(_ENDED))
 
         if await is_seen():
             await listed()
@@ -78,9 +78,9 @@ def _facts(run: Run) -> tuple[str, ...]:
 @ui.page("/live/{run}", response_timeout=PATIENCE_S)
 async def run_page(run: int) -> None:
     """One run as it is carried out."""
-    desk, who, wall = the_desk(), the_asker(), on_the_wall()
+    services, who, wall = the_services(), the_user(), on_the_wall()
     try:
-        entry = await desk.runs.get(run)
+        entry = await services.runs.get(run)
     except MusterError as error:
         with frame("Live"), ui.element("p"):
             ui.label(words_of(error))
@@ -90,7 +90,7 @@ async def run_page(run: int) -> None:
         return
     with frame("Live", title=f"{entry.mission}, run {run}", keys=KEYS) as content:
         content.classes("live-view")
-        view = RunView(desk.runs, run, who, wall=wall)
+        view = RunView(services.runs, run, who, wall=wall)
     if await is_seen():  # the robots before what lies under them: neither database nor workers are needed to stop them
         with told():
             view.lay(**await _ground(entry))
@@ -98,9 +98,11 @@ async def run_page(run: int) -> None:
 
 async def _ground(run: Run) -> dict[str, Any]:
     """The floor plan and the map tiles of a run's mission; without either there is a plain grid."""
-    desk = the_desk()
-    version = await desk.missions.get(run.mission, run.mission_version)
-    found = await desk.missions.ground(version)
+    services = the_services()
+    version = await services.missions.get(run.mission, run.mission_version)
+    found = await services.missions.floor_plan(version)
     earth = found["earth"]
-    tiles = {"url": TILES, "origin": [earth["lat_deg"], earth["lon_deg"]]} if desk.settings.tiles and earth else None
+    tiles = (
+        {"url": TILES, "origin": [earth["lat_deg"], earth["lon_deg"]]} if services.settings.tiles and earth else None
+    )
     return {"image": image_of(found["floor"], version), "tiles": tiles}

@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import flow_text
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import told, warn
-from muster.server.pages.visitor import the_asker, the_desk
+from muster.server.pages.visitor import the_services, the_user
 from muster.server.work import WorkError
 
 EMPTY = """\
@@ -50,10 +50,10 @@ _CSV = (  # as `mission.thesis_csv` reads them
 )
 
 
-async def open_making() -> None:
+async def open_new_mission() -> None:
     """Open the dialog; the mission that is made is opened in Plan."""
     with told():
-        shipped = [entry.id for entry in await the_desk().missions.list() if entry.shipped]
+        shipped = [entry.id for entry in await the_services().missions.list() if entry.shipped]
         with ui.dialog() as dialog, ui.card().classes("making"):
             ui.label("New mission").classes("dialog-title")
             name = ui.input("Name", value="my mission").props("outlined dense autofocus").classes("full")
@@ -112,20 +112,20 @@ def refused(files: Sequence[tuple[str, str, int]]) -> str:
 
 
 async def _make(name: str, start: str) -> None:
-    missions = the_desk().missions
+    missions = the_services().missions
     title = name.strip() or "mission"
     if start not in _STARTS:
         old = await missions.get(start)
-        made = await missions.create(the_asker(), await named(old.text, title), dict(old.files), title)
+        made = await missions.create(the_user(), await named(old.text, title), dict(old.files), title)
     else:
-        made = await missions.create(the_asker(), _STARTS[start][0].format(name=flow_text(title)), {}, title)
+        made = await missions.create(the_user(), _STARTS[start][0].format(name=flow_text(title)), {}, title)
     ui.navigate.to(f"/plan/{made.mission}")
 
 
 async def named(text: str, name: str) -> str:
     """A mission's text with another name; one that cannot be edited keeps its own."""
     try:
-        return str(await the_desk().missions.edit(text, "rename", name))
+        return str(await the_services().missions.edit(text, "rename", name))
     except WorkError:
         return text
 
@@ -135,7 +135,7 @@ async def _upload(files: dict[str, bytes], salesmen: int) -> None:
         name, beside = sorted_out(list(files))
         options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
-        made = await the_desk().missions.upload(the_asker(), name, files[name], rest, **options)
+        made = await the_services().missions.upload(the_user(), name, files[name], rest, **options)
         ui.navigate.to(f"/plan/{made.mission}")
 
 

@@ -12,9 +12,9 @@ from muster.exchange.mission_control import MissionEntry
 from muster.library import mission_summary
 from muster.server.pages.buttons import once
 from muster.server.pages.frame import frame
-from muster.server.pages.missions.new_mission import named, open_making
+from muster.server.pages.missions.new_mission import named, open_new_mission
 from muster.server.pages.notices import offer, say, told
-from muster.server.pages.visitor import PATIENCE_S, may_command, the_asker, the_desk
+from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
 
 _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"
@@ -32,13 +32,13 @@ async def view() -> None:
             )
             search.on("input", js_handler=_FILTER)
             if may_command():
-                new = ui.button("New mission", icon="add", on_click=open_making).props('unelevated id="new"')
+                new = ui.button("New mission", icon="add", on_click=open_new_mission).props('unelevated id="new"')
                 new.classes("control")
 
         @ui.refreshable
         async def listed() -> None:
             with told():
-                _table(await the_desk().missions.list(), listed)
+                _table(await the_services().missions.list(), listed)
 
         await listed()
         ui.label("No mission has such a name.").classes("quiet none-found").props("hidden")
@@ -109,22 +109,22 @@ def _named_row(entry: MissionEntry) -> ui.element:
 
 def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
     async def duplicate() -> None:
-        missions = the_desk().missions
+        missions = the_services().missions
         old = await missions.get(entry.id)
         name = f"{entry.name} copy"
-        new = await missions.create(the_asker(), await named(old.text, name), dict(old.files), name)
+        new = await missions.create(the_user(), await named(old.text, name), dict(old.files), name)
         say(f"{new.mission} is a copy of {entry.name}.")
         listed.refresh()
 
     async def delete() -> None:
         with told():
-            await the_desk().missions.delete(the_asker(), entry.id)
+            await the_services().missions.delete(the_user(), entry.id)
             listed.refresh()
             offer(f"{entry.name} is deleted.", "Undo", restore)
 
     async def restore() -> None:
         with told():
-            await the_desk().missions.restore(the_asker(), entry.id)
+            await the_services().missions.restore(the_user(), entry.id)
             listed.refresh()
 
     _icon("content_copy", f"Duplicate {entry.name}", once(duplicate))

@@ -15,7 +15,7 @@ from muster.server.pages.notices import told
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
 from muster.server.pages.plan.map_scene import ground_of
 from muster.server.pages.plan.plan_panel import MOST_PLANS, title_of
-from muster.server.pages.visitor import PATIENCE_S, the_desk
+from muster.server.pages.visitor import PATIENCE_S, the_services
 
 
 @ui.page("/plan/{mission}/compare", response_timeout=PATIENCE_S)
@@ -35,11 +35,11 @@ async def compare(mission: str, a: int, b: int) -> None:
 
 
 async def _build(mission: str, a: int, b: int) -> None:
-    desk = the_desk()
-    entries = [await desk.plans.get(one) for one in (a, b)]
-    listed = await desk.plans.list(mission, MOST_PLANS)
+    services = the_services()
+    entries = [await services.plans.get(one) for one in (a, b)]
+    listed = await services.plans.list(mission, MOST_PLANS)
     titles = {entry.id: title_of(entry) for entry in (*listed, *entries)}
-    verdicts = [await desk.plans.verdict(entry.id) for entry in entries]
+    verdicts = [await services.plans.verdict(entry.id) for entry in entries]
     scenes = [await _scene(entry) for entry in entries]
     chosen = [a, b]
     maps: list[MissionMap] = []
@@ -61,8 +61,8 @@ async def _build(mission: str, a: int, b: int) -> None:
 
 
 async def _scene(entry: PlanEntry) -> dict[str, Any]:
-    version = await the_desk().missions.get(entry.mission, entry.mission_version)
-    found = await the_desk().missions.check(version.text, dict(version.files))
+    version = await the_services().missions.get(entry.mission, entry.mission_version)
+    found = await the_services().missions.check(version.text, dict(version.files))
     return ground_of(found["mission"] or {}, found["floor"], version)
 
 

@@ -14,14 +14,14 @@ from muster.server.pages.notices import told, warn, words_of
 from muster.server.pages.plan.findings import Findings
 from muster.server.pages.plan.form import Form
 from muster.server.pages.plan.map_scene import scene_of_draft
-from muster.server.pages.plan.text_view import Script
+from muster.server.pages.plan.text_view import TextView
 from muster.server.pages.plan.zone_form import open_zone
 from muster.server.pages.visitor import may_command, on_the_wall
 
 _MODES = {"select": "Move and choose", "task": "Add tasks", "robot": "Add robots", "zone": "Draw zones"}
 
 
-class Workshop:
+class Editors:
     """Builds the three views, and keeps them and the draft the same.
 
     Parameters
@@ -46,7 +46,7 @@ class Workshop:
         self._on_ask = on_ask
         self._moves = 0  # on the map that came here
         self._form: Form | None = None
-        self._script: Script | None = None
+        self._script: TextView | None = None
         self._editable = may_command() and not on_the_wall()
         self._build()
         draft.on_check.append(self._show_checked)
@@ -117,7 +117,7 @@ class Workshop:
             if event.value == "form" and self._form is None:
                 self._form = Form(self._draft, self.edit, editable=self._editable)
             if event.value == "text" and self._script is None:
-                self._script = Script(self._draft, editable=self._editable)
+                self._script = TextView(self._draft, editable=self._editable)
                 self._script.mark(self._draft.checked.errors)
         if event.value == "form" and self._form is not None:
             self._form.show()

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 
 from muster.server.pages.notices import told
-from muster.server.pages.visitor import the_desk
+from muster.server.pages.visitor import the_services
 
 if TYPE_CHECKING:
-    from muster.server.pages.plan.plan_panel import Answer
+    from muster.server.pages.plan.plan_panel import PlanPanel
 
 
-class Why:
+class Explanation:
     """A button for the chosen task, and the answer."""
 
-    def __init__(self, answer: Answer) -> None:
+    def __init__(self, answer: PlanPanel) -> None:
         self._answer = answer
         self._task: str | None = None
-        self._button = ui.button("Why?", icon="help_outline", on_click=self._pressed).props('outline dense id="why"')
+        self._button = ui.button("Explanation?", icon="help_outline", on_click=self._pressed).props(
+            'outline dense id="why"'
+        )
         self._button.set_visibility(False)
         self._box = ui.element("div").classes("why").props('aria-live="polite"')
 
@@ -48,7 +50,7 @@ class Why:
         with self._box:
             waiting = ui.spinner(size="1.4em")
         with told():
-            found = await the_desk().plans.explain(entry.id, task)
+            found = await the_services().plans.explain(entry.id, task)
             if waiting.is_deleted:  # another plan is shown meanwhile, or something else was asked
                 return
             self._box.clear()

@@ -83,7 +83,7 @@ def figures_list(rows: Sequence[tuple[str, str]]) -> None:
 
 
 def robots_table(routes: Sequence[Mapping[str, Any]], unit: str, choose: Choose) -> None:
-    """Who does what: tasks in order, usage, and how much of the capacity that is."""
+    """Which robot does what: tasks in order, usage, and how much of the capacity that is."""
     usage = f"Usage, {escape(unit)}" if unit else "Usage"
     head = f'<th scope="col">Robot</th><th scope="col">Tasks in order</th><th scope="col" class="number">{usage}</th>'
     rows = "".join(_robot_row(k, route) for k, route in enumerate(routes))

@@ -9,7 +9,7 @@ from urllib.parse import quote
 from muster.exchange.mission_control import MissionVersion
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import scene_of
-from muster.server.pages.visitor import the_desk
+from muster.server.pages.visitor import the_services
 
 TILES = "/tiles/{z}/{x}/{y}.png"
 
@@ -28,7 +28,7 @@ def ground_of(
     impossible: Sequence[str] = (),
 ) -> dict[str, Any]:
     """The scene of a plain mission with its floor plan, both as its check has them; its files are those of `kept`."""
-    tiles = TILES if the_desk().settings.tiles else ""
+    tiles = TILES if the_services().settings.tiles else ""
     return scene_of(mission, image=image_of(floor, kept), tiles=tiles, impossible=impossible)
 
 

@@ -11,11 +11,11 @@ from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
 from muster.server.pages.notices import say, told
 from muster.server.pages.plan.start_run import open_start
-from muster.server.pages.visitor import may_command, on_the_wall, the_asker, the_desk
-from muster.server.services.archives import parcel
+from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
+from muster.server.services.archives import archive_of
 
 if TYPE_CHECKING:
-    from muster.server.pages.plan.plan_panel import Answer
+    from muster.server.pages.plan.plan_panel import PlanPanel
 
 _FORMATS = {
     "": "Plan file (JSON)",
@@ -31,10 +31,10 @@ _PICTURES = {"routes": "Picture of the routes (SVG)", "gantt": "Picture of the s
 _MOST_BYTES = 16 * 2**20
 
 
-class Taking:
+class PlanActions:
     """Buttons below a plan."""
 
-    def __init__(self, answer: Answer) -> None:
+    def __init__(self, answer: PlanPanel) -> None:
         self._answer = answer
         self._commands = may_command() and not on_the_wall()
         self._bar = ui.element("div").classes("bar control")
@@ -70,23 +70,23 @@ class Taking:
 
     async def _export(self, plan: int, form: str) -> None:
         with told():
-            plans = the_desk().plans
+            plans = the_services().plans
             if form:
-                content, name = await parcel(await plans.export(plan, form), f"plan-{plan}-{form}")
+                content, name = await archive_of(await plans.export(plan, form), f"plan-{plan}-{form}")
             else:
                 content, name = json_text((await plans.get(plan)).plan).encode(), f"plan-{plan}.json"
             ui.download.content(content, name)
 
     async def _picture(self, plan: int, what: str) -> None:
         with told():
-            ui.download.content(await the_desk().plans.picture(plan, what, "svg"), f"{what}-{plan}.svg")
+            ui.download.content(await the_services().plans.picture(plan, what, "svg"), f"{what}-{plan}.svg")
 
     async def _start(self) -> None:
         entry = self._answer.entry
         if entry is None:
             return
         with told():
-            missions = {mission.id: mission for mission in await the_desk().missions.list()}
+            missions = {mission.id: mission for mission in await the_services().missions.list()}
             if entry is not self._answer.entry:  # another plan is chosen meanwhile
                 return
             open_start(entry, missions[entry.mission].dimensions if entry.mission in missions else 2)
@@ -102,7 +102,7 @@ class Taking:
                         plan = json.loads(await event.file.read())
                     except ValueError as error:
                         raise ParameterError(f"{event.file.name}: {error}; expected a plan file (JSON)") from None
-                    entry = await the_desk().plans.upload(the_asker(), self._answer.mission, plan)
+                    entry = await the_services().plans.upload(the_user(), self._answer.mission, plan)
                     dialog.close()
                     say("The plan is uploaded.")
                     await self._answer.show_newest(entry.id)

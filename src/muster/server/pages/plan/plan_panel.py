@@ -13,15 +13,15 @@ from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import MissionMap
 from muster.server.pages.missions.view import ago
 from muster.server.pages.notices import told
-from muster.server.pages.plan.explanation import Why
+from muster.server.pages.plan.explanation import Explanation
 from muster.server.pages.plan.figures import figures_list, figures_of, left_out, lines_of, objective_unit, robots_table
-from muster.server.pages.plan.plan_actions import Taking
-from muster.server.pages.visitor import the_desk
+from muster.server.pages.plan.plan_actions import PlanActions
+from muster.server.pages.visitor import the_services
 
 MOST_PLANS = 1000  # that are listed to choose from
 
 
-class Answer:
+class PlanPanel:
     """Shows one plan of a mission: on the map, as figures and tables, in time."""
 
     def __init__(self, draft: Draft, ground: MissionMap) -> None:
@@ -37,9 +37,9 @@ class Answer:
                 self._choice.props('outlined dense options-dense id="plans"').classes("plan-choice")
                 self._outdated = ui.label("made for another text of the mission").classes("outdated").props("hidden")
             self._none = ui.label("No plan yet.").classes("quiet")
-            self.why = Why(self)
+            self.why = Explanation(self)
             self._body = ui.element("div").classes("answer-body")
-            self.taking = Taking(self)
+            self.taking = PlanActions(self)
         draft.on_change.append(lambda _: self._show_outdated())
 
     def build_gantt(self) -> None:
@@ -78,9 +78,9 @@ class Answer:
 
     async def _list(self, plan: int | None) -> None:
         """List the newest plans, and one that may be older."""
-        entries = await the_desk().plans.list(self._draft.id, MOST_PLANS)
+        entries = await the_services().plans.list(self._draft.id, MOST_PLANS)
         if plan is not None and entries and plan < entries[-1].id:
-            entries += await the_desk().plans.list(self._draft.id, 1, before=plan + 1)
+            entries += await the_services().plans.list(self._draft.id, 1, before=plan + 1)
         self._entries = entries
         self._choice.set_options({entry.id: title_of(entry) for entry in self._entries}, value=self._choice.value)
         self._choice.set_visibility(bool(self._entries))
@@ -92,14 +92,14 @@ class Answer:
             return
         self._show_no_plan()
         with told():
-            entry = await the_desk().plans.get(chosen)
+            entry = await the_services().plans.get(chosen)
             if self._choice.value != chosen:  # another one meanwhile
                 return
             self._entry = entry
             self._show_judging(entry)
-            verdict = await the_desk().plans.verdict(entry.id)
-            version = await the_desk().missions.get(entry.mission, entry.mission_version)
-            on_earth = bool((await the_desk().missions.look(version.text, "origin_wgs84")).get("origin_wgs84"))
+            verdict = await the_services().plans.verdict(entry.id)
+            version = await the_services().missions.get(entry.mission, entry.mission_version)
+            on_earth = bool((await the_services().missions.read_keys(version.text, "origin_wgs84")).get("origin_wgs84"))
             if self._entry is entry:
                 self._show(entry, verdict, on_earth=on_earth)
 

@@ -15,13 +15,13 @@ from muster.server.pages.buttons import once
 from muster.server.pages.charts import Curve
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import say, told
-from muster.server.pages.visitor import the_asker, the_desk
+from muster.server.pages.visitor import the_services, the_user
 
 _WAITING: tuple[JobState, ...] = ("queued", "running")
 _BOUNDS = {"": "none", "quick": "quick", "exact": "exact (may take long)"}
 
 
-class Ordering:
+class PlanningControls:
     """The controls of planning, and the job that is under way.
 
     `before` is asked to save the mission, and says whether it is saved; `on_done` is told a new plan's id.
@@ -70,10 +70,10 @@ class Ordering:
     async def go_on(self) -> None:
         """Show what allocators there are, and a job of this mission that is under way."""
         with told():
-            found = await the_desk().plans.allocators()
+            found = await the_services().plans.allocators()
             names = {a["name"]: a["name"] for a in found}
             self._allocator.set_options(names, value=next((a["name"] for a in found if a["default"]), None))
-            jobs = [job for state in _WAITING for job in await the_desk().jobs.list(state, self._draft.id, limit=1)]
+            jobs = [job for state in _WAITING for job in await the_services().jobs.list(state, self._draft.id, limit=1)]
             if jobs:
                 await self._follow(max(jobs, key=lambda job: job.id))
 
@@ -82,8 +82,10 @@ class Ordering:
         if self._draft.checked.errors:
             raise ParameterError("the mission has errors; mend them first")
         if await self.before("to be planned"):
-            base, asker, arguments = self._draft.base, the_asker(), self._arguments()
-            await self._follow(await the_desk().jobs.ask_plan(asker, base.mission, base.version or None, **arguments))
+            base, asker, arguments = self._draft.base, the_user(), self._arguments()
+            await self._follow(
+                await the_services().jobs.ask_plan(asker, base.mission, base.version or None, **arguments)
+            )
         return False
 
     def _arguments(self) -> dict[str, Any]:
@@ -104,18 +106,18 @@ class Ordering:
         with told():
             if self._job is not None:
                 self._stopped = True
-                await the_desk().jobs.stop(the_asker(), self._job.id)
+                await the_services().jobs.stop(the_user(), self._job.id)
 
     async def _cancel(self) -> None:
         with told():
             if self._job is not None:
-                await the_desk().jobs.cancel(the_asker(), self._job.id)
+                await the_services().jobs.cancel(the_user(), self._job.id)
 
     async def _follow(self, asked: Job) -> None:
         """Show a job until it is over, or nobody looks any more."""
         client, job = ui.context.client, asked
         self._stopped = False
-        async for job in the_desk().jobs.follow(asked.id):
+        async for job in the_services().jobs.follow(asked.id):
             if client.is_deleted:
                 return
             if client.has_socket_connection:
@@ -134,7 +136,7 @@ class Ordering:
     async def _forget_shipped(self) -> None:
         """A shipped mission has a version once it was planned."""
         if self._draft.base.version == 0:
-            newest = await the_desk().missions.get(self._draft.id)
+            newest = await the_services().missions.get(self._draft.id)
             if newest.text == self._draft.base.text:
                 self._draft.load(newest, self._draft.text)
 

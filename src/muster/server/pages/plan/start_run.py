@@ -10,7 +10,7 @@ from nicegui import ui
 from muster.exchange.mission_control import PlanEntry
 from muster.mission.errors import ParameterError
 from muster.server.pages.buttons import once
-from muster.server.pages.visitor import the_asker, the_desk
+from muster.server.pages.visitor import the_services, the_user
 
 _SPEEDS = {
     "0.5": "half as fast",
@@ -31,7 +31,7 @@ Reading = Callable[[], dict[str, Any]]
 
 def open_start(entry: PlanEntry, dimensions: int) -> None:
     """Ask how a plan is to be carried out, and go to the run when it has begun."""
-    bridges = {name: f"real robots ({name})" for name in the_desk().settings.bridges}
+    bridges = {name: f"real robots ({name})" for name in the_services().settings.bridges}
     with ui.dialog() as dialog, ui.card().classes("making"):
         ui.label("Carry this plan out").classes("dialog-title")
         world = _choice("In which world", _SIMULATED | bridges, "kinematic").props('id="world"')
@@ -51,7 +51,7 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
             pace = float(speed.value) if speed.value else None
             if world.value not in _SIMULATED:
                 pace = 1.0
-            run = await the_desk().runs.start(the_asker(), entry.id, world.value, pace, **reading[0]())
+            run = await the_services().runs.start(the_user(), entry.id, world.value, pace, **reading[0]())
             ui.navigate.to(f"/live/{run.id}")
 
         with ui.element("div").classes("dialog-buttons"):

@@ -13,7 +13,7 @@ from muster.server.pages.notices import warn
 from muster.server.pages.plan.editor import Editor
 
 
-class Script:
+class TextView:
     """The text of a draft. Undo and redo are the draft's own, so that they go over edits of map and form as well."""
 
     def __init__(self, draft: Draft, *, editable: bool) -> None:

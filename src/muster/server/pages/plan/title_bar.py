@@ -10,10 +10,10 @@ from muster.exchange.mission_control import ConflictError
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import say, told
 from muster.server.pages.plan.versions import open_differences, open_versions
-from muster.server.pages.visitor import may_command, on_the_wall, the_asker, the_desk
+from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
 
 
-class Title:
+class TitleBar:
     """Shows the state of a draft, and saves it."""
 
     def __init__(self, draft: Draft) -> None:
@@ -71,7 +71,7 @@ class Title:
             return True
         with told():
             try:
-                if await self._draft.save(the_asker(), note):
+                if await self._draft.save(the_user(), note):
                     say(f"Saved as version {self._draft.base.version}.")
             except ConflictError as conflict:
                 if not self._resolving:  # it may be asked already: of a save that was on its way before
@@ -83,7 +83,7 @@ class Title:
         client = ui.context.client
         self._resolving = True
         try:
-            newest = await the_desk().missions.get(self._draft.id)
+            newest = await the_services().missions.get(self._draft.id)
             mine = self._draft.text
             answer = await self._asked(conflict, newest.text, mine)
         finally:
@@ -96,7 +96,7 @@ class Title:
             self._draft.load(newest, mine)
             await self.save("on top of another's version")
         elif answer == "copy":
-            made = await the_desk().missions.create(the_asker(), mine, dict(newest.files), f"{self._draft.id} copy")
+            made = await the_services().missions.create(the_user(), mine, dict(newest.files), f"{self._draft.id} copy")
             self._draft.load(newest)
             ui.run_javascript("window.musterUnsaved = false")
             ui.navigate.to(f"/plan/{made.mission}")

@@ -11,11 +11,11 @@ from nicegui import ui
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import told
-from muster.server.pages.plan.editors import Workshop
-from muster.server.pages.plan.plan_panel import MOST_PLANS, Answer
-from muster.server.pages.plan.planning_controls import Ordering
-from muster.server.pages.plan.title_bar import Title
-from muster.server.pages.visitor import PATIENCE_S, may_command, on_the_wall, the_desk
+from muster.server.pages.plan.editors import Editors
+from muster.server.pages.plan.plan_panel import MOST_PLANS, PlanPanel
+from muster.server.pages.plan.planning_controls import PlanningControls
+from muster.server.pages.plan.title_bar import TitleBar
+from muster.server.pages.visitor import PATIENCE_S, may_command, on_the_wall, the_services
 
 _TICK_S = 0.2
 _UNSAVED_S = 3600.0
@@ -36,7 +36,7 @@ _KEYS = {
 async def choose() -> None:
     """Without a mission: those that were planned last, or the way to the list."""
     with frame("Plan"), told():
-        recent = list(dict.fromkeys(entry.mission for entry in await the_desk().plans.list(limit=MOST_PLANS)))[:8]
+        recent = list(dict.fromkeys(entry.mission for entry in await the_services().plans.list(limit=MOST_PLANS)))[:8]
         with ui.element("div").classes("panel narrow"):
             ui.label("Which mission?").classes("dialog-title")
             ui.label(
@@ -64,9 +64,9 @@ async def view(mission: str, plan: int | None = None) -> None:
 
 
 async def _build(mission: str, plan: int | None) -> None:
-    draft = Draft(the_desk().missions, await the_desk().missions.get(mission))
+    draft = Draft(the_services().missions, await the_services().missions.get(mission))
     _keep_unsaved(draft)
-    answer: Answer
+    answer: PlanPanel
 
     def choose(one: Mapping[str, Any] | None) -> None:
         answer.choose(one)
@@ -75,13 +75,13 @@ async def _build(mission: str, plan: int | None) -> None:
         if one["what"] == "task":
             await answer.why.ask(one["id"])
 
-    title = Title(draft)
+    title = TitleBar(draft)
     with ui.element("div").classes("plan-page"):
         with ui.element("section").classes("left").props('aria-label="Mission"'):
-            workshop = Workshop(draft, choose, ask)
+            workshop = Editors(draft, choose, ask)
         with ui.element("section").classes("right").props('aria-label="Plans"'):
-            ordering = Ordering(draft) if may_command() and not on_the_wall() else None
-            answer = Answer(draft, workshop.map)
+            ordering = PlanningControls(draft) if may_command() and not on_the_wall() else None
+            answer = PlanPanel(draft, workshop.map)
         with ui.element("section").classes("below").props('aria-label="Schedule"'):
             answer.build_gantt()
     if ordering is not None:

@@ -23,7 +23,7 @@ from muster.server.pages.records.figures import (
     task_rows,
 )
 from muster.server.pages.tables import table
-from muster.server.pages.visitor import PATIENCE_S, is_seen, the_desk
+from muster.server.pages.visitor import PATIENCE_S, is_seen, the_services
 from muster.server.runs.log_lines import deed_of, line_of
 
 KEYS = {
@@ -58,7 +58,7 @@ ui.add_css(Path(__file__).with_name("records.css"), shared=True)
 async def records_page() -> None:
     """Runs that are over, the newest first."""
     with frame("Records"), told():
-        runs = await the_desk().records.list()
+        runs = await the_services().records.list()
         if runs:
             table(_HEADS, [_row(run) for run in runs], label="Records", numbers=(3, 4, 5, 6))
         else:
@@ -78,9 +78,9 @@ def _row(run: Run) -> tuple[Any, ...]:
 @ui.page("/records/{run}", response_timeout=PATIENCE_S)
 async def record_page(run: int) -> None:
     """One run that is over."""
-    desk = the_desk()
+    services = the_services()
     try:
-        found = await desk.runs.get(run)
+        found = await services.runs.get(run)
     except MusterError as error:
         with frame("Records"):
             ui.label(words_of(error))
@@ -88,7 +88,7 @@ async def record_page(run: int) -> None:
     with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), told():
         if not await is_seen():
             return
-        entries = await desk.runs.entries(run)
+        entries = await services.runs.entries(run)
         _head(found, _files_of(found, on_earth=await _is_on_earth(found)) if entries else ())
         if found.state not in OVER:
             with ui.element("p"):
@@ -98,13 +98,13 @@ async def record_page(run: int) -> None:
             _replay(run)
         _compared(found)
         _events(entries)
-        _commands(await desk.actions.list(run=run))
+        _commands(await services.actions.list(run=run))
 
 
 async def _is_on_earth(run: Run) -> bool:
     """Whether the run's mission says where on the earth it is."""
-    version = await the_desk().missions.get(run.mission, run.mission_version)
-    return bool((await the_desk().missions.look(version.text, "origin_wgs84")).get("origin_wgs84"))
+    version = await the_services().missions.get(run.mission, run.mission_version)
+    return bool((await the_services().missions.read_keys(version.text, "origin_wgs84")).get("origin_wgs84"))
 
 
 def _files_of(run: Run, *, on_earth: bool) -> Sequence[tuple[str, str]]:

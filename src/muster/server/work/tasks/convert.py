@@ -10,7 +10,7 @@ from muster import load
 from muster.mission.errors import Finding, MissionError
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import yaml_text
-from muster.server.work.missions import laid_down
+from muster.server.work.missions import written_files
 
 _SUFFIXES = (".csv", ".tsp", ".plan")
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
@@ -31,7 +31,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     path = Path(name)
     if path.suffix.lower() not in _SUFFIXES:
         raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(_SUFFIXES)}")])
-    laid_down(files)
+    written_files(files)
     mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
     return {"text": yaml_text(mission), "name": mission.name}
 

@@ -8,8 +8,8 @@ from dataclasses import fields
 from pathlib import PurePath
 from typing import Any
 
-from muster.exchange.export_request import FORMATS, Wishes
-from muster.exchange.files import plan_files, text_of
+from muster.exchange.export_request import FORMATS, QgcOptions
+from muster.exchange.files import exported
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
@@ -20,7 +20,7 @@ from muster.verification.required import require_admissible
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
     """`{"mission", "plan", "ignore", "to", "options"}` -> `{"files": {name: base64}, "messages"}`.
 
-    `to` is one of FORMATS, or `json`: the plan's own file. `options` are those of `Wishes`, for qgc.
+    `to` is one of FORMATS, or `json`: the plan's own file. `options` are those of `QgcOptions`, for qgc.
     """
     form, options = arguments["to"], arguments.get("options") or {}
     if form not in (*FORMATS, "json"):
@@ -34,10 +34,11 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     if form == "json":
         return _answer({f"{_stem(mission.name)}.json": plan.text()})
     verdict = require_admissible(mission, plan, "plan", arguments.get("ignore", ()))
-    if wishes is not None:
-        files = plan_files(mission, verdict, wishes)
-        return _answer(files.texts, files.messages)
-    return _answer({f"{_stem(mission.name)}.{form}": text_of(mission, verdict, form)})
+    files = exported(mission, verdict, form, wishes or QgcOptions())
+    alone = f"plan.{form}"  # one file bears the mission's name
+    stem = _stem(mission.name)
+    texts = {f"{stem}.{form}" if name == alone else name: text for name, text in files.texts.items()}
+    return _answer(texts, files.messages)
 
 
 def _answer(texts: Mapping[str, str], messages: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -49,9 +50,9 @@ _RANGES = {"altitude": (0.0, 1e5), "clearance": (0.0, 1e5), "tolerance": (0.0, 1
 _FIRMWARES = ("px4", "ardupilot")
 
 
-def _wishes(options: Mapping[str, Any]) -> Wishes:
+def _wishes(options: Mapping[str, Any]) -> QgcOptions:
     """The options, checked as the command checks them."""
-    known = [f.name for f in fields(Wishes)]
+    known = [f.name for f in fields(QgcOptions)]
     for name, value in options.items():
         if name not in known:
             raise ParameterError(f"options: {shown(name)}; expected {', '.join(known)}{did_you_mean(name, known)}")
@@ -61,7 +62,7 @@ def _wishes(options: Mapping[str, Any]) -> Wishes:
             low, high = _RANGES[name]
             if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
                 raise ParameterError(f"{name}: {shown(value)}; expected metres, from {low:g} to {high:g}")
-    return Wishes(**{name: value for name, value in options.items() if value is not None})
+    return QgcOptions(**{name: value for name, value in options.items() if value is not None})
 
 
 def _stem(name: str) -> str:

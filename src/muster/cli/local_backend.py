@@ -1,0 +1,90 @@
+"""The work of verbs, done in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from muster.cli.backend import OnLine
+from muster.mission.interrupts import ctrl_c_halts
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from muster.allocation.stop import Progress, Stop
+    from muster.exchange.export_request import Files, QgcOptions
+    from muster.execution import ExecutionEvent, Report
+    from muster.library import MissionSummary
+    from muster.planning.explaining import Possible
+    from muster.planning.explaining.tables import Explanation
+    from muster.planning.request import Request
+    from muster.planning.solving import Solution
+    from muster.running.negotiated.simulation import Negotiation
+    from muster.verification import Verdict
+
+
+class LocalBackend:
+    """See `Backend`; `note` gets lines for -v."""
+
+    def __init__(self, note: Callable[[str], None]) -> None:
+        self._note = note
+
+    def missions(self) -> Sequence[MissionSummary]:
+        from muster.library import mission_names, mission_path, mission_summary
+
+        names = mission_names()
+        folders = sorted({str(path.parent) for name in names if (path := mission_path(name))})
+        self._note(f"{len(names)} missions in {', '.join(folders)}")
+        return [mission_summary(name) for name in names]
+
+    def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
+        from muster.planning.explaining import possible
+
+        return possible(mission, ignored=ignore, time_limit=time_limit)
+
+    def plan(self, request: Request, on_progress: Callable[[Progress], None] | None, interrupt: Stop) -> Solution:
+        from muster.planning.solving import answer
+
+        solution = answer(request, on_progress=on_progress, interrupt=interrupt)
+        self._note(f"{solution.iterations} iterations in {solution.plan.elapsed_s or 0.0:.3f} s")
+        return solution
+
+    def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
+        from muster.verification import verify
+
+        return verify(mission, plan, ignore, objective)
+
+    def explain(self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str) -> Explanation:
+        from muster.planning.explaining.tables import explained
+
+        return explained(mission, plan, task, ignore, file)
+
+    def export(
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+    ) -> Files:
+        from muster.exchange.files import exported
+        from muster.verification.required import require_admissible
+
+        return exported(mission, require_admissible(mission, plan, file, ignore), form, options)
+
+    def simulate(
+        self,
+        mission: Mission,
+        plan: Plan | Negotiation,
+        *,
+        record: Path | None,
+        on_line: OnLine | None,
+        **how: Any,
+    ) -> tuple[Report, float | None]:
+        from muster import simulate
+        from muster.mission.event_descriptions import event_line
+
+        def report(event: ExecutionEvent) -> None:
+            assert on_line is not None
+            on_line(event.time_s, event_line(event.kind, event.data))
+
+        with ctrl_c_halts() as halt:
+            on_event = None if on_line is None else report
+            outcome = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
+        return outcome, outcome.mission_time_s if halt.is_set() else None

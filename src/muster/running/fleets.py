@@ -1,0 +1,125 @@
+"""Fleets of real robots by name, those of installed packages included; each is ready when it is returned."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from muster.bridges.fleet import Fleet
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+from muster.mission.plugins import Registry
+from muster.running.live import wait_for_robots
+
+_WAIT_S = 10.0
+_ANYWHERE_M = 1e6
+"""After a crash drones are where they are, in the air maybe."""
+
+
+Opened = tuple[Fleet, Callable[[], None]]
+"""Robots that are ready, and what to call when all is done."""
+OpenFleet = Callable[[Mission, Mapping[str, Any], threading.Event, bool], Opened]
+"""Opens a fleet: the mission, the settings of the run, an event that ends waiting, whether the run goes on."""
+
+
+def _checked(name: str, found: object) -> OpenFleet:
+    if not callable(found):
+        raise ParameterError(f"it is a {type(found).__name__}; expected a function that opens a fleet")
+    return found
+
+
+FLEETS: Registry[OpenFleet] = Registry(
+    "fleet",
+    "muster.fleets",
+    {name: f"{__name__}:open_{name}" for name in ("ros1", "ros2", "mavlink")},
+    _checked,
+)
+
+
+def fleet_ready(
+    world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
+) -> Opened:
+    """The robots of a mission, heard and ready; and what they are told when all is done.
+
+    Parameters
+    ----------
+    world
+        the name of the fleet.
+    halt
+        ends waiting for robots.
+    again
+        whether the mission is under way already.
+
+    Raises
+    ------
+    MusterError
+        if there is no such fleet, the bridge lacks something, or robots do not answer.
+    """
+    return FLEETS.named(world)(mission, settings, halt, again)
+
+
+def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
+    from muster.bridges.ros1.extra import require_rospy
+
+    require_rospy()
+    from muster.bridges.ros1.fleet import Ros1Fleet
+    from muster.bridges.ros1.node import become_node
+
+    become_node("muster", settings.get("master"))
+    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz")
+    fleet = Ros1Fleet(mission, joins=not settings.get("known_only", False), **own)
+    return _heard(fleet, settings, halt), _nothing
+
+
+def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
+    from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.middleware import open_wire
+    from muster.bridges.ros2.port import Arrival
+
+    fleet = Ros2Fleet(
+        mission,
+        wire=open_wire(settings.get("by"), settings.get("domain")),
+        arrival=Arrival(near_m=settings.get("arrival_m", 0.25)),
+        joins=not settings.get("known_only", False),
+        **_some(settings, "give", "namespace"),
+    )
+    return _heard(fleet, settings, halt), _nothing
+
+
+def open_mavlink(mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool) -> Opened:
+    from muster.bridges.mavlink import MavlinkFleet
+    from muster.bridges.mavlink.settings import Settings
+
+    endpoints = settings.get("endpoints")
+    if not isinstance(endpoints, Mapping):
+        raise ParameterError("endpoints: missing; expected for each robot how it is reached")
+    if not settings.get("arm", False):
+        raise ParameterError("arm: missing; expected true: without it nothing flies")
+    own = _some(settings, "offboard", "low_battery") | ({"far_m": _ANYWHERE_M} if again else {})
+    fleet = MavlinkFleet(mission, endpoints, Settings(arm=True, **own), height_m=settings.get("height_m"))
+    try:
+        fleet.connect(settings.get("wait_s", _WAIT_S))
+    except BaseException:
+        fleet.close()
+        raise
+    at_end = settings.get("at_end", "hold")
+    return fleet, _nothing if at_end == "hold" else partial(fleet.end, at_end)
+
+
+def _heard(fleet: Any, settings: Mapping[str, Any], halt: threading.Event) -> Fleet:
+    try:
+        wait_for_robots(fleet, halt, settings.get("wait_s", _WAIT_S))
+    except BaseException:
+        fleet.close()
+        raise
+    return fleet  # type: ignore[no-any-return]
+
+
+def _some(settings: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {name: settings[name] for name in names if name in settings}
+
+
+def _nothing() -> None:
+    """They stay where they are."""

@@ -1,0 +1,63 @@
+"""What a team did is put together from what its robots tell, also where they work on one task without knowing it."""
+
+import pytest
+
+from muster import Event, Mission, Robot, Task
+from muster.allocation.problem import Problem
+from muster.execution import report_of
+from muster.execution.record import NoObserver
+from muster.running.negotiated.team_log import TeamLog
+
+MISSION = Mission(
+    robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(9, 0))), tasks=(Task(id="t", position=(0, 0)),)
+)
+
+
+@pytest.fixture
+def log():
+    return TeamLog(Problem.compile(MISSION), NoObserver(), lambda event: None)
+
+
+def take(log, robot, came=None, began=None, ended=None):
+    for kind, at_s in (("arrives", came), ("starts", began), ("ends", ended)):
+        if at_s is not None:
+            log.take(robot, at_s, kind, {"task": "t", "robot": robot}, used=at_s)
+    if ended is not None:
+        log.note_usage("t", (1.0, 1.0))
+
+
+def report(log):
+    return report_of(log.account, contacts=0, min_distance_m=None)
+
+
+def test_a_task_counts_for_the_robot_that_has_ended_it_first(log):
+    take(log, "a", came=1.0, began=2.0)
+    take(log, "b", came=5.0, began=5.0)
+    take(log, "a", ended=8.0)
+    take(log, "b", ended=9.0)
+    (task,) = report(log).tasks
+    assert (task.robot, task.waiting_s) == ("a", 1.0)
+    assert [h.data["robots"] for h in log.events if h.kind == "twice"] == [["a", "b"]]
+
+
+def test_work_of_two_ends_though_the_one_that_began_first_has_failed(log):
+    take(log, "a", came=1.0, began=2.0)
+    take(log, "b", came=4.0, began=5.0)
+    log.take_event(Event(at_s=6, robot_fails="a"), 6.0)
+    take(log, "b", ended=9.0)
+    assert report(log).starts_s == {"t": 5.0}
+    assert report(log).waiting_s == 1.0
+
+
+def test_a_task_that_ends_before_its_robot_hears_that_it_is_cancelled_is_done(log):
+    take(log, "a", came=1.0, began=2.0)
+    log.take_event(Event(at_s=3, cancel_task="t"), 3.0)
+    take(log, "a", ended=3.1)
+    assert (report(log).tasks_done, report(log).tasks_lost) == (("t",), ())
+    assert report(log).starts_s == {"t": 2.0}
+
+
+def test_who_has_forgotten_that_it_has_done_a_task_does_not_change_when_it_was_done(log):
+    take(log, "a", came=1.0, began=2.0, ended=3.0)
+    take(log, "a", came=5.0, began=6.0, ended=7.0)
+    assert (report(log).starts_s, report(log).ends_s) == ({"t": 2.0}, {"t": 3.0})
