@@ -53,9 +53,8 @@ class Invariants:
         begun = opening_of(base)
         past = {task for tasks in begun.past.values() for task in tasks}
         ahead = {robot: [t for t in node.valuer.route(robot) if t not in past] for robot in self._rules.robots}
-        asked = (
-            METHODS[self._scenario.method].negotiator(self._problem, self._scenario.terms, node.robot, incarnation=1).valuer
-        )
+        method, terms = METHODS[self._scenario.method], self._scenario.terms
+        asked = method.negotiator(self._problem, terms, node.robot, incarnation=1).valuer
         closed = self._closed(node, nodes).intersection(self._rules.with_added(base.added).tasks)
         asked.begin(replace(begun, ahead=ahead, closed=closed))
         return asked.bids(node.epoch.refused)
