@@ -25,6 +25,7 @@ from muster.mission.errors import (
 )
 from muster.mission.model import Action, Camera, Event, Found, Map, Mission, Origin, Robot, Rules, Tag, Task, Zone
 from muster.mission.plan import Plan, Route, read_plan
+from muster.planning.exporting import export
 from muster.planning.judging import verify
 from muster.planning.loading import load
 from muster.planning.pictures import gantt, plot
@@ -71,6 +72,7 @@ __all__ = [
     "carry_out",
     "check",
     "explain",
+    "export",
     "gantt",
     "load",
     "missions",

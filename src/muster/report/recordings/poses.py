@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.bridges.ros2.cdr import from_cdr, from_ros1
 from muster.bridges.ros2.description import Message
 from muster.bridges.ros2.message_types import (
     Header,
@@ -26,6 +25,7 @@ from muster.bridges.ros2.message_types import (
     TFMessage,
     Vector3,
 )
+from muster.bridges.ros2.serialization import from_cdr, from_ros1
 from muster.mission.errors import Finding, InputError, MissingExtraError, ParameterError
 from muster.report.record.reader import whole_records
 from muster.report.record.writer import require_mcap
