@@ -82,11 +82,11 @@ class LocalBackend:
         from muster import simulate
         from muster.mission.event_descriptions import event_line
 
-        def tell(event: ExecutionEvent) -> None:
+        def report(event: ExecutionEvent) -> None:
             assert on_line is not None
             on_line(event.time_s, event_line(event.kind, event.data))
 
         with ctrl_c_halts() as halt:
-            on_event = None if on_line is None else tell
-            report = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
-        return report, report.mission_time_s if halt.is_set() else None
+            on_event = None if on_line is None else report
+            outcome = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
+        return outcome, outcome.mission_time_s if halt.is_set() else None
