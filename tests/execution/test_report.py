@@ -42,10 +42,11 @@ def test_it_prints_what_the_command_promises():
         "ends_s",
         "objective",
         "tasks",
+        "done_twice",
         "found",
         "remarks",
     ]
-    assert (data["found"], data["remarks"]) == ([], [])
+    assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])
     assert data["tasks_done"] == ["x", "y"]
     assert data["tasks_lost"] == [{"task": "z", "reason": "left out by the plan"}]
     assert (data["contacts"], data["min_distance_m"], data["reallocations"]) == (2, 3.2, 0)

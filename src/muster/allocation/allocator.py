@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
-from muster.allocation.explanations import unassigned
+from muster.allocation.explanations import unassigned_of_plan
 from muster.allocation.problem import Problem
 from muster.allocation.returned_routes import checked_routes
 from muster.allocation.stop import Stop
@@ -165,15 +165,10 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
-        unassigned=unassigned(_without_beginnings(problem), lists, lambda: stop.hurried),
+        unassigned=unassigned_of_plan(problem, lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )
-
-
-def _without_beginnings(problem: Problem) -> Problem:
-    """The problem in which no task has to stay where it is: a reason for a task left out is true of every place."""
-    return replace(problem, fixed=(), known=problem.measured) if problem.fixed else problem
 
 
 def equality_index(usages: Sequence[float]) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
+from muster.mission.objectives import objective_values
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
@@ -83,16 +84,18 @@ def _verdict(case: Case, objective: str, times: Mapping[str, Times] | None) -> V
     """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
     usages = [route.usage for route in case.routes]
     steps = [step for route in case.routes for step in route.steps]
+    ends = [] if times is None else [time.ends for time in times.values()]
+    values = objective_values(usages, [step.arrival_usage for step in steps], ends)
     routes = tuple(_figures(route, case.capacity_of(route.robot), times) for route in case.routes)
     return Verdict(
         violations=(),
         objective_name=objective,
         ignored=case.ignored,
         usage_unit=case.unit,
-        total_cost=sum(usages),  # [tcf-thesis] (3.11)
-        max_usage=max(usages),
-        average=sum(step.arrival_usage for step in steps) / len(steps) if steps else 0.0,
-        makespan_s=None if times is None else max((time.ends for time in times.values()), default=0.0),
+        total_cost=values["total"],  # [tcf-thesis] (3.11)
+        max_usage=values["max"],
+        average=values["average"],
+        makespan_s=None if times is None else values["makespan"],
         equality_index=equality_index(usages),
         tasks_completed=len(steps),
         tasks_total=len(case.mission.tasks),

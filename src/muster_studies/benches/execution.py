@@ -17,7 +17,7 @@ from muster.execution.remaining_problem import RemainingMission, remaining_probl
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
 from muster.planning.judging import verify
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.simulation import KinematicWorld
 from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
