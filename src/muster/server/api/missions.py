@@ -49,7 +49,7 @@ _BasedOn = Annotated[int | None, Query(ge=0, le=LARGEST, description="Instead of
 class MissionText:
     """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
 
-    mission: str
+    id: str
     version: int
     text: str
     author: str
@@ -259,7 +259,8 @@ def _made(response: Response, made: MissionVersion) -> MissionText:
 def _text(version: MissionVersion) -> MissionText:
     """Without the files' bytes."""
     given = asdict(replace(version, files={}))
-    return MissionText(**given | {"files": {name: len(data) for name, data in version.files.items()}})
+    sizes = {name: len(data) for name, data in version.files.items()}
+    return MissionText(id=given.pop("mission"), **given | {"files": sizes})
 
 
 def _etag(version: MissionVersion) -> str:
