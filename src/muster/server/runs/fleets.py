@@ -1,4 +1,4 @@
-"""Fleets of real robots, as the settings of a run say; each is ready when it is given back."""
+"""Connects the fleets of real robots that the settings of a run name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ANYWHERE_M = 1e6
 def fleet_ready(
     world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
 ) -> tuple[Fleet, Callable[[], None]]:
-    """The robots of a mission, heard and ready; and what they are told when all is done.
+    """Connect the robots of a mission and wait until they are ready; returns them, and the action at the end.
 
     Parameters
     ----------
