@@ -30,7 +30,7 @@ def test_every_name_that_is_listed_is_there_and_no_other():
         found = getattr(muster, name)
         assert name == "__version__" or found.__module__.startswith("muster."), name
     wanted = "Map Zone Camera Action Origin Tag Found Report Verdict NetworkError Simulation"
-    assert set(f"{wanted} check explain gantt missions".split()) <= set(dir(muster))
+    assert set(f"{wanted} check explain export gantt missions".split()) <= set(dir(muster))
 
 
 def test_every_public_name_has_help():
@@ -167,3 +167,28 @@ def test_check_and_explain(mission, plan):
 def test_the_shipped_missions_are_listed_with_their_sizes(mission):
     by_name = {summary.name: summary for summary in muster.missions()}
     assert (by_name["31T-6R50"].robots, by_name["31T-6R50"].tasks) == (len(mission.robots), len(mission.tasks))
+
+
+def test_a_plan_is_exported_to_texts_and_files(tmp_path, mission, plan):
+    files = muster.export(mission, plan, "csv", tmp_path / "plan.csv")
+    assert (tmp_path / "plan.csv").read_text(encoding="utf-8") == files.texts["plan.csv"]
+    assert files.texts["plan.csv"].count("\n") > len(plan.routes)
+    with pytest.raises(muster.ParameterError, match=r"format: cvs; expected qgc, .*did you mean 'csv'"):
+        muster.export(mission, plan, "cvs")
+    with pytest.raises(muster.ParameterError, match="to csv: altitude: unknown; expected none"):
+        muster.export(mission, plan, "csv", altitude=3.0)
+    with pytest.raises(muster.MissionError, match="origin_wgs84"):
+        muster.export(mission, plan, "kml")
+
+
+def test_plan_files_for_drones_are_written_into_a_folder(tmp_path):
+    pytest.importorskip("pymap3d")
+    drone = muster.Robot(id="d", position=(0.0, 0.0), kind="air")
+    origin = muster.Origin(lat_deg=35.5, lon_deg=24.0)
+    task = muster.Task(id="t", position=(30.0, 0.0))
+    mission = muster.Mission(origin_wgs84=origin, robots=(drone,), tasks=(task,))
+    plan = muster.solve(mission, "greedy")
+    files = muster.export(mission, plan, "qgc", tmp_path / "plans", altitude=10.0)
+    assert [path.name for path in (tmp_path / "plans").iterdir()] == ["d.plan"] == list(files.texts)
+    with pytest.raises(muster.ParameterError, match="to qgc: altitud: unknown; did you mean 'altitude'"):
+        muster.export(mission, plan, "qgc", altitud=10.0)

@@ -25,11 +25,12 @@ from muster.mission.errors import (
 )
 from muster.mission.model import Action, Camera, Event, Found, Map, Mission, Origin, Robot, Rules, Tag, Task, Zone
 from muster.mission.plan import Plan, Route, read_plan
+from muster.planning.exporting import export
 from muster.planning.judging import verify
 from muster.planning.loading import load
 from muster.planning.pictures import gantt, plot
 from muster.planning.questions import check, explain
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.running.running import carry_out, simulate
 
 if TYPE_CHECKING:
@@ -71,6 +72,7 @@ __all__ = [
     "carry_out",
     "check",
     "explain",
+    "export",
     "gantt",
     "load",
     "missions",

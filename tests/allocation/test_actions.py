@@ -160,8 +160,8 @@ def test_what_no_robot_can_do_is_impossible_and_says_why():
         ("skill", "it has no camera"),
         ("skill", "its camera (tilt_deg 0) does not look down"),
     ]
-    plan = Plan(routes=(Route("a", ("look",)),), ignored=("skills",))
-    verdict = muster.verify(mission, plan)
+    plan = Plan(routes=(Route("a", ("look",)),))
+    verdict = muster.verify(mission, plan, ignore=("skills",))
     assert [(v.kind, v.robot, v.task, v.detail) for v in verdict.violations] == [
         ("skill", "a", "look", "it has no camera")
     ]

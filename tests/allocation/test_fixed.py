@@ -157,7 +157,9 @@ def test_reasons_know_of_them():
     )
     plan = muster.solve(mission, iterations=50, fixed=plan_of(mission, {"r": ("far",)}))
     (left,) = plan.unassigned
-    assert (left.task, left.reasons[0].reason) == ("near", "capacity")
+    reason = ("not-chosen", "fits only before tasks that stay where they are")
+    assert (left.task, left.reasons[0].reason, left.reasons[0].detail) == ("near", *reason)
+    assert muster.verify(mission, plan).valid, "capacity would not be true for who knows nothing of what is fixed"
 
 
 def test_from_the_command(tmp_path, capsys):

@@ -105,7 +105,7 @@ PRINTED_TO = 0.011
 def test_printed_sequences_and_values(table, name, ignore, sequences, usages, total, f):
     mission = muster.load(name)
     plan = muster.solve(mission, "greedy", ignore=ignore)
-    verdict = muster.verify(mission, plan)
+    verdict = muster.verify(mission, plan, ignore)
     assert verdict.valid
     assert [[int(task) for task in route.tasks] for route in plan.routes] == sequences
     assert [route.usage for route in verdict.routes] == pytest.approx(usages, abs=PRINTED_TO)
@@ -116,7 +116,7 @@ def test_printed_sequences_and_values(table, name, ignore, sequences, usages, to
 @pytest.mark.parametrize(("name", "ignore", "total", "f"), RECOMPUTED, ids=[r[0] for r in RECOMPUTED])
 def test_recomputed_values(name, ignore, total, f):
     mission = muster.load(name)
-    verdict = muster.verify(mission, muster.solve(mission, "greedy", ignore=ignore))
+    verdict = muster.verify(mission, muster.solve(mission, "greedy", ignore=ignore), ignore)
     assert verdict.valid
     assert (verdict.total_cost, verdict.value("total+max")) == pytest.approx((total, f), abs=PRINTED_TO)
 
@@ -125,7 +125,7 @@ def test_recomputed_values(name, ignore, total, f):
 def test_min_cost(name, total, f, equality):
     mission = muster.load(name)
     plan = muster.solve(mission, "greedy", ignore=UNCONSTRAINED, objective="total")
-    verdict = muster.verify(mission, plan)
+    verdict = muster.verify(mission, plan, UNCONSTRAINED, "total")
     assert verdict.value() == verdict.total_cost == pytest.approx(total, abs=PRINTED_TO)
     assert verdict.value("total+max") == pytest.approx(f, abs=PRINTED_TO)
     assert verdict.equality_index == pytest.approx(equality, abs=0.006)

@@ -3,7 +3,9 @@
 import pytest
 
 import muster
-from muster.allocation.bounds import best_bound
+from muster.allocation import proofs
+from muster.allocation.bounds import Bound, best_bound, sound_bound
+from muster.allocation.exact import solving
 from muster.allocation.problem import Problem
 from muster.allocation.proofs import prove
 from muster.allocation.stop import Stop
@@ -29,6 +31,26 @@ def test_an_exact_solver_improves_a_plan_and_proves_it():
     assert plan.lower_bound == pytest.approx(plan.objective_value, rel=1e-6)
     assert plan.allocator == "greedy, exact"
     assert muster.verify(mission, plan).valid
+
+
+@pytest.mark.parametrize("proof", ["quick", "exact"])
+def test_a_bound_above_the_value_is_an_internal_error(proof, monkeypatch):
+    """It must not be cut down to the value, which would print "the plan is optimal"."""
+    if proof == "exact":
+        pytest.importorskip("ortools")
+    mission = muster.load("6T-2R")
+    plan = muster.solve(mission, "greedy")
+    unsound = Bound(plan.objective_value * 1.001, ("the farthest task",))
+    monkeypatch.setattr(proofs, "best_bound", lambda problem: unsound)
+    monkeypatch.setattr(solving, "best_bound", lambda problem: unsound)
+    with pytest.raises(muster.MusterError, match=r"^internal error: a lower bound of .*: the farthest task"):
+        prove(Problem.compile(mission), plan, proof, Stop())
+
+
+@pytest.mark.parametrize("above", [0.0, 1e-10])
+def test_a_bound_that_rounding_has_put_above_the_value_is_the_value(above):
+    assert sound_bound(7.0 * (1 + above), 7.0, "because") == 7.0
+    assert sound_bound(6.0, 7.0, "because") == 6.0
 
 
 def test_what_cannot_be_proven_is_refused():

@@ -29,6 +29,20 @@ def test_explain_when_nothing_is_left_out(muster):
     assert muster("explain", "6T-2R", "p.json") == (0, expected, "")
 
 
+def test_explain_without_rules_that_the_caller_ignores(plan, muster):
+    code, out, _ = muster("explain", "yard.yaml", plan, "--ignore", "skill")
+    assert code == 0
+    assert out.startswith("rules ignored: skill\n")
+    assert "lacks gripper" not in out
+    data = json.loads(muster("explain", "yard.yaml", plan, "--ignore", "skill", "--format", "json")[1])
+    assert data["ignored"] == ["skill"]
+    text = plan.read_text(encoding="utf-8").replace('"ignored": []', '"ignored": ["skill"]')
+    plan.write_text(text, encoding="utf-8")
+    code, out, err = muster("explain", "yard.yaml", plan)
+    assert "lacks gripper" in out, "a plan's own word has no effect"
+    assert "warning: " in err
+
+
 def test_explain_a_task_that_is_done(plan, muster):
     code, out, err = muster("explain", "yard.yaml", plan, "--task", "enter")
     assert (code, err) == (0, "")

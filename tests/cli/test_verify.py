@@ -31,9 +31,21 @@ def test_verify_in_json(plan, muster):
     assert {"objective", "total_cost", "max_usage", "makespan_s"} <= set(data)
 
 
+def test_verify_shows_weight_and_ignored_rules(plan, muster):
+    out = muster("verify", "yard.yaml", plan, "--ignore", "lock, skills")[1]
+    assert ["weight", "completed", "3"] in table_rows(out)
+    assert ["ignored", "skill,", "lock"] in table_rows(out)
+    data = json.loads(muster("verify", "yard.yaml", plan, "--ignore", "lock", "--format", "json")[1])
+    assert (data["weight_completed"], data["ignored"]) == (3, ["lock"])
+
+
 @pytest.mark.parametrize(
     ("old", "new", "kind"),
     [
+        ('"reason": "skill"', '"reason": "lock"', "reason"),
+        ('"reason": "skill"', '"reason": "not-chosen"', "reason"),
+        ('"name": "total+max"', '"name": "max"', "objective"),
+        ('"history": [', '"history": [[1e9, 300.0], ', "history"),
         ('"tasks": ["look"]', '"tasks": ["look", "lift"]', "skill"),
         ('"tasks": ["look"]', '"tasks": []', "figure"),
         ('"tasks": ["open", "enter"]', '"tasks": ["enter", "open"]', "deadlock"),

@@ -183,7 +183,7 @@ def test_an_end_is_when_the_robot_would_be_done(seed):
                 for robot, route in zip(problem.robots, bidders.routes, strict=True)
             ),
         )
-        verdict = muster.verify(problem.mission, plan)
+        verdict = muster.verify(problem.mission, plan, problem.ignored, problem.objective)
         visits = {route.robot: route.visits for route in verdict.routes}[problem.robots[i].id]
         assert offers[i][j] == pytest.approx(visits[-1].ends_s)
 

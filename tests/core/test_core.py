@@ -47,7 +47,9 @@ def test_every_step_keeps_members_admissible_and_their_values_true(seed, steps):
     for step in steps:
         STEPS[step](population)
     for member in range(len(population)):
-        verdict = muster.verify(problem.mission, plan_of(problem, population.routes(member)))
+        verdict = muster.verify(
+            problem.mission, plan_of(problem, population.routes(member)), problem.ignored, problem.objective
+        )
         assert verdict.violations == ()
         assert population.objective(member) == pytest.approx(verdict.value(), rel=1e-9)
         assert population.weight(member) == pytest.approx(verdict.weight_completed)
@@ -104,7 +106,7 @@ def test_cheapest_insertion_is_the_cheapest_of_all_places(seed, tasks):
             for at in range(len(routes[i]) + 1):
                 trial = [list(route) for route in routes]
                 trial[i].insert(at, j)
-                verdict = muster.verify(mission, plan_of(unlimited, trial))
+                verdict = muster.verify(mission, plan_of(unlimited, trial), unlimited.ignored)
                 if not any(v.kind in ("deadlock", "prerequisite") for v in verdict.violations):
                     robot = [route.robot for route in verdict.routes].index(problem.robots[i].id)
                     usages.append(verdict.routes[robot].usage)
@@ -142,7 +144,7 @@ def test_evaluation_agrees_with_the_judge_on_any_routes(seed, order):
         if allowed and order.random() < 0.8:
             routes[order.choice(allowed)].append(j)
     inspection = core.Inspection(problem.core, routes)
-    verdict = muster.verify(problem.mission, plan_of(problem, routes))
+    verdict = muster.verify(problem.mission, plan_of(problem, routes), problem.ignored, problem.objective)
     assert inspection.admissible == verdict.valid
     assert (inspection.makespan is None) == any(v.kind == "deadlock" for v in verdict.violations)
     usage = {route.robot: route.usage for route in verdict.routes}
@@ -150,7 +152,7 @@ def test_evaluation_agrees_with_the_judge_on_any_routes(seed, order):
     if verdict.valid:
         assert inspection.objective == pytest.approx(verdict.value())
         plan = finished_plan(problem, Stop(), Outcome(routes), allocator="test", seed=0)
-        assert muster.verify(problem.mission, plan).valid
+        assert muster.verify(problem.mission, plan, problem.ignored, problem.objective).valid
 
 
 def small_problem():

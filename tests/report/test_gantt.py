@@ -111,8 +111,8 @@ def test_prerequisites_between_robots_are_arrows_in_time(mission, plan, verdict,
 
 
 def test_a_prerequisite_that_was_ignored_is_no_arrow(mission, drawn):
-    plan = Plan(ignored=("prerequisites",), routes=(Route("ada", ("a", "b", "c")), Route("bob", ("d",))))
-    verdict = verify(mission, plan)
+    plan = Plan(routes=(Route("ada", ("a", "b", "c")), Route("bob", ("d",))))
+    verdict = verify(mission, plan, ("prerequisite",))
     ax = plot_gantt(mission, verdict)
     assert drawn(ax, "prerequisite") == []
     assert drawn(ax, "waiting-ada") == []

@@ -208,3 +208,27 @@ def test_depot_is_carried_out_as_planned_and_whole_whatever_happens():
     assert (report.contacts, report.tasks_lost) == (0, ())
     for robot, flown in zip(mission.robots, report.robots, strict=True):
         assert flown.usage_flown <= robot.work_capacity
+
+
+def test_a_makespan_means_the_same_planned_and_flown():
+    """The way home is no part of it; the mission's time holds it."""
+    robot = Robot(id="r", position=(0, 0), return_to_start=True)
+    mission = Mission(rules=Rules(objective="makespan"), robots=(robot,), tasks=(Task(id="a", position=(50, 0)),))
+    report = muster.simulate(mission, muster.solve(mission, iterations=10))
+    assert report.objective.planned == 50
+    assert report.objective.flown == pytest.approx(50, abs=0.2)
+    assert report.mission_time_s == pytest.approx(100, abs=0.4)
+    assert muster.verify(mission, muster.solve(mission, iterations=10)).makespan_s == 50
+
+
+def test_rules_are_ignored_by_the_caller_alone():
+    """A plan names a rule as ignored: the robot waits all the same, unless the caller ignores the rule."""
+    robots = (Robot(id="r", position=(0, 0)), Robot(id="s", position=(0, 40)))
+    first, then = Task(id="first", position=(30, 0)), Task(id="then", position=(1, 40), prerequisites=("first",))
+    mission = Mission(robots=robots, tasks=(first, then))
+    routes = (muster.Route("r", ("first",)), muster.Route("s", ("then",)))
+    plan = muster.Plan(ignored=("prerequisite",), routes=routes)
+    waits = muster.simulate(mission, plan)
+    assert waits.starts_s["then"] == pytest.approx(30, abs=0.4)
+    ignoring = muster.simulate(mission, muster.Plan(routes=routes), ignore=["prerequisite"])
+    assert ignoring.starts_s["then"] == pytest.approx(1, abs=0.4)

@@ -43,7 +43,7 @@ def answered(mission, peer, objective, ignored=(), seconds=SECONDS):
 def judged(mission, peer, objective, **more):
     instance, answer = answered(mission, peer, objective, **more)
     assert answer.routes is not None
-    return answer, muster.verify(mission, instance.plan(answer.routes, peer))
+    return answer, muster.verify(mission, instance.plan(answer.routes, peer), more.get("ignored", ()), objective)
 
 
 def checked(mission, peer, objective, **more):

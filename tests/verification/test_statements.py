@@ -110,12 +110,30 @@ def test_lower_bound(bound, wrong):
 
 def test_the_objective_is_the_missions_unless_the_caller_names_another():
     mission = replace(MISSION, rules=Rules(objective="max"))
-    assert verify(mission, replace(PLAN, objective=None, objective_value=11.0, lower_bound=None)).valid
+    assert verify(mission, replace(PLAN, objective=None, objective_value=11.0, lower_bound=None, history=())).valid
     assert not verify(mission, replace(PLAN, objective=None, lower_bound=None)).valid
     assert verify(mission, PLAN).objective_name == "max"
     assert [v.kind for v in verify(mission, PLAN).violations] == ["objective"], "its value is right of total+max"
     assert verify(mission, PLAN, objective="total+max").valid
     assert verify(mission, PLAN, objective="total+max").objective_name == "total+max"
+
+
+@pytest.mark.parametrize(
+    ("history", "word"),
+    [
+        (((0.05, 30.0), (0.1, 24.0)), None),
+        (((0.02, 10.0), (0.05, 30.0), (0.1, 24.0)), None),  # a rise: a task came in
+        (((0.1, 23.0),), "ends at"),
+        (((0.1, 24.0), (0.05, 24.0)), "go back"),
+        (((0.2, 24.0),), "outside"),
+        (((-0.1, 30.0), (0.1, 24.0)), "outside"),
+        ((*((0.01 * k, 20.0 + k % 2) for k in range(9)), (0.1, 24.0)), "rises"),
+    ],
+)
+def test_a_history_that_cannot_be(history, word):
+    violations = verify(MISSION, replace(PLAN, history=history)).violations
+    assert [v.kind for v in violations] == ([] if word is None else ["history"])
+    assert word is None or word in violations[0].detail
 
 
 def test_a_makespan_where_there_is_a_deadlock():
@@ -124,7 +142,7 @@ def test_a_makespan_where_there_is_a_deadlock():
     assert [v.kind for v in verify(mission, PLAN).violations] == ["deadlock", "figure"]
     silent = replace(PLAN, makespan_s=None)
     assert [v.kind for v in verify(mission, silent).violations] == ["deadlock"]
-    stated = replace(silent, objective="makespan", objective_value=11.0)
+    stated = replace(silent, objective="makespan", objective_value=11.0, history=())
     verdict = verify(mission, stated, objective="makespan")
     assert [v.kind for v in verdict.violations] == ["deadlock", "figure"]
     assert verdict.as_dict()["objective"] is None

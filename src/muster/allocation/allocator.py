@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
-from muster.allocation.explanations import unassigned
+from muster.allocation.explanations import unassigned_of_plan
 from muster.allocation.problem import Problem
 from muster.allocation.returned_routes import checked_routes
 from muster.allocation.stop import Stop
@@ -165,7 +165,7 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
-        unassigned=unassigned(problem, lists, lambda: stop.hurried),
+        unassigned=unassigned_of_plan(problem, lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )

@@ -17,6 +17,7 @@ import numpy as np
 from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.spanning import Ways, route_bounds
+from muster.mission.errors import MusterError
 
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
 _MOST_CROWDED = 300  # tasks up to which crowding is looked at
@@ -53,6 +54,19 @@ class Bound:
     def why(self) -> str:
         """The arguments in words, with their sources."""
         return "; ".join(f"{name}: {WHY[name]}" for name in self.arguments)
+
+
+def sound_bound(bound: float, value: float, why: str) -> float:
+    """The bound of the objective of a plan, cut down to its value where rounding alone has put it above.
+
+    Raises
+    ------
+    MusterError
+        if it is above the value by more than that: the argument for the bound is wrong.
+    """
+    if bound > value and not math.isclose(bound, value, rel_tol=ROUNDING, abs_tol=ROUNDING):
+        raise MusterError(f"internal error: a lower bound of {bound!r} for a plan whose objective is {value!r}: {why}")
+    return min(bound, value)
 
 
 def lower_bound(problem: Problem) -> float:

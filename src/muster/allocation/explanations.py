@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from muster import core
 from muster.allocation.feasibility import least_usage
@@ -30,6 +30,30 @@ def unassigned(
         return () if hurried() else tuple(_reason(problem, inspection, done, i, j) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in left_out)
+
+
+def unassigned_of_plan(
+    problem: Problem, routes: Sequence[Sequence[int]], hurried: Callable[[], bool]
+) -> tuple[Unassigned, ...]:
+    """`unassigned` for a plan, which says nothing of fixed beginnings: its reasons are true without these.
+
+    A task that fits only before tasks that are fixed is not chosen.
+    """
+    found = unassigned(problem, routes, hurried)
+    if not problem.fixed or not found:
+        return found
+    free = unassigned(replace(problem, fixed=(), known=problem.measured), routes, hurried)
+    return tuple(
+        Unassigned(item.task, tuple(map(_without_beginnings, item.reasons, other.reasons)))
+        for item, other in zip(found, free, strict=True)
+    )
+
+
+def _without_beginnings(reason: Reason, free: Reason) -> Reason:
+    """The reason, unless there is none once no task is fixed."""
+    if free.reason != "not-chosen" or reason.reason == free.reason:
+        return reason
+    return Reason(reason.robot, "not-chosen", "fits only before tasks that stay where they are")
 
 
 def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from muster.allocation.allocator import Outcome, finished_plan, routes_of
-from muster.allocation.bounds import best_bound
+from muster.allocation.bounds import best_bound, sound_bound
 from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -59,6 +59,8 @@ def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: floa
     ------
     ParameterError, MissingExtraError
         as `require_provable`.
+    MusterError
+        if a bound is above the value of a plan: an internal error.
     """
     require_provable(problem, proof)
     return _quick(problem, plan) if proof == "quick" else _exact(problem, plan, stop, time_limit)
@@ -69,7 +71,7 @@ def _quick(problem: Problem, plan: Plan) -> Proof:
     if not plan.complete or value is None:
         return Proof(plan, "quick bounds are of plans that do all tasks, and this one leaves some out")
     bound = best_bound(problem)
-    return Proof(replace(plan, lower_bound=min(bound.value, value)), bound.why)
+    return Proof(replace(plan, lower_bound=sound_bound(bound.value, value, bound.why)), bound.why)
 
 
 def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:

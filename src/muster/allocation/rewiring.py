@@ -45,8 +45,14 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
     before = admissible_routes(problem, plan, "plan")
     after = rewired(problem, before)
     made = finished_plan(problem, Stop(clock=VirtualClock()), Outcome(after), allocator="", seed=0)
+    own_history = ((plan.elapsed_s or 0.0, made.objective_value or 0.0),)  # of the search it tells no longer
     made = replace(
-        made, allocator=plan.allocator, seed=plan.seed, elapsed_s=plan.elapsed_s, history=plan.history, book=plan.book
+        made,
+        allocator=plan.allocator,
+        seed=plan.seed,
+        elapsed_s=plan.elapsed_s,
+        history=plan.history if made.objective_value == plan.objective_value else own_history,
+        book=plan.book,
     )
     schedule = _Schedule(problem)
     return Rewired(made, schedule.waiting(before).total, schedule.waiting(after).total)

@@ -41,6 +41,11 @@ class Follower:
         return self._waypoints[self.passed] if self.passed < len(self._waypoints) else None
 
     @property
+    def target(self) -> Waypoint:
+        """The way point that it is to pass next, or the last of all, where it stays. There must be one."""
+        return self._waypoints[min(self.passed, len(self._waypoints) - 1)]
+
+    @property
     def waits(self) -> bool:
         """Whether it has passed all that it was sent to; not one that was sent nowhere, or told to stay where it is."""
         return self.aim is None and self.passed > 0

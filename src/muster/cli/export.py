@@ -29,7 +29,14 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.command()
 @mission_argument
 @click.argument("plan", type=click.Path(path_type=Path))
-@click.option("--to", "form", required=True, callback=_format, metavar="FORMAT", help=f"One of {', '.join(FORMATS)}.")
+@click.option(
+    "--to",
+    "form",
+    required=True,
+    callback=_format,
+    metavar="FORMAT",
+    help=f"One of {', '.join(FORMATS.shipped)}, or a format of an installed package.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="For qgc a folder.")
 @click.option(
     "--altitude",
@@ -91,6 +98,8 @@ def command(
         for message in () if quiet else files.messages:
             click.echo(message, err=True)
         return DONE
+    if len(files.texts) != 1:
+        raise ParameterError(f"--to: {form} made {len(files.texts)} files; expected one")
     (text,) = files.texts.values()
     if output is None:
         click.echo(text, nl=False)
@@ -116,7 +125,7 @@ def _write_plan_files(files: Files, folder: Path, inputs: tuple[str | Path, ...]
 
 
 def _require_free(folder: Path, files: Collection[str], inputs: tuple[str | Path, ...]) -> None:
-    """Refuse a folder in which something would be replaced that was read, or a plan of another mission be left."""
+    """Refuse a folder whose files were read, or that holds plan files of other robots."""
     read = {Path(name).resolve() for name in inputs}
     for name in files:
         if (folder / name).resolve() in read or folder.resolve() in read:

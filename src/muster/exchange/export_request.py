@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypedDict
 
-FORMATS = ("qgc", "geojson", "gpx", "kml", "csv")
+from muster.mission.errors import ParameterError
+from muster.mission.plugins import Registry
+
+if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.verification import Verdict
 
 
 @dataclass(frozen=True)
@@ -36,3 +42,37 @@ class QgcOptions:
     clearance: float = 0.0
     tolerance: float = 0.1
     firmware: str = "px4"
+
+
+class QgcKeywords(TypedDict, total=False):
+    """The options of `QgcOptions`, for type checkers."""
+
+    altitude: float | None
+    clearance: float
+    tolerance: float
+    firmware: str
+
+
+Exporter = Callable[["Mission", "Verdict"], "str | Files"]
+"""Writes an admissible plan as the text of one file, or as several files."""
+
+
+def _checked(name: str, found: object) -> Exporter:
+    if not callable(found):
+        raise ParameterError(f"it is a {type(found).__name__}; expected a function of a mission and a verdict")
+    return found
+
+
+FORMATS: Registry[Exporter] = Registry(
+    "format",
+    "muster.formats",
+    {
+        "qgc": "muster.exchange.files:plan_files",
+        "geojson": "muster.exchange.files:geojson_file",
+        "gpx": "muster.exchange.files:gpx_file",
+        "kml": "muster.exchange.files:kml_file",
+        "csv": "muster.exchange.files:csv_file",
+    },
+    _checked,
+)
+"""By name, those of installed packages included."""

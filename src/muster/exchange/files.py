@@ -8,9 +8,9 @@ from functools import partial
 
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import Files, QgcOptions
+from muster.exchange.export_request import FORMATS, Files, QgcOptions
 from muster.exchange.fence import Fence
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import Survey, survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, itineraries
@@ -27,36 +27,52 @@ from muster.verification import Verdict
 
 
 def exported(mission: Mission, verdict: Verdict, form: str, options: QgcOptions) -> Files:
-    """An admissible plan as files of a format: of qgc a file for each robot, of the others one file.
+    """An admissible plan as files of a format: of qgc a file for each robot, of the others that ship one file.
+
+    Parameters
+    ----------
+    options
+        for qgc alone.
 
     Raises
     ------
     MissionError
         if the format needs a place on Earth and the mission has none.
     ParameterError
-        if drones have no height to fly at.
+        if there is no such format, or drones have no height to fly at.
     """
     if form == "qgc":
         return plan_files(mission, verdict, options)
-    return Files({f"plan.{form}": text_of(mission, verdict, form)})
+    made = FORMATS.named(form)(mission, verdict)
+    return made if isinstance(made, Files) else Files({f"plan.{form}": made})
 
 
-def text_of(mission: Mission, verdict: Verdict, form: str) -> str:
-    """An admissible plan as one file: geojson, gpx, kml or csv.
+def csv_file(mission: Mission, verdict: Verdict) -> str:
+    """The stops as a table; with places on Earth where the mission has its own."""
+    return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
 
-    Raises
-    ------
-    MissionError
-        if the format needs a place on Earth and the mission has none.
-    """
-    if form == "csv":
-        return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
+
+def geojson_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as GeoJSON."""
+    return geojson_text(_surveyed(mission, verdict, "geojson"))
+
+
+def gpx_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as GPX."""
+    return gpx_text(_surveyed(mission, verdict, "gpx"))
+
+
+def kml_file(mission: Mission, verdict: Verdict) -> str:
+    """Ways and stops as KML."""
+    return kml_text(_surveyed(mission, verdict, "kml"))
+
+
+def _surveyed(mission: Mission, verdict: Verdict, form: str) -> Survey:
     earth = Earth.of(mission, f"--to {form}")
-    writer = {"geojson": geojson_text, "gpx": gpx_text, "kml": kml_text}[form]
-    return writer(survey(mission, verdict, itineraries(mission, verdict), earth))
+    return survey(mission, verdict, itineraries(mission, verdict), earth)
 
 
-def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions) -> Files:
+def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = None) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 
     Raises
@@ -66,6 +82,7 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions) -> Files
     ParameterError
         if drones have no height to fly at.
     """
+    options = options or QgcOptions()
     earth = Earth.of(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     whole = itineraries(mission, verdict, robot_paths)

@@ -16,7 +16,8 @@ from muster.mission.errors import MusterError
 Role = Literal["watch", "command"]
 JobState = Literal["queued", "running", "done", "failed", "cancelled"]
 RunState = Literal["starting", "running", "paused", "ended", "cancelled", "failed"]
-World = Literal["kinematic", "physics", "ros1", "ros2", "mavlink"]
+World = str
+"""kinematic, physics, ros1, ros2, mavlink, or a world or fleet of an installed package."""
 
 OVER = ("ended", "cancelled", "failed")
 """States of a run after which nothing more happens in it."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from muster.execution.task_ledger import Ledger
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
+from muster.mission.objectives import objective_values
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -122,7 +123,7 @@ class Report:
     reallocations
         how often the rest was planned again.
     objective
-        of the plan; `average` is of the usages with which robots came to tasks, `makespan` the mission time.
+        of the plan; `average` is of the usages with which robots came to tasks, `makespan` the end of the last task.
     tasks
         of tasks done, in order of completion.
     done_twice
@@ -218,13 +219,7 @@ def broken_off(report: Report, account: Account, reason: str) -> Report:
 
 
 def _objective(account: Account) -> ObjectiveReport:
-    usages = account.used.values()
-    arrivals = [account.ledger.arrival_usage[task] for task in account.ledger.ends_s]
-    flown = {
-        "total+max": sum(usages) + max(usages, default=0.0),
-        "total": sum(usages),
-        "max": max(usages, default=0.0),
-        "average": sum(arrivals) / len(arrivals) if arrivals else 0.0,
-        "makespan": account.mission_time_s,
-    }
+    ledger = account.ledger
+    arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
+    flown = objective_values(account.used.values(), arrivals, ledger.ends_s.values())
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

@@ -13,7 +13,7 @@ from muster.mission.auction_book import Award, Book
 from muster.mission.data_frames import data_frame
 from muster.mission.errors import Finding, MissionError, ParameterError, PlanError
 from muster.mission.html_tables import html_line, html_table
-from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
+from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule, ignored_rules
 from muster.mission.rules import OBJECTIVES
 from muster.mission.text_files import read_text, write_text
 from muster.mission.value_types import shown
@@ -57,6 +57,11 @@ class Plan:
 
     Figures are None in a plan from elsewhere that does not state them. Of those stated here, `elapsed_s` and the
     seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
+
+    Raises
+    ------
+    ParameterError
+        for an unknown rule in `ignored`.
     """
 
     mission: str | None = None
@@ -79,6 +84,9 @@ class Plan:
     unassigned: tuple[Unassigned, ...] = ()
     history: tuple[tuple[float, float], ...] = ()
     book: Book | None = None  # of an auction
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ignored", ignored_rules(self.ignored))
 
     @property
     def complete(self) -> bool:
@@ -243,7 +251,7 @@ class _Reading:
             mission=self._given(data, "mission", str),
             allocator=self._given(data, "allocator", str),
             seed=self._given(data, "seed", int),
-            ignored=tuple(ignorable_rule(name) or name for name in ignored),
+            ignored=tuple(name for name in ignored if ignorable_rule(name) is not None),
             objective=objective.get("name") if objective.get("name") in OBJECTIVES else None,
             objective_value=self._number(objective, "value", "objective."),
             usage_unit=self._given(data, "usage_unit", str),

@@ -1,4 +1,4 @@
-"""Where robots went in a mission that was recorded, on the map."""
+"""The robots' tracks in a recorded mission, on the map."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def plot_flown(recording: Recording) -> Axes:
 
 
 def outcome(recording: Recording) -> list[str]:
-    """What came of a mission, in words."""
+    """The outcome of a mission in words."""
     states = list(recording.outcome.states.values())
     facts = [f"tasks {states.count(DONE)}/{len(states)}"]
     report = recording.report or {}

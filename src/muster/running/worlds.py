@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from muster.execution import Recorder
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
 from muster.mission.plugins import Registry
-from muster.simulation import SimulatedWorld
 
-MakeWorld = Callable[..., SimulatedWorld]
+if TYPE_CHECKING:
+    from muster.execution import Recorder
+    from muster.mission.model import Mission
+    from muster.simulation import SimulatedWorld
+
+MakeWorld = Callable[..., "SimulatedWorld"]
 """Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`."""
 
 

@@ -1,18 +1,23 @@
-"""The judge: a plan recomputed from the mission alone, in time linear in tasks, robots and prerequisites."""
+"""The judge: a plan recomputed from the mission alone. A plan without reasons takes time linear in its size."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
+from muster.mission.objectives import objective_values
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
-from muster.verification.admissibility import broken_rules, capacity_of, known_routes
+from muster.verification.book import book_faults
+from muster.verification.case import Case
+from muster.verification.known_routes import known_routes
+from muster.verification.left_out import left_out_faults
 from muster.verification.measure import MeasuredRoute, equality_index, measured
+from muster.verification.rules import rules_that_hold
 from muster.verification.schedule import Deadlock, Times, awaited_in, schedule
 from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
@@ -48,41 +53,54 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
         raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
     tasks_of, violations = known_routes(mission, plan)
     travel = Travel(mission)
-    routes = [measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots]
-    unit = "s" if mission.rules.usage == "time" else "m"
-    violations += broken_rules(mission, ignored, routes, unit, travel.tolerance)
+    routes = tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots)
     times = schedule(routes, awaited_in(routes, ignored="prerequisite" in ignored))
+    case = Case(
+        mission=mission,
+        travel=travel,
+        routes=routes,
+        ignored=ignored,
+        deadlocked=isinstance(times, Deadlock),
+    )
+    violations += _broken_rules(case)
     if isinstance(times, Deadlock):
         violations.append(Violation("deadlock", None, None, times.detail))
-    verdict = _verdict(mission, ignored, objective, routes, None if isinstance(times, Deadlock) else times, unit)
-    return replace(verdict, violations=(*violations, *false_statements(mission, plan, verdict, travel.tolerance)))
+    verdict = _verdict(case, objective, None if isinstance(times, Deadlock) else times)
+    violations += left_out_faults(case, plan)
+    violations += false_statements(plan, verdict, travel.tolerance)
+    violations += book_faults(mission, plan)
+    return replace(verdict, violations=tuple(violations))
 
 
-def _verdict(
-    mission: Mission,
-    ignored: Collection[str],
-    objective: str,
-    routes: Sequence[MeasuredRoute],
-    times: Mapping[str, Times] | None,
-    unit: str,
-) -> Verdict:
+def _broken_rules(case: Case) -> Iterator[Violation]:
+    """Every broken rule, robot by robot in the order of the routes; deadlocks are for the schedule to find."""
+    rules = rules_that_hold(case)
+    for route in case.routes:
+        for rule in rules:
+            yield from rule.violations(case, route)
+
+
+def _verdict(case: Case, objective: str, times: Mapping[str, Times] | None) -> Verdict:
     """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
-    usages = [route.usage for route in routes]
-    steps = [step for route in routes for step in route.steps]
+    usages = [route.usage for route in case.routes]
+    steps = [step for route in case.routes for step in route.steps]
+    ends = [] if times is None else [time.ends for time in times.values()]
+    values = objective_values(usages, [step.arrival_usage for step in steps], ends)
+    routes = tuple(_figures(route, case.capacity_of(route.robot), times) for route in case.routes)
     return Verdict(
         violations=(),
         objective_name=objective,
-        ignored=tuple(ignored),
-        usage_unit=unit,
-        total_cost=sum(usages),  # [tcf-thesis] (3.11)
-        max_usage=max(usages),
-        average=sum(step.arrival_usage for step in steps) / len(steps) if steps else 0.0,
-        makespan_s=None if times is None else max((time.ends for time in times.values()), default=0.0),
+        ignored=case.ignored,
+        usage_unit=case.unit,
+        total_cost=values["total"],  # [tcf-thesis] (3.11)
+        max_usage=values["max"],
+        average=values["average"],
+        makespan_s=None if times is None else values["makespan"],
         equality_index=equality_index(usages),
         tasks_completed=len(steps),
-        tasks_total=len(mission.tasks),
+        tasks_total=len(case.mission.tasks),
         weight_completed=sum((step.task.priority for step in steps), start=0.0),
-        routes=tuple(_figures(route, capacity_of(mission, ignored, route.robot), times) for route in routes),
+        routes=routes,
     )
 
 

@@ -1,4 +1,4 @@
-"""How far it is from place to place: DESIGN section 4, [tcf-thesis] (3.9)."""
+"""How far it is from place to place: docs/design.md, Meaning; [tcf-thesis] (3.9)."""
 
 from __future__ import annotations
 
@@ -80,6 +80,16 @@ class Travel:
     def tolerance(self) -> float:
         """By how much, relative, a right length may differ from these: 0, but where a map is in play."""
         return 0.0 if self._ways is None else self._ways.tolerance
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether each leg is the straight line between its ends."""
+        return self._ways is None and not self._by_table
+
+    @property
+    def is_tabled(self) -> bool:
+        """Whether travel tables give the legs, whatever the places."""
+        return self._by_table
 
     def metres(self, robot: Robot, start: Place, end: Place) -> float | None:
         """Return the length of the leg from the exit of `start` to the entry of `end`; None if there is no way."""

@@ -26,9 +26,11 @@ KINDS = (
     "prerequisite",
     "deadlock",
     "unassigned",
+    "reason",
     "book",
     "objective",
     "figure",
+    "history",
 )
 """The kinds of violation."""
 

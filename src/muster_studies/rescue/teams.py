@@ -8,7 +8,7 @@ from functools import cache
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.judging import verify
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.verification import Verdict
 from muster_studies.runs import mission_named
 

@@ -14,7 +14,7 @@ from muster.execution.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.simulation import NO_NOISE, Noise
 from muster.verification import Verdict

@@ -6,11 +6,12 @@ import pytest
 from tests.bridges.mavlink.drones import Sky, mission
 from tests.bridges.mavlink.talk import ORIGIN
 
+from muster.bridges.follower import Follower
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import mavlink
-from muster.bridges.mavlink.follower import Follower
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.mission_items import route_of
+from muster.bridges.mavlink.position_targets import TURNED_RAD
 from muster.motion.port import Waypoint
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
@@ -38,11 +39,12 @@ def test_px4_has_both_in_the_way_point():
 
 
 def test_one_by_one_a_way_point_is_passed_when_the_drone_is_turned():
-    follower = Follower([Waypoint((0.0, 0.0, 10.0), heading=math.pi - 0.05, hold_s=2.0)], 1.0)
+    follower = Follower(arrival_m=1.0, turned_rad=TURNED_RAD, flat=False)
+    follower.take([Waypoint((0.0, 0.0, 10.0), heading=math.pi - 0.05, hold_s=2.0)])
     for heading, now in ((0.0, 0.0), (0.0, 5.0), (0.1 - math.pi, 6.0), (math.pi, 7.9)):
-        follower.look((0.0, 0.0, 10.0), heading, now)
+        follower.hear(now, (0.0, 0.0, 10.0), heading)
         assert follower.passed == 0
-    follower.look((0.0, 0.0, 10.0), math.pi, 8.1)
+    follower.hear(8.1, (0.0, 0.0, 10.0), math.pi)
     assert follower.passed == 1
 
 

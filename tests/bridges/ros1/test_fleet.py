@@ -118,7 +118,7 @@ def test_a_robot_that_the_network_hid_is_met_later(rospy_there, monkeypatch):
         port.telemetry = lambda: SimpleNamespace(position=(4.0, 5.0, 0.0)) if said else None
         return port
 
-    it = joining.Newcomers("", ["r_0"], reach, flat=True)
+    it = joining.Ros1Newcomers("", ["r_0"], reach, flat=True)
     assert [it.look() for _ in range(4)] == [[], [], [], []]
     assert faults == []  # asked for until that succeeded, and not again
     said.append("where it is")

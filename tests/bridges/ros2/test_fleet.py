@@ -98,8 +98,8 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
 
 @pytest.mark.parametrize("name", sorted(MESSAGES))
 def test_types_of_dds_are_written_as_messages_are(name):
-    from muster.bridges.ros2.cdr import to_cdr
     from muster.bridges.ros2.dds import _idl
+    from muster.bridges.ros2.serialization import to_cdr
 
     sent = MESSAGES[name]()
     package, _, kind = name.partition("/")

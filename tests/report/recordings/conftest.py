@@ -7,9 +7,9 @@ import pytest
 from tests.report.voyages import carry_out
 
 import muster
-from muster.bridges.ros2.cdr import to_cdr, to_ros1
-from muster.bridges.ros2.description import ROS1, ROS2, definition, md5_sum, type_name
+from muster.bridges.ros2.description import ROS1, ROS2
 from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, PoseWithCovariance, Time
+from muster.bridges.ros2.serialization import definition, md5_sum, to_cdr, to_ros1, type_name
 from muster.report.record import RecordWriter, read_record
 
 pytest.importorskip("mcap")
@@ -60,9 +60,7 @@ def _write_mcap(file, told, packed):
             if topic not in channels:
                 kind = type(message)
                 text = definition(kind, ros).encode()
-                schema = writer.register_schema(
-                    type_name(kind, ros), "ros1msg" if packed == "ros1" else "ros2msg", text
-                )
+                schema = writer.register_schema(type_name(kind), "ros1msg" if packed == "ros1" else "ros2msg", text)
                 channels[topic] = writer.register_channel(topic, encoding, schema)
             writer.add_message(channels[topic], round(time * 1e9), to_bytes(message), round(time * 1e9))
         writer.finish()
@@ -80,7 +78,7 @@ def _write_bag1(file, told, packed):
             if topic not in links:
                 kind = type(message)
                 text, md5 = definition(kind, ROS1), md5_sum(kind)
-                links[topic] = writer.add_connection(topic, type_name(kind, ROS2), msgdef=text, md5sum=md5)
+                links[topic] = writer.add_connection(topic, type_name(kind), msgdef=text, md5sum=md5)
             writer.write(links[topic], round(time * 1e9), to_ros1(message))
 
 
@@ -98,7 +96,7 @@ def _write_bag2(folder, told, packed):
         links = {}
         for topic, time, message in told:
             if topic not in links:
-                links[topic] = writer.add_connection(topic, type_name(type(message), ROS2), typestore=store)
+                links[topic] = writer.add_connection(topic, type_name(type(message)), typestore=store)
             writer.write(links[topic], round(time * 1e9), to_cdr(message))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds import best_bound, sound_bound
 from muster.allocation.exact.partition import few_partings, least_average
 from muster.allocation.exact.scale import whole_weights
 from muster.allocation.feasibility import impossible, usable_pairs
@@ -138,21 +138,25 @@ class _Solving:
         """Find the least objective at the plan's weight: a bound of it, and how much of the bound rounding took."""
         if not any(self._routes):
             return 0.0, 0.0
-        least = lower_bound(self._problem) if self._weight() == sum(self._weights) else 0.0
+        least, why = 0.0, "no usage is negative"
+        if self._weight() == sum(self._weights):
+            quick = best_bound(self._problem)
+            least, why = quick.value, quick.why
         if self._problem.objective == "average" and few_partings(self._problem) and not self._problem.fixed:
             parting = least_average(self._problem, self._usable, self._weights, self._weight())
             if core.Inspection(self._problem.core, parting.routes).admissible:
                 self._take_over(parting.routes)
-            least = max(least, parting.value)
+            least, why = max((least, why), (parting.value, "the best parting of the tasks among the robots"))
         if self._value() <= least * (1 + _ROUNDING):
-            return self._value(), 0.0
+            return sound_bound(least, self._value(), why), 0.0
         bounds, slack = [], 0.0
         for count in self._counts():
             program = self._program()
             program.minimise_value(self._weight(), count, least, self._value())
             bounds.append(self._run(program) / (count or 1) / program.scale.units)
             slack = program.scale.slack
-        return min(max(least, min(bounds)), self._value()), slack
+        least, why = max((least, why), (min(bounds), "OR-Tools CP-SAT"))
+        return sound_bound(least, self._value(), why), slack
 
     def _counts(self) -> Sequence[int | None]:
         """How many tasks the plans of the plan's weight may complete, where the objective asks for that."""

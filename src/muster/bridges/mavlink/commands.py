@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from muster.bridges.follower import Follower
 from muster.bridges.mavlink import procedures
 from muster.bridges.mavlink.drone import Craft
 from muster.bridges.mavlink.faults import FaultError
-from muster.bridges.mavlink.follower import Follower
 from muster.bridges.mavlink.mission_items import route_of
+from muster.bridges.mavlink.position_targets import TURNED_RAD
 from muster.bridges.mavlink.requests import Script, pause
 from muster.motion.port import Waypoint
 
@@ -37,7 +38,8 @@ def mission(craft: Craft, waypoints: Sequence[Waypoint]) -> Script:
 
 def guided(craft: Craft, waypoints: Sequence[Waypoint]) -> Script:
     """PX4: way points are said for a second, then it follows them. ArduPilot: it climbs first."""
-    follower = Follower(waypoints, craft.settings.accept_m)
+    follower = Follower(arrival_m=craft.settings.accept_m, turned_rad=TURNED_RAD, flat=False)
+    follower.take(waypoints)
     if craft.kind.streams:
         craft.follower = follower
         yield pause(1.2)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from muster.bridges.final_state import FinalState
+from muster.bridges.follower import Follower
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message
-from muster.bridges.mavlink.follower import Follower
 from muster.bridges.mavlink.mission_items import Route
 from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.telemetry import Seen

@@ -14,7 +14,7 @@ from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.drone import Craft
 from muster.bridges.mavlink.fault_detection import Watch
 from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
-from muster.bridges.mavlink.follower import EVERY_S
+from muster.bridges.mavlink.position_targets import EVERY_S, position_target
 from muster.bridges.mavlink.requests import Conversation, Script
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
@@ -269,11 +269,11 @@ class Session:
         craft, seen = self.craft, self.craft.seen
         if craft.follower is None or seen.place is None:
             return
-        craft.follower.look(seen.place, seen.heading, now)
+        craft.follower.hear(now, seen.place, seen.heading)
         craft.passed = craft.follower.passed
         if now >= self._streamed_s + EVERY_S and seen.local is not None:
             self._streamed_s = now
-            self._say(craft.follower.message(craft.target, seen.local, now))
+            self._say(position_target(craft.follower.target, craft.target, seen.local, now))
 
     def _try(self, what: Callable[[], None], now: float) -> None:
         """Do something that a fault may end; a second fault, of the reaction to the first, ends that alone."""

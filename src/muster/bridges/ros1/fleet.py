@@ -15,7 +15,7 @@ from typing import Any
 
 from muster.bridges.discovery import NAME, topics_in
 from muster.bridges.ros1.clock import Forward, MissionClock
-from muster.bridges.ros1.joining import Newcomers
+from muster.bridges.ros1.joining import Ros1Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
@@ -101,7 +101,7 @@ class Ros1Fleet:
         self._events: list[Event] = []
         for robot in mission.robots:
             self._ports[robot.id] = self._reached(robot)
-        self._newcomers = Newcomers(namespace, self._ports, self._reached, flat=self._flat)
+        self._newcomers = Ros1Newcomers(namespace, self._ports, self._reached, flat=self._flat)
         tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
         self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
         for thread in self._threads:

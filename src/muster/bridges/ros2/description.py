@@ -1,15 +1,13 @@
-"""What a message of ROS is made of: read from its dataclass, for every way to write it.
+"""What a message of ROS is made of: read from its dataclass, to convert it to the types of DDS, rclpy and rosbags.
 
-A message is a frozen dataclass with a `NAME` (`package/Type`) whose fields have the types below. From them follow its
-bytes (`cdr`), its definition as text (docs.ros.org, "Interface definition"; `gendeps --cat` of ROS 1), and the MD5 sum
-by which ROS 1 knows it (wiki.ros.org, "ROS/Technical Overview", 4).
+A message is a frozen dataclass with a `NAME` (`package/Type`) whose fields have the types below.
 """
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Annotated, Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
 
 ROS1, ROS2 = 1, 2
@@ -42,10 +40,6 @@ class Message:
     """Base of all messages."""
 
     NAME: ClassVar[str]
-    CONSTANTS: ClassVar[dict[int, str]] = {}
-    """Of each ROS the lines of constants in the definition; they are part of the MD5 sum."""
-    PRIMITIVE: ClassVar[str] = ""
-    """The word that ROS 1 has for it, where it is no message there."""
 
 
 M = TypeVar("M", bound=Message)
@@ -75,35 +69,44 @@ _READ: dict[tuple[type[Message], int], tuple[Field, ...]] = {}
 """Fields that were read before: reading annotations is slow, and they do not change."""
 
 
-def to_foreign(message: Message, kind_of: Callable[[type[Message]], Any]) -> Any:
-    """A message of ROS 2 as one of another library.
+def to_foreign(
+    message: Message,
+    kind_of: Callable[[type[Message]], Any],
+    *,
+    ros: int = ROS2,
+    array: Callable[[Any, str], Any] = lambda values, kind: list(values),
+) -> Any:
+    """A message as one of another library.
 
     Parameters
     ----------
     kind_of
-        the library's class for a message; it takes all fields by their names, and arrays as lists.
+        the library's class for a message; it takes all fields by their names.
+    array
+        the library's array of values of a primitive kind.
     """
 
     def value(field: Field, own: Any) -> Any:
         if isinstance(field.kind, str):
-            return list(own) if field.is_list else own
-        return [to_foreign(item, kind_of) for item in own] if field.is_list else to_foreign(own, kind_of)
+            return array(own, field.kind) if field.is_list else own
+        convert = partial(to_foreign, kind_of=kind_of, ros=ros, array=array)
+        return [convert(item) for item in own] if field.is_list else convert(own)
 
     kind = type(message)
-    return kind_of(kind)(**{field.name: value(field, getattr(message, field.name)) for field in fields_of(kind, ROS2)})
+    return kind_of(kind)(**{field.name: value(field, getattr(message, field.name)) for field in fields_of(kind, ros)})
 
 
-def from_foreign(kind: type[M], foreign: Any) -> M:
-    """A message of ROS 2 by one of another library, whose fields have the same names."""
+def from_foreign(kind: type[M], foreign: Any, *, ros: int = ROS2) -> M:
+    """A message by one of another library, whose fields have the same names."""
 
     def value(field: Field, theirs: Any) -> Any:
         if not field.is_list:
-            return theirs if isinstance(field.kind, str) else from_foreign(field.kind, theirs)
+            return theirs if isinstance(field.kind, str) else from_foreign(field.kind, theirs, ros=ros)
         if isinstance(field.kind, str):
-            return bytes(theirs) if field.kind == "uint8" else tuple(theirs)
-        return tuple(from_foreign(field.kind, one) for one in theirs)
+            return bytes(theirs) if field.kind == "uint8" else tuple(map(float, theirs))
+        return tuple(from_foreign(field.kind, one, ros=ros) for one in theirs)
 
-    return kind(**{field.name: value(field, getattr(foreign, field.name)) for field in fields_of(kind, ROS2)})
+    return kind(**{field.name: value(field, getattr(foreign, field.name)) for field in fields_of(kind, ros)})
 
 
 def _fields(message: type[Message], ros: int) -> Iterator[Field]:
@@ -121,54 +124,3 @@ def _field(name: str, kind: Any, marks: tuple[Any, ...]) -> Field:
     if get_origin(kind) is tuple and not words:
         return Field(name, get_args(kind)[0], 0)
     return Field(name, words[0] if words else kind, lengths[0] if lengths else None)
-
-
-def definition(message: type[Message], ros: int) -> str:
-    """The definition of a message and of all that it is made of."""
-    parts = [_lines(message, ros)]
-    parts += [[f"MSG: {part.NAME}", *_lines(part, ros)] for part in _parts(message, ros)]
-    return f"\n{'=' * 80}\n".join("\n".join(lines) for lines in parts) + "\n"
-
-
-def type_name(message: type[Message], ros: int) -> str:
-    """`nav_msgs/Odometry` in ROS 1, `nav_msgs/msg/Odometry` in ROS 2."""
-    return message.NAME if ros == ROS1 else message.NAME.replace("/", "/msg/")
-
-
-def md5_sum(message: type[Message]) -> str:
-    """By which ROS 1 knows a message: of its definition, with the sums of its parts for their names."""
-    lines = [message.CONSTANTS[ROS1]] if ROS1 in message.CONSTANTS else []
-    for field in fields_of(message, ROS1):
-        if isinstance(field.kind, str) or field.kind.PRIMITIVE:
-            lines.append(_line(field, ROS1))
-        else:
-            lines.append(f"{md5_sum(field.kind)} {field.name}")
-    return hashlib.md5("\n".join(lines).encode(), usedforsecurity=False).hexdigest()
-
-
-def _lines(message: type[Message], ros: int) -> list[str]:
-    constants = message.CONSTANTS[ros].split("\n") if ros in message.CONSTANTS else []
-    return [*constants, *(_line(field, ros) for field in fields_of(message, ros))]
-
-
-def _line(field: Field, ros: int) -> str:
-    brackets = "" if field.length is None else f"[{field.length or ''}]"
-    return f"{_word(field.kind, ros)}{brackets} {field.name}"
-
-
-def _word(kind: str | type[Message], ros: int) -> str:
-    if isinstance(kind, str):
-        return kind
-    return kind.PRIMITIVE if ros == ROS1 and kind.PRIMITIVE else kind.NAME
-
-
-def _parts(message: type[Message], ros: int) -> list[type[Message]]:
-    """The messages of which one is made, each once, in the order in which they are met."""
-    return list(dict.fromkeys(_met(message, ros)))
-
-
-def _met(message: type[Message], ros: int) -> Iterator[type[Message]]:
-    for field in fields_of(message, ros):
-        if not isinstance(field.kind, str) and not (ros == ROS1 and field.kind.PRIMITIVE):
-            yield field.kind
-            yield from _met(field.kind, ros)

@@ -14,10 +14,11 @@ from typing import Literal
 
 from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
-from muster.bridges.ros2.joining import Newcomers
+from muster.bridges.ros2.joining import Ros2Newcomers
 from muster.bridges.ros2.message_types import PoseStamped
-from muster.bridges.ros2.middleware import Wire, open_wire
+from muster.bridges.ros2.middleware import Wire
 from muster.bridges.ros2.names import ros_names
+from muster.bridges.ros2.open_wire import open_wire
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
@@ -173,11 +174,11 @@ class Ros2Fleet:
             return Nav2Goals(self._wire.navigator(f"{topics}/navigate_to_pose"))
         return PoseGoals(self._wire.writer(f"{topics}/goal_pose", PoseStamped))
 
-    def _looks(self, names: Mapping[str, str]) -> Newcomers:
+    def _looks(self, names: Mapping[str, str]) -> Ros2Newcomers:
         def reach(robot: Robot) -> Ros2Port:
             return self._reached(robot, robot.id)
 
-        return Newcomers(self._wire, self._namespace, names.values(), reach, flat=self._flat)
+        return Ros2Newcomers(self._wire, self._namespace, names.values(), reach, flat=self._flat)
 
 
 def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:

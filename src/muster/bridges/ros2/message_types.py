@@ -32,7 +32,6 @@ _UNKNOWN = (0.0,) * 36
 @dataclass(frozen=True)
 class Time(Message):
     NAME: ClassVar = "builtin_interfaces/Time"
-    PRIMITIVE: ClassVar = "time"
     sec: Int32 = 0
     nanosec: UInt32 = 0
 
@@ -48,7 +47,6 @@ class Time(Message):
 @dataclass(frozen=True)
 class Duration(Message):
     NAME: ClassVar = "builtin_interfaces/Duration"
-    PRIMITIVE: ClassVar = "duration"
     sec: Int32 = 0
     nanosec: UInt32 = 0
 
@@ -215,17 +213,11 @@ _SHAPES = (
     *("ARROW", "CUBE", "SPHERE", "CYLINDER", "LINE_STRIP", "LINE_LIST", "CUBE_LIST", "SPHERE_LIST", "POINTS"),
     *("TEXT_VIEW_FACING", "MESH_RESOURCE", "TRIANGLE_LIST"),
 )
-_ACTIONS = {"ADD": 0, "MODIFY": 0, "DELETE": 2, "DELETEALL": 3}
-
-
-def _constants(word: str) -> str:
-    return "\n".join(f"{word} {name}={k}" for name, k in [*((n, k) for k, n in enumerate(_SHAPES)), *_ACTIONS.items()])
 
 
 @dataclass(frozen=True)
 class Marker(Message):
     NAME: ClassVar = "visualization_msgs/Marker"
-    CONSTANTS: ClassVar = {ROS1: _constants("uint8"), ROS2: _constants("int32")}
     header: Header = Header()
     ns: Text = ""
     id: Int32 = 0

@@ -1,4 +1,4 @@
-"""A film of a run: obliquely from above, faster than it was, with a clock and the latest events."""
+"""A film of a run: oblique from above, faster than real time, with a clock and the latest events."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _EDGE = 20
 
 @dataclass(frozen=True)
 class FilmSummary:
-    """A film that was written: how many pictures, how long in seconds, how many times as fast as it was."""
+    """A film that was written: the number of pictures, its length in seconds, and its speed-up."""
 
     frames: int
     duration_s: float
@@ -79,7 +79,7 @@ def write_film(path: str | Path, footage: Footage, *, speed: float | None = None
 
 
 def speed_for(duration_s: float) -> float:
-    """The least round speed at which a run takes at most `LONGEST_S`."""
+    """The least round speed-up at which a run takes at most `LONGEST_S`."""
     least = duration_s / LONGEST_S
     return float(next((speed for speed in SPEEDS if speed >= least), -(-least // 100) * 100))
 
@@ -109,7 +109,7 @@ def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float
 
 
 def _plain(age_s: float) -> float:
-    """How plainly an event is shown that is so old, in seconds of the film."""
+    """The opacity of an event's text, by its age in seconds of the film."""
     return min(1.0, max(0.0, (_SHOWN_S - age_s) / _FADES_S))
 
 

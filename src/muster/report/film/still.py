@@ -1,4 +1,4 @@
-"""A picture of a run's end from straight above, north up: where everything lies."""
+"""A picture of a run's end from straight above, north up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A record read back, also one that ends in the middle because its writer was killed."""
+"""Reads a record, also one that breaks off because its writer was killed."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Rec
 
 
 def _mission(file: Path, text: str) -> Mission:
-    """The mission in a record, which holds no travel tables: travel that is measured by them is not in it."""
+    """The mission in a record. A record contains no travel tables, so travel by tables is not in it."""
     data, source, faults = parse_data(text, file, "a mission")
     rules = data.get("rules")
     if data.pop("travel", None) is not None and isinstance(rules, dict):

@@ -1,4 +1,4 @@
-"""Where the routes of a plan lead, as lines, for a plan that is made while the mission is under way."""
+"""The routes of a plan as lines, for a plan that is made while the mission is under way."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from collections.abc import Mapping
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record.mission_state import CANCELLED, DONE, LOST, MissionState
-from muster.report.route_lines import Way, way_in
+from muster.report.route_lines import PathFunction, path_function
 
 _OVER = (DONE, LOST, CANCELLED)
 
 
 class RouteLines:
-    """Draws routes over the mission's map, each leg's way found once."""
+    """Makes the lines of routes; each path over the map is searched once."""
 
     def __init__(self, mission: Mission) -> None:
-        self._way: Way = way_in(mission)
+        self._path: PathFunction = path_function(mission)
         self._dimensions = mission.dimensions
         self._found: dict[tuple[str, Point, Point], tuple[Point, ...]] = {}
 
     def of(self, plan: Plan, situation: MissionState, places: Mapping[str, Point]) -> dict[str, list[Point]]:
-        """The points of each robot's route, in the situation in which the plan is made: where it still has to go.
+        """The points of each robot's remaining route when the plan is made.
 
         Parameters
         ----------
         places
-            where robots are; one that is not there is where it starts.
+            the robots' positions; an absent robot is at its start.
         """
         return {
             route.robot: self._line(route.robot, route.tasks, situation, places)
@@ -51,7 +51,7 @@ class RouteLines:
     def _leg(self, name: str, situation: MissionState, start: Point, goal: Point) -> tuple[Point, ...]:
         leg = (name, start, goal)
         if leg not in self._found:
-            self._found[leg] = tuple(tuple(point) for point in self._way(situation.robots[name], start, goal))[1:]
+            self._found[leg] = tuple(tuple(point) for point in self._path(situation.robots[name], start, goal))[1:]
         return self._found[leg]
 
     def _flat(self, place: Point) -> Point:

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.bridges.ros2.cdr import from_cdr, from_ros1
 from muster.bridges.ros2.description import Message
 from muster.bridges.ros2.message_types import (
     Header,
@@ -26,6 +25,7 @@ from muster.bridges.ros2.message_types import (
     TFMessage,
     Vector3,
 )
+from muster.bridges.ros2.serialization import from_cdr, from_ros1
 from muster.mission.errors import Finding, InputError, MissingExtraError, ParameterError
 from muster.report.record.reader import whole_records
 from muster.report.record.writer import require_mcap
@@ -40,7 +40,7 @@ _PACKED = (b"\x1f\x8b", b"BZh", b"\x28\xb5\x2f\xfd")
 
 @dataclass(frozen=True, eq=False)
 class PoseTrack:
-    """Where something was.
+    """The track of one topic.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class PoseTrack:
     kind
         of its messages, `package/Type`.
     frame
-        in which it is told.
+        the frame of its poses.
     times_s, positions
         (n,) seconds on the recording's clock, growing; (n, 3) metres.
     """
@@ -63,7 +63,7 @@ class PoseTrack:
 
 @dataclass(frozen=True, eq=False)
 class PoseRecording:
-    """The tracks in a recording, by topic, and whether it is whole: of one that breaks off all until there."""
+    """The tracks in a recording, by topic, and whether it is complete; else they end where it breaks off."""
 
     tracks: Mapping[str, PoseTrack]
     complete: bool
@@ -192,7 +192,7 @@ def _from_mcap(stream: Any, ended: list[bool]) -> Iterator[_Raw]:
 
 
 def _from_bag(path: Path, module: str, decode: Callable[..., Any]) -> Iterator[_Raw]:
-    """By rosbags, which finds the messages in a bag; what they say is read here."""
+    """Messages of a bag, found by rosbags and decoded here."""
     try:
         from rosbags import rosbag1, rosbag2
     except ImportError:

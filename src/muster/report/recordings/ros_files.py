@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from muster.bridges.ros2.cdr import to_cdr, to_ros1
-from muster.bridges.ros2.description import ROS1, ROS2, Message, definition, md5_sum, type_name
+from muster.bridges.ros2.description import ROS1, ROS2, Message
+from muster.bridges.ros2.serialization import definition, md5_sum, to_cdr, to_ros1, type_name
 from muster.mission.errors import MissingExtraError
 from muster.report.record import Recording
 from muster.report.record.json_messages import nanoseconds
@@ -52,7 +52,7 @@ def write_ros2(file: str | Path, recording: Recording, *, begins_s: float = 0.0)
             kind = type(one.message)
             if kind not in schemas:
                 text = definition(kind, ROS2).encode()
-                schemas[kind] = writer.register_schema(type_name(kind, ROS2), "ros2msg", text)
+                schemas[kind] = writer.register_schema(type_name(kind), "ros2msg", text)
             if one.topic not in channels:
                 profiles = {"offered_qos_profiles": ""}  # which rosbag2 wants to be there
                 channels[one.topic] = writer.register_channel(one.topic, "cdr", schemas[kind], profiles)
@@ -82,7 +82,7 @@ def _connection(writer: Any, one: TimedMessage) -> Any:
     kind = type(one.message)
     return writer.add_connection(
         one.topic,
-        type_name(kind, ROS2),
+        type_name(kind),
         msgdef=definition(kind, ROS1),
         md5sum=md5_sum(kind),
         callerid="/muster",

@@ -46,7 +46,7 @@ from muster.report.recordings.markers import Markers
 
 @dataclass(frozen=True)
 class TimedMessage:
-    """A message: where, when on the mission's clock, what."""
+    """A message with its topic and its time on the mission's clock."""
 
     topic: str
     time_s: float
@@ -54,12 +54,12 @@ class TimedMessage:
 
 
 def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[TimedMessage]:
-    """All that a record tells, in the order of time.
+    """All messages of a record, in the order of time.
 
     Parameters
     ----------
     begins_s
-        what the mission's clock at 0 is on the clock of the stamps.
+        the time of the stamps' clock at which the mission's clock is 0.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def _turned(heading: float) -> Quaternion:
 
 
 def _plans(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[TimedMessage]:
-    """The routes of each plan: `<robot>/plan`, the way on which it goes."""
+    """The routes of each plan: `<robot>/plan`."""
     for version in recording.plans:
         header = Header(stamp=Time.of(begins_s + version.time_s), frame_id=MAP_FRAME)
         for robot, line in version.lines.items():

@@ -34,7 +34,9 @@ router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
 Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
 Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
-ExportTo = Literal["qgc", "geojson", "gpx", "kml", "csv", "plan"]
+ExportTo = Annotated[
+    str, Query(max_length=50, description="qgc, geojson, gpx, kml, csv, plan, or a format of an installed package.")
+]
 PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
 _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}

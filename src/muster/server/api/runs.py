@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
-from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run, World
+from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run
 from muster.mission.errors import ParameterError
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
@@ -28,7 +28,7 @@ class NewRun(Body):
     """A plan to carry out."""
 
     plan: int = Field(ge=1, le=LARGEST, description="Its id.", examples=[1])
-    world: World = "kinematic"
+    world: Name = Field(default="kinematic", description="GET /about says which there are.")
     speed: Speed | None = Field(default=1.0, description="Times real time; null: as fast as it goes.")
     settings: dict[Name, Any] = Field(
         default={}, max_length=50, description="`seed`, `dt_s`, `avoidance`, `noise`; of a bridge what it needs."

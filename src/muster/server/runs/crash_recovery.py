@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.execution import Deed, Past
+from muster.execution import CompletedTask, CompletedWork
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
 from muster.report.record.mission_state import MissionState
@@ -26,7 +26,7 @@ class Recovered:
 
     mission: Mission
     plan: Plan
-    past: Past
+    past: CompletedWork
 
 
 def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Recovered:
@@ -34,7 +34,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
     situation = MissionState(mission)
     arrives: dict[str, float] = {}
     starts: dict[str, float] = {}
-    done: dict[str, Deed] = {}
+    done: dict[str, CompletedTask] = {}
     cancelled: dict[str, float] = {}
     delays: dict[str, float] = {}
     used: dict[str, float] = {}
@@ -55,7 +55,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
         elif kind == "ends":
             task, robot = data["task"], data["robot"]
             usage = (data["usage"][0], data["usage"][1])
-            done[task] = Deed(
+            done[task] = CompletedTask(
                 robot=robot,
                 arrives_s=arrives.get(task, now),
                 starts_s=starts.get(task, now),
@@ -73,7 +73,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
             failed.pop(data["robot"], None)
     once = {name for name, task in situation.tasks.items() if task.across_partition == "at-most-once"}
     barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
-    past = Past(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
+    past = CompletedWork(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
     names = tuple(robot.id for robot in mission.robots)
     tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
     current = plan if routes is None else _of_those(routes, names)

@@ -11,7 +11,7 @@ from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
-from muster.running.live import Live, elsewhere, from_where_they_stand
+from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.server.runs.crash_recovery import recovered_from
 
 _OF_WORK = ("sets_out", "arrives", "starts", "ends")
@@ -49,7 +49,7 @@ class RealRun:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
         found = recovered_from(mission, plan, log)
-        there = from_where_they_stand(found.mission, fleet)
+        there = with_reported_starts(found.mission, fleet)
         gauged = _Gauged(recorder)
         self._live = Live(
             there,
@@ -66,7 +66,7 @@ class RealRun:
             self._live.executor.plan_again("resumed", {"how": "from where robots stand"})
         else:
             for line in elsewhere(mission, there):
-                self._live.executor.tell("elsewhere", {"what": line})
+                self._live.executor.emit("elsewhere", {"what": line})
 
     @property
     def time_s(self) -> float:
@@ -97,7 +97,7 @@ class RealRun:
             self._recorder.on_report(self._live.result().as_dict())
 
     def report(self, event: Event) -> None:
-        self._live.executor.come_to(self.time_s)
+        self._live.executor.set_clock(self.time_s)
         self._live.executor.report(event)
 
     def replan(self) -> None:

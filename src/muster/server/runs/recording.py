@@ -71,7 +71,7 @@ def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches:
 def flown(recording: Recording) -> dict[str, Any]:
     """What was planned and what was carried out: in all, per robot and task, and the paths.
 
-    `planned` has the routes of the first plan as lines, `tracks` each robot's [time_s, x, y, z], some thousands at most.
+    `planned` has the routes of the first plan as lines, `tracks` each robot's [time_s, x, y, z], some thousand at most.
     """
     told = dict(recording.report or {})
     tracks = recording.tracks

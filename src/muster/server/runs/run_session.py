@@ -14,10 +14,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import OVER, Action, Entry, Run, RunState, StoreError
+from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.log_writer import LogWriter
-from muster.server.runs.run_settings import SIMULATED
 from muster.server.runs.runner_input import RunnerInput
 from muster.server.runs.runner_process import RunnerProcess
 from muster.server.runs.subscribers import Subscribers
@@ -109,7 +109,7 @@ class RunSession:
             await self.log_writer.close()
 
     async def _go(self) -> None:
-        crashes = CrashHistory(real=self.run.world not in SIMULATED)
+        crashes = CrashHistory(real=self.run.world not in WORLDS)
         while not self._closing:
             begin = await self._begin_when_it_can_be_read()
             if begin is None:

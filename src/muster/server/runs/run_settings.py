@@ -11,8 +11,8 @@ from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.running.worlds import WORLDS
 
-SIMULATED = ("kinematic", "physics")
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
@@ -68,17 +68,12 @@ _FASTEST = 1e6
 
 def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, Any]) -> None:
     """Raise ParameterError unless runs may be started in a world with these settings."""
-    _require_choice("world", world, (*SIMULATED, *bridges))
+    _require_choice("world", world, (*WORLDS, *bridges))
     for name, value in settings.items():
-        if name not in SETTINGS[world]:
-            known = ", ".join(SETTINGS[world])
-            raise ParameterError(f"{name}: no setting of world {world}; expected {known}")
-        _require_kind(name, value, SETTINGS[world][name])
-        if name in CHOICES:
-            _require_choice(name, value, CHOICES[name])
+        _require_setting(world, name, value)
     ignored_rules(settings.get("ignore", ()))
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
-    if world in SIMULATED:
+    if world in WORLDS:
         _require_number(settings, "dt_s", 0.001, 1.0)
         noise = settings.get("noise", {})
         for kind in noise:
@@ -86,6 +81,18 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
             _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
+
+
+def _require_setting(world: str, name: str, value: object) -> None:
+    """Worlds of other packages are set as those that ship; a fleet of another package checks its settings itself."""
+    if world not in SETTINGS and world not in WORLDS:
+        return
+    kinds = SETTINGS.get(world, SETTINGS["kinematic"])
+    if name not in kinds:
+        raise ParameterError(f"{name}: no setting of world {world}; expected {', '.join(kinds)}")
+    _require_kind(name, value, kinds[name])
+    if name in CHOICES:
+        _require_choice(name, str(value), CHOICES[name])
 
 
 def _require_kind(name: str, value: object, kind: type) -> None:

@@ -23,10 +23,10 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
 from muster.mission.yaml_writer import plain
+from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.run_loop import RunLoop, WorldRun
-from muster.server.runs.run_settings import SIMULATED
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
@@ -51,7 +51,7 @@ def _obey(folder: str, memory_mb: int) -> int:
     begin = inbox.take(None)
     if begin is None:
         return 0
-    if begin["world"] not in SIMULATED:
+    if begin["world"] not in WORLDS:
         real.set()
         signal.signal(signal.SIGTERM, lambda *_: ended.set())
     else:
@@ -78,7 +78,7 @@ def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
 
 
 def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outbox, ended: threading.Event) -> None:
-    real, log = begin["world"] not in SIMULATED, begin["log"]
+    real, log = begin["world"] not in WORLDS, begin["log"]
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
@@ -108,11 +108,11 @@ def _world_run(
     begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
 ) -> WorldRun:
     settings, log = begin["settings"], begin["log"]
-    if begin["world"] in SIMULATED:
+    if begin["world"] in WORLDS:
         from muster.server.runs.simulated_run import SimulatedRun
 
         return SimulatedRun(mission, plan, begin["world"], settings, recorder)
-    from muster.server.runs.fleets import fleet_ready
+    from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))

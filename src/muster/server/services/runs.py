@@ -9,13 +9,14 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User, World
+from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
+from muster.running.worlds import WORLDS
 from muster.server.runs.robot_claims import claims_of
 from muster.server.runs.run_session import TOO_LATE, RunSession
-from muster.server.runs.run_settings import SIMULATED, require_action, require_speed, require_world
+from muster.server.runs.run_settings import require_action, require_speed, require_world
 from muster.server.runs.subscribers import Subscribers
 from muster.server.runs.unsaved_actions import unsaved_action
 from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
@@ -101,7 +102,7 @@ class Runs:
         async with self._written_if_refused(who, "run.start", asked):
             require_world(world, self._settings.bridges, settings)
             speed = require_speed(speed)
-            if world not in SIMULATED and speed != 1.0:
+            if world not in WORLDS and speed != 1.0:
                 raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
             claims = claims_of(world, settings)
             self._require_unclaimed(claims)
@@ -263,7 +264,7 @@ class Runs:
             entry.mission,
             entry.mission_version,
             plan,
-            cast("World", world),
+            world,
             settings,
             speed,
             who.name,

@@ -9,7 +9,7 @@ from pathlib import PurePath
 from typing import Any
 
 from muster.exchange.export_request import FORMATS, QgcOptions
-from muster.exchange.files import plan_files, text_of
+from muster.exchange.files import exported
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
@@ -34,10 +34,11 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     if form == "json":
         return _answer({f"{_stem(mission.name)}.json": plan.text()})
     verdict = require_admissible(mission, plan, "plan", arguments.get("ignore", ()))
-    if wishes is not None:
-        files = plan_files(mission, verdict, wishes)
-        return _answer(files.texts, files.messages)
-    return _answer({f"{_stem(mission.name)}.{form}": text_of(mission, verdict, form)})
+    files = exported(mission, verdict, form, wishes or QgcOptions())
+    alone = f"plan.{form}"  # one file bears the mission's name
+    stem = _stem(mission.name)
+    texts = {f"{stem}.{form}" if name == alone else name: text for name, text in files.texts.items()}
+    return _answer(texts, files.messages)
 
 
 def _answer(texts: Mapping[str, str], messages: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Connects the fleets of real robots that the settings of a run name."""
+"""Fleets of real robots by name, those of installed packages included; each is ready when it is returned."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 from muster.bridges.fleet import Fleet
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.plugins import Registry
 from muster.running.live import wait_for_robots
 
 _WAIT_S = 10.0
@@ -17,13 +18,35 @@ _ANYWHERE_M = 1e6
 """After a crash drones are where they are, in the air maybe."""
 
 
+Opened = tuple[Fleet, Callable[[], None]]
+"""Robots that are ready, and what to call when all is done."""
+OpenFleet = Callable[[Mission, Mapping[str, Any], threading.Event, bool], Opened]
+"""Opens a fleet: the mission, the settings of the run, an event that ends waiting, whether the run goes on."""
+
+
+def _checked(name: str, found: object) -> OpenFleet:
+    if not callable(found):
+        raise ParameterError(f"it is a {type(found).__name__}; expected a function that opens a fleet")
+    return found
+
+
+FLEETS: Registry[OpenFleet] = Registry(
+    "fleet",
+    "muster.fleets",
+    {name: f"{__name__}:open_{name}" for name in ("ros1", "ros2", "mavlink")},
+    _checked,
+)
+
+
 def fleet_ready(
     world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
-) -> tuple[Fleet, Callable[[], None]]:
-    """Connect the robots of a mission and wait until they are ready; returns them, and the action at the end.
+) -> Opened:
+    """The robots of a mission, heard and ready; and what they are told when all is done.
 
     Parameters
     ----------
+    world
+        the name of the fleet.
     halt
         ends waiting for robots.
     again
@@ -32,15 +55,12 @@ def fleet_ready(
     Raises
     ------
     MusterError
-        if the bridge lacks something, or robots do not answer.
+        if there is no such fleet, the bridge lacks something, or robots do not answer.
     """
-    makes = {"ros1": _ros1, "ros2": _ros2, "mavlink": _mavlink}
-    return makes[world](mission, settings, halt, again)
+    return FLEETS.named(world)(mission, settings, halt, again)
 
 
-def _ros1(
-    mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool
-) -> tuple[Fleet, Callable[[], None]]:
+def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
@@ -53,11 +73,9 @@ def _ros1(
     return _heard(fleet, settings, halt), _nothing
 
 
-def _ros2(
-    mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool
-) -> tuple[Fleet, Callable[[], None]]:
+def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.middleware import open_wire
+    from muster.bridges.ros2.open_wire import open_wire
     from muster.bridges.ros2.port import Arrival
 
     fleet = Ros2Fleet(
@@ -70,9 +88,7 @@ def _ros2(
     return _heard(fleet, settings, halt), _nothing
 
 
-def _mavlink(
-    mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool
-) -> tuple[Fleet, Callable[[], None]]:
+def open_mavlink(mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool) -> Opened:
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
 

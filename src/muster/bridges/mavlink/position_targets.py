@@ -1,0 +1,46 @@
+"""Way points that are sent one by one: SET_POSITION_TARGET_LOCAL_NED, again and again."""
+
+from __future__ import annotations
+
+import math
+
+from muster.bridges.mavlink.dialect import Message, mavlink
+from muster.bridges.mavlink.frames import LocalFrame
+from muster.motion.frames import yaw_enu_to_ned
+from muster.motion.port import Waypoint
+
+_IGNORE = mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
+_IGNORE |= mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
+_IGNORE |= mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
+_IGNORE |= mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+PLACE_AND_YAW = _IGNORE
+"""Type mask, 2552: what counts is the place and the heading."""
+PLACE_ALONE = _IGNORE | mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
+"""Type mask, 3576: the place alone."""
+
+TURNED_RAD = math.radians(10.0)
+"""How near to its heading counts as turned."""
+EVERY_S = 0.2
+"""Seconds from one to the next: PX4 leaves its offboard mode below 2 Hz."""
+
+
+def position_target(aim: Waypoint, target: Message, local: LocalFrame, now: float) -> Message:
+    """Where a drone is to be now.
+
+    Parameters
+    ----------
+    target
+        a message of the drone.
+    """
+    yaw = 0.0 if aim.heading is None else float(yaw_enu_to_ned(aim.heading))
+    return mavlink.MAVLink_set_position_target_local_ned_message(
+        int(now * 1000) & 0xFFFFFFFF,
+        target.get_srcSystem(),
+        target.get_srcComponent(),
+        mavlink.MAV_FRAME_LOCAL_NED,
+        PLACE_ALONE if aim.heading is None else PLACE_AND_YAW,
+        *local.to_drone(aim.position),
+        *(0.0,) * 6,
+        yaw,
+        0.0,
+    )

@@ -1,0 +1,71 @@
+"""A plan as files of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from muster.exchange.export_request import Files, QgcOptions
+from muster.mission.keywords import require_known
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.mission.text_files import write_text
+from muster.planning.request import require_mission
+
+if TYPE_CHECKING:
+    from muster.exchange.export_request import QgcKeywords
+
+
+def export(
+    mission: Mission,
+    plan: Plan,
+    to: str,
+    path: str | Path | None = None,
+    *,
+    ignore: str | Collection[str] = (),
+    **options: Unpack[QgcKeywords],
+) -> Files:
+    """Write an admissible plan for another program.
+
+    Parameters
+    ----------
+    to
+        qgc, geojson, gpx, kml, csv, or a format of an installed package.
+    path
+        where it is written: a file, or a folder for a format that makes several files, such as qgc; None: nowhere.
+    ignore
+        rules that do not hold.
+    options
+        for qgc: `altitude`, `clearance`, `tolerance`, `firmware`, as in `QgcOptions`.
+
+    Returns
+    -------
+    The texts by the names of their files, and messages to read before anything flies.
+
+    Raises
+    ------
+    PlanError
+        if the plan is not admissible.
+    MissionError
+        if the format needs a place on Earth and the mission has none.
+    ParameterError
+        if there is no such format, or an option is wrong.
+    """
+    from muster.exchange.files import exported
+    from muster.verification.required import require_admissible
+
+    require_mission(mission)
+    require_known(options, tuple(QgcOptions.__dataclass_fields__) if to == "qgc" else (), f"to {to}")
+    verdict = require_admissible(mission, plan, "<plan>", ignore)
+    files = exported(mission, verdict, to, QgcOptions(**options))
+    if path is not None:
+        _write(files, Path(path), is_folder=to == "qgc" or len(files.texts) > 1)
+    return files
+
+
+def _write(files: Files, path: Path, *, is_folder: bool) -> None:
+    if is_folder:
+        path.mkdir(parents=True, exist_ok=True)
+    for name, text in files.texts.items():
+        write_text(path / name if is_folder else path, text)

@@ -1,0 +1,108 @@
+"""What the rules of the judge look at: a mission and a plan's routes, measured, under the rules that hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from muster.mission.model import Mission, Robot, Task
+from muster.verification.insertions import Insertions
+from muster.verification.measure import MeasuredRoute
+from muster.verification.travel import Travel
+
+ROUNDING = 1e-9
+"""Relative. A route that fills its capacity exactly may come out above it, the order of additions being free."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A plan before its judge.
+
+    Parameters
+    ----------
+    routes
+        of all robots, in mission order.
+    ignored
+        the rules that do not hold.
+    deadlocked
+        whether routes and prerequisites wait for each other in a cycle.
+    """
+
+    mission: Mission
+    travel: Travel
+    routes: tuple[MeasuredRoute, ...]
+    ignored: tuple[str, ...]
+    deadlocked: bool
+
+    @cached_property
+    def done(self) -> frozenset[str]:
+        """The tasks in the plan."""
+        return frozenset(step.task.id for route in self.routes for step in route.steps)
+
+    @property
+    def unit(self) -> str:
+        """The unit of usage."""
+        return "s" if self.mission.rules.usage == "time" else "m"
+
+    @property
+    def tolerance(self) -> float:
+        """By how much a usage may differ from the true one, relative."""
+        return max(ROUNDING, self.travel.tolerance)
+
+    def holds(self, rule: str) -> bool:
+        """Whether a rule holds."""
+        return rule not in self.ignored
+
+    def capacity_of(self, robot: Robot) -> float | None:
+        """What the robot may use, in the unit of usage; None where it is unlimited or the rule is ignored."""
+        if robot.work_capacity is None or not self.holds("capacity"):
+            return None
+        return (1 - self.mission.rules.capacity_reserve) * robot.work_capacity
+
+    def insertions(self, route: MeasuredRoute) -> Insertions:
+        """The gaps of a route."""
+        if route.robot.id not in self._insertions:
+            self._insertions[route.robot.id] = Insertions(self.mission, self.travel, route)
+        return self._insertions[route.robot.id]
+
+    @cached_property
+    def _insertions(self) -> dict[str, Insertions]:
+        return {}
+
+    def first_gap(self, route: MeasuredRoute, task: Task) -> int:
+        """The number of tasks in a route that come before a task wherever it is put in it.
+
+        These are the ones that must be done before a prerequisite of the task can be done.
+        """
+        before = self._before(task.id)
+        return max((k for k, step in enumerate(route.steps, 1) if step.task.id in before), default=0)
+
+    def _before(self, task: str) -> frozenset[str]:
+        """The tasks in the plan that are done before a task can begin, by prerequisites and routes."""
+        if task not in self._known_before:
+            found: set[str] = set()
+            waiting = [task]
+            while waiting:
+                new = [name for name in self._predecessors.get(waiting.pop(), ()) if name not in found]
+                found.update(new)
+                waiting += new
+            self._known_before[task] = frozenset(found)
+        return self._known_before[task]
+
+    @cached_property
+    def _known_before(self) -> dict[str, frozenset[str]]:
+        return {}
+
+    @cached_property
+    def _predecessors(self) -> dict[str, list[str]]:
+        """For each task of the mission its prerequisites in the plan, and the task before it in its route."""
+        linked = self.holds("prerequisite")
+        before = {
+            task.id: [name for name in task.prerequisites if linked and name in self.done]
+            for task in self.mission.tasks
+        }
+        for route in self.routes:
+            for first, second in pairwise(route.steps):
+                before[second.task.id].append(first.task.id)
+        return before

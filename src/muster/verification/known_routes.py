@@ -1,0 +1,36 @@
+"""The routes of a plan as far as its robots and tasks exist and do not repeat."""
+
+from __future__ import annotations
+
+from muster.mission.model import Mission, Task
+from muster.mission.plan import Plan
+from muster.verification.verdict import Violation
+
+
+def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], list[Violation]]:
+    """Take from the plan what exists and does not repeat: each robot's tasks; and a violation for all else."""
+    violations: list[Violation] = []
+    robots = {robot.id for robot in mission.robots}
+    tasks = {task.id: task for task in mission.tasks}
+    routes: dict[str, list[Task]] = {}
+    robot_of: dict[str, str] = {}
+    for route in plan.routes:
+        if route.robot not in robots:
+            violations.append(Violation("unknown-robot", route.robot, None, "no robot of the mission; route left out"))
+            continue
+        if route.robot in routes:
+            violations.append(
+                Violation("repeated-robot", route.robot, None, "a further route of this robot; route left out")
+            )
+            continue
+        known = routes[route.robot] = []
+        for name in route.tasks:
+            if name not in tasks:
+                violations.append(Violation("unknown-task", route.robot, name, "no task of the mission"))
+            elif name in robot_of:
+                detail = f"already in the route of {robot_of[name]}"
+                violations.append(Violation("repeated-task", route.robot, name, detail))
+            else:
+                robot_of[name] = route.robot
+                known.append(tasks[name])
+    return routes, violations

@@ -1,0 +1,95 @@
+"""Worlds, fleets and formats of other packages are known where those that ship are."""
+
+import json
+import threading
+
+import pytest
+
+import muster
+from muster.cli.main import run
+from muster.exchange.export_request import FORMATS
+from muster.mission.errors import ParameterError
+from muster.running.fleets import FLEETS, fleet_ready
+from muster.running.worlds import WORLDS, world_named
+from muster.server.runs.run_settings import require_world
+from muster.simulation import KinematicWorld
+
+
+@pytest.fixture
+def added():
+    """Adds implementations for the time of a test."""
+    registered = []
+
+    def add(registry, name, implementation):
+        registry.add(name, implementation)
+        registered.append((registry, name))
+
+    yield add
+    for registry, name in registered:
+        registry.remove(name)
+
+
+@pytest.fixture(scope="module")
+def mission():
+    return muster.load("31T-6R50")
+
+
+def test_what_ships_is_there_in_order():
+    assert list(WORLDS) == ["kinematic", "physics"]
+    assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
+    assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv"]
+    assert world_named("kinematic") is KinematicWorld
+    assert all(callable(FLEETS[name]) for name in FLEETS)
+    assert all(callable(FORMATS[name]) for name in FORMATS)
+
+
+def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
+    made = []
+
+    def slow(mission, **how):
+        made.append(how["dt_s"])
+        return KinematicWorld(mission, **how)
+
+    added(WORLDS, "slow", slow)
+    plan = muster.solve(mission, "greedy")
+    report = muster.simulate(mission, plan, world="slow", dt_s=0.2)
+    assert (made, len(report.tasks_done)) == ([0.2], plan.tasks_completed)
+    plan.save(tmp_path / "p.json")
+    assert run(["simulate", "31T-6R50", "--plan", str(tmp_path / "p.json"), "--world", "slow", "--format", "json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["tasks_done"]) == plan.tasks_completed
+    require_world("slow", (), {"dt_s": 0.2})
+    with pytest.raises(ParameterError, match="speeed: no setting of world slow; expected seed"):
+        require_world("slow", (), {"speeed": 1})
+
+
+def test_an_unknown_world_is_refused_with_the_near_match(capsys):
+    assert run(["simulate", "31T-6R50", "--world", "phisics"]) == 2
+    assert "'phisics' is not one of kinematic, physics; did you mean 'physics'?" in capsys.readouterr().err
+    with pytest.raises(ParameterError, match="did you mean 'physics'"):
+        require_world("phisics", (), {})
+
+
+def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
+    opened = []
+    added(FLEETS, "barges", lambda *given: opened.append(given) or ("fleet", "at end"))
+    halt = threading.Event()
+    assert fleet_ready("barges", mission, {"port": 3}, halt, again=True) == ("fleet", "at end")
+    assert opened == [(mission, {"port": 3}, halt, True)]
+    require_world("barges", ("barges",), {"port": 3})
+    with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
+        require_world("barges", (), {})
+
+
+def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
+    added(FORMATS, "count", lambda mission, verdict: f"{verdict.tasks_completed}\n")
+    plan = muster.solve(mission, "greedy")
+    assert muster.export(mission, plan, "count").texts == {"plan.count": f"{plan.tasks_completed}\n"}
+    plan.save(tmp_path / "p.json")
+    assert run(["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "count"]) == 0
+    assert capsys.readouterr().out == f"{plan.tasks_completed}\n"
+
+
+def test_what_cannot_be_called_is_refused():
+    for registry in (WORLDS, FLEETS, FORMATS):
+        with pytest.raises(ParameterError, match=r"it is a int; expected a (class or )?function"):
+            registry.add("three", 3)

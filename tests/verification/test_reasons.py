@@ -1,0 +1,129 @@
+"""Reasons given for tasks left out: true ones pass, false ones are found, by trying all places in a route."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.random_missions import random_mission
+
+import muster
+from muster.mission.model import Map, Mission, Robot, Rules, Task, TravelTable, Zone
+from muster.mission.plan import REASONS, Plan, Reason, Route, Unassigned
+from muster.verification import verify
+
+
+def with_reason(plan: Plan, task: str, robot: str, word: str) -> Plan:
+    """The routes of a plan, with one reason."""
+    bare = tuple(Route(route.robot, route.tasks) for route in plan.routes)
+    left_out = tuple(Unassigned(item.task, ()) for item in plan.unassigned if item.task != task)
+    return Plan(routes=bare, unassigned=(Unassigned(task, (Reason(robot, word, "..."),)), *left_out))
+
+
+def found(mission: Mission, plan: Plan, ignore=()) -> list[tuple[str, str | None, str | None]]:
+    return [(v.kind, v.robot, v.task) for v in verify(mission, plan, ignore).violations]
+
+
+def kinds_by_place(mission: Mission, plan: Plan, task: str, robot: str, ignore) -> list[set[str]]:
+    """For each place in the robot's route the kinds of violations with the task there."""
+    routes = {route.robot: route.tasks for route in plan.routes}
+    own = routes[robot]
+    trials = [routes | {robot: (*own[:k], task, *own[k:])} for k in range(len(own) + 1)]
+    plans = [Plan(routes=tuple(Route(r, tasks) for r, tasks in trial.items())) for trial in trials]
+    return [{violation.kind for violation in verify(mission, trial, ignore).violations} for trial in plans]
+
+
+def is_true(word: str, places: list[set[str]]) -> bool:
+    if word == "not-chosen":
+        return any(not kinds for kinds in places)
+    places = [kinds for kinds in places if word == "prerequisite" or "deadlock" not in kinds]
+    if word == "capacity":  # where there is no way the usage is infinite
+        return all(kinds & {"capacity", "unreachable"} for kinds in places)
+    return all(word in kinds for kinds in places)
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    robots=st.integers(1, 3),
+    word=st.sampled_from(REASONS),
+    ignore=st.sets(st.sampled_from(["skill", "capacity", "suitability", "prerequisite"])),
+    late=st.booleans(),
+)
+def test_a_reason_is_a_violation_if_and_only_if_it_is_false(seed, robots, word, ignore, late):
+    mission = random_mission(seed, tasks=9, robots=robots)
+    if late:
+        mission = replace(mission, rules=replace(mission.rules, usage="time"))
+    plan = muster.solve(mission, "greedy", ignore=ignore)
+    for item in plan.unassigned[:3]:
+        for robot in mission.robots:
+            places = kinds_by_place(mission, plan, item.task, robot.id, ignore)
+            said = found(mission, with_reason(plan, item.task, robot.id, word), ignore)
+            assert said == ([] if is_true(word, places) else [("reason", robot.id, item.task)]), (word, places)
+
+
+LEFT_OUT = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("near", ()), Unassigned("far", ())))
+
+
+def test_a_robot_with_room_cannot_lack_capacity():
+    mission = Mission(
+        robots=(Robot(id="r", position=(0, 0), work_capacity=10),),
+        tasks=(Task(id="near", position=(4, 0)), Task(id="far", position=(40, 0))),
+    )
+    for name, word, is_false in (("near", "capacity", True), ("far", "capacity", False), ("far", "not-chosen", True)):
+        plan = with_reason(LEFT_OUT, name, "r", word)
+        assert found(mission, plan) == ([("reason", "r", name)] if is_false else [])
+
+
+@pytest.mark.parametrize(("word", "is_false"), [("unreachable", False), ("not-chosen", True), ("capacity", True)])
+def test_a_task_behind_a_wall(word, is_false):
+    pytest.importorskip("shapely")
+    wall = Zone(polygon=((4, -1), (5, -1), (5, 11), (4, 11)))
+    mission = Mission(
+        map=Map(boundary=((0, 0), (10, 0), (10, 10), (0, 10)), zones=(wall,)),
+        robots=(Robot(id="r", position=(1, 1)),),
+        tasks=(Task(id="beyond", position=(8, 8)),),
+    )
+    plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("beyond", (Reason("r", word, "..."),)),))
+    assert found(mission, plan) == ([("reason", "r", "beyond")] if is_false else [])
+
+
+@pytest.mark.parametrize(("capacity", "word"), [(10.9, "capacity"), (11.1, "not-chosen")])
+def test_over_a_map_the_way_around_counts(capacity, word):
+    pytest.importorskip("shapely")
+    """By (4, 5) and (5, 5) it is 5 + 1 + 5 m, straight 7 m."""
+    zone = Zone(polygon=((4, 0), (5, 0), (5, 5), (4, 5)))
+    mission = Mission(
+        map=Map(boundary=((0, 0), (10, 0), (10, 10), (0, 10)), zones=(zone,)),
+        robots=(Robot(id="r", position=(1, 1), work_capacity=capacity),),
+        tasks=(Task(id="beyond", position=(8, 1)),),
+    )
+    for said in ("capacity", "not-chosen"):
+        plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("beyond", (Reason("r", said, "..."),)),))
+        assert found(mission, plan) == ([] if said == word else [("reason", "r", "beyond")])
+
+
+def test_travel_tables_are_looked_up_in_every_gap():
+    places = ("r", "a", "b")
+    metres = ((0, 1, 9), (1, 0, 9), (9, 2, 0))  # b is far from everything; a is near it on the way back only
+    mission = Mission(
+        rules=Rules(travel="matrix"),
+        robots=(Robot(id="r", position=(0, 0), type="t", work_capacity=11.5),),
+        tasks=(Task(id="a", position=(1, 0)), Task(id="b", position=(2, 0))),
+        travel={"t": "t.csv"},
+        travel_tables={"t": TravelTable(places=places, metres=metres)},
+    )
+    for word in ("capacity", "not-chosen"):
+        plan = Plan(routes=(Route("r", ("a",)),), unassigned=(Unassigned("b", (Reason("r", word, "..."),)),))
+        assert found(mission, plan) == ([("reason", "r", "b")] if word == "capacity" else [])
+
+
+def test_reasons_name_robots_of_the_mission_and_known_words():
+    mission = Mission(robots=(Robot(id="r", position=(0, 0)),), tasks=(Task(id="a", position=(1, 0)),))
+    for reason, is_false in (
+        (("x", "lock"), True),
+        (("r", "tired"), True),
+        (("r", "not-chosen"), False),
+        (("", "lock"), False),
+    ):
+        plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("a", (Reason(*reason, "..."),)),))
+        assert found(mission, plan) == ([("reason", reason[0], "a")] if is_false else [])
