@@ -40,7 +40,7 @@ def test_runners_leave_no_folder_and_know_no_secret(tmp_path, monkeypatch):
             await asyncio.sleep(0.02)
         assert b"muster_secret" not in Path(f"/proc/{child.pid}/environ").read_bytes()
         end(child)
-        assert [text async for text in child.heard()] == []
+        assert [text async for text in child.messages()] == []
 
     asyncio.run(story(RunnerProcess.dismiss))
     assert not list(tmp_path.iterdir())

@@ -31,7 +31,7 @@ class Recovered:
 
 def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Recovered:
     """Recover the state from a log: entries with `time_s`, `kind`, `data`."""
-    situation = MissionState(mission)
+    mission_state = MissionState(mission)
     arrives: dict[str, float] = {}
     starts: dict[str, float] = {}
     done: dict[str, CompletedTask] = {}
@@ -43,7 +43,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
     for entry in log:
         now, kind, data = float(entry["time_s"]), entry["kind"], entry["data"]
         if kind not in _OURS:
-            situation.take(kind, data)
+            mission_state.take(kind, data)
         if "used" in data:
             used[data["robot"]] = data["used"]
         if kind == "plan":
@@ -71,11 +71,13 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
             failed[data["robot"]] = now
         elif kind == "robot_returns":
             failed.pop(data["robot"], None)
-    once = {name for name, task in situation.tasks.items() if task.across_partition == "at-most-once"}
+    once = {name for name, task in mission_state.tasks.items() if task.across_partition == "at-most-once"}
     barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
     past = CompletedWork(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
     names = tuple(robot.id for robot in mission.robots)
-    tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
+    tasks = tuple(
+        replace(task, only_robots=names) if task.id in barred else task for task in mission_state.tasks.values()
+    )
     current = plan if routes is None else _of_those(routes, names)
     return _with_locks_of_barred(Recovered(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
 

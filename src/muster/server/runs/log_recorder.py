@@ -69,7 +69,7 @@ class LogRecorder:
     ) -> None:
         entries = list(log)
         self._out = out
-        self._situation = MissionState(mission)
+        self._mission_state = MissionState(mission)
         self._routes = RouteLines(mission)
         self._said = deque(entries if again else ())
         self._seq = 0 if again or not entries else int(entries[-1]["seq"])
@@ -81,7 +81,7 @@ class LogRecorder:
         self.rows_s = 0.0
         for entry in entries if not again else ():
             if entry["kind"] not in (RESUMED, "plan", "command", "report"):
-                self._situation.take(entry["kind"], entry["data"])
+                self._mission_state.take(entry["kind"], entry["data"])
 
     @property
     def catching_up(self) -> bool:
@@ -92,7 +92,7 @@ class LogRecorder:
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`."""
         states = np.column_stack([positions, headings, velocities])
-        rows = zip(self._situation.robots, states.tolist(), strict=True)
+        rows = zip(self._mission_state.robots, states.tolist(), strict=True)
         self.rows = {name: row for name, row in rows if all(map(math.isfinite, row))}
         self.rows_s = float(now)
         self._now = max(self._now, self.rows_s)
@@ -100,7 +100,7 @@ class LogRecorder:
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """See `Recorder`."""
-        self._situation.take(kind, data)
+        self._mission_state.take(kind, data)
         self.write(now, kind, data)
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
@@ -109,7 +109,7 @@ class LogRecorder:
     def on_plan(self, now: float, plan: Plan) -> None:
         """See `Recorder`; the entry also has the routes as lines from the robots' positions."""
         places = {name: tuple(row[:3]) for name, row in self.rows.items()}
-        lines = self._routes.of(plan, self._situation, places)
+        lines = self._routes.of(plan, self._mission_state, places)
         self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines})
 
     def on_report(self, report: Mapping[str, Any]) -> None:

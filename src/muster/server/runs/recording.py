@@ -53,18 +53,18 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches: Sequence[Steps]) -> None:
     """Pass a run's log and tracks to a recorder in the order of time, steps before events."""
-    situation, steps = MissionState(mission), _steps(stretches)
+    mission_state, steps = MissionState(mission), _steps(stretches)
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
         for entry in log:
             while step is not None and step[0] <= entry["time_s"] + 1e-6:
-                _tell_step(writer, list(situation.robots), *step)
+                _tell_step(writer, list(mission_state.robots), *step)
                 step = next(steps, None)
             _tell(writer, entry)
             if entry["kind"] not in _OURS:
-                situation.take(entry["kind"], entry["data"])
+                mission_state.take(entry["kind"], entry["data"])
         while step is not None:
-            _tell_step(writer, list(situation.robots), *step)
+            _tell_step(writer, list(mission_state.robots), *step)
             step = next(steps, None)
 
 
