@@ -13,7 +13,7 @@ from random import Random
 from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
-from muster.execution.remaining_problem import Rest, posed
+from muster.execution.remaining_problem import RemainingMission, remaining_problem
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
 from muster.planning.judging import verify
@@ -41,11 +41,11 @@ class _Timed:
 
     def __init__(self, replan: Reallocation) -> None:
         self._replan = replan
-        self.rest: Rest
+        self.rest: RemainingMission
         self.revision: Revision
         self.seconds = 0.0
 
-    def __call__(self, rest: Rest) -> Revision:
+    def __call__(self, rest: RemainingMission) -> Revision:
         begin = time.perf_counter()
         self.rest, self.revision = rest, self._replan(rest)
         self.seconds = time.perf_counter() - begin
@@ -65,7 +65,7 @@ def after_a_failure(seed: int, stability: int | None) -> tuple[float, float, flo
     executor.tick(world.time_s)
     executor.report(Event(at_s=0, robot_fails=max(executor.crew.values(), key=lambda hand: len(hand.route)).robot.id))
     executor.tick(world.time_s)
-    problem = posed(timed.rest, travel).problem.ready()
+    problem = remaining_problem(timed.rest, travel).problem.ready()
     begun = {robot.id: [problem.tasks[j].id for j in problem.beginning(i)] for i, robot in enumerate(problem.robots)}
     routes = tuple(Route(name, (*begun[name], *tasks)) for name, tasks in timed.revision.routes.items())
     plans = Plan(objective=problem.objective, routes=routes), GREEDY.solve(problem, Stop())

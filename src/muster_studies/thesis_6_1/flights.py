@@ -116,9 +116,9 @@ def fly(flight: Flight) -> FlightResult:
     with closing(Simulation(mission, plan, recorder=ways, on_look=witness.take, **how)) as simulation:
         while not simulation.done:
             simulation.advance(math.inf)
-        lookout = simulation.lookout
-        assert lookout is not None  # the mission has tags
-        search = lookout.search
+        camera_search = simulation.camera_search
+        assert camera_search is not None  # the mission has tags
+        search = camera_search.search
         points = tuple(find.point for find in search.finds)
         report, places = simulation.result(), np.array(ways.places)
         return FlightResult(planned, report, places, search.raw, points, witness.looks, witness.best)
