@@ -18,6 +18,7 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
+    from muster.cli.local_backend import OnLine
     from muster.exchange.export_request import Files, QgcOptions
     from muster.exchange.mission_control import MissionEntry, World
     from muster.execution import Report
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 Verb = Callable[..., Any]
-OnLine = Callable[[float, str], None]
 TOKEN_VARIABLE = "MUSTER_TOKEN"  # noqa: S105 - a name
 _LONGEST_TOKEN = 1000
 

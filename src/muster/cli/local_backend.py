@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muster.cli.backend import OnLine
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
     from muster.planning.solving import Solution
     from muster.running.negotiated.simulation import Negotiation
     from muster.verification import Verdict
+
+OnLine = Callable[[float, str], None]
+"""Gets what happens, with its time in seconds."""
 
 
 class LocalBackend:

@@ -148,9 +148,9 @@ def planned(options: RealRunOptions, mission: Mission) -> Plan:
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
     """The mission with robots at their measured positions; robots that the mission has elsewhere are printed."""
-    from muster.running.live import elsewhere, from_where_they_stand
+    from muster.running.live import elsewhere, with_reported_starts
 
-    there = from_where_they_stand(mission, fleet)
+    there = with_reported_starts(mission, fleet)
     for line in elsewhere(mission, there):
         click.echo(line, err=True)
     return there

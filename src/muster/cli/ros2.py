@@ -60,7 +60,7 @@ def command(
     """
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.middleware import open_wire
+    from muster.bridges.ros2.open_wire import open_wire
     from muster.bridges.ros2.port import Arrival
     from muster.running.live import wait_for_robots
 
