@@ -1,4 +1,4 @@
-# For a newcomer: `make demo` plans and draws a mission, `make test` runs everything. `make help` lists the rest.
+# For a newcomer: `make demo` plans, draws and simulates a mission, `make test` runs everything. `make help` lists the rest.
 
 PYTHON ?= python3
 VENV := .venv
@@ -7,19 +7,28 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test docs-check docs-check-long campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
 	$(BIN)/muster solve $(DEMO_MISSION) --time-limit 2 --seed 1 -o demo/plan.json --plot demo/plan.png --gantt demo/gantt.png
 	$(BIN)/muster verify $(DEMO_MISSION) demo/plan.json
+	$(BIN)/muster simulate $(DEMO_MISSION) --plan demo/plan.json --html demo/run.html
 	@echo
 	@echo "The picture of the plan: $(CURDIR)/demo/plan.png"
 	@echo "Its time chart:          $(CURDIR)/demo/gantt.png"
+	@echo "The mission carried out: $(CURDIR)/demo/run.html (animated; open it in a browser)"
 	@echo "Next: $(BIN)/muster --help"
+	@echo "Maps, physics, ROS 2, MAVLink, mission control in the browser, ...: $(BIN)/pip install -e '.[all]' (1.3 GB; docs/index.md)"
 
 test: $(VENV)/developed test-packages
 	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
+
+docs-check: $(VENV)/developed
+	$(BIN)/python -m tools.docs_check
+
+docs-check-long: $(VENV)/developed
+	$(BIN)/python -m tools.docs_check --long $(DOCS)
 
 campaign: $(VENV)/developed
 	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
@@ -40,8 +49,10 @@ disturbances: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances $(DISTURBANCES_FLAGS)
 
 help:
-	@echo "make demo       plan and draw a mission (DEMO_MISSION=$(DEMO_MISSION))"
+	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
+	@echo "make docs-check  run what the documents show: blocks, pictures, numbers"
+	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
@@ -89,12 +100,12 @@ $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
 
 $(VENV)/developed: $(VENV)/installed
 	@echo "Installing the tools for tests ..."
+	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
 	@touch $@
 
 $(VENV)/made: | prerequisites
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'
 	@touch $@
 
 test-packages:

@@ -30,7 +30,7 @@ from muster.planning.judging import verify
 from muster.planning.loading import load
 from muster.planning.pictures import gantt, plot
 from muster.planning.questions import check, explain
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.running.running import carry_out, simulate
 
 if TYPE_CHECKING:

@@ -59,7 +59,7 @@ def test_the_database_that_the_environment_names(url, muster, monkeypatch, tmp_p
 def test_info_as_a_table(url, muster, tmp_path):
     code, out, err = muster("db", "info")
     assert (code, err) == (0, "")
-    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables 0001, ")
+    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables 0002, ")
     assert [line.split() for line in out.splitlines() if "versions" in line] == [["mission", "versions", "1"]]
 
 

@@ -10,12 +10,13 @@ from tests.running.test_live import WorldAsFleet, mission
 import muster
 from muster.cli import real_robots as real
 from muster.cli.main import run
-from muster.cli.real_robots import Wishes, carried_out, reported
+from muster.cli.real_robots import RealRunOptions, carried_out, reported
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.running.live import wait_for_robots
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
+    "ignore": (),
     "seed": 0,
     "time_limit": 0.1,
     "require_complete": False,
@@ -25,16 +26,16 @@ ASKED = {
 }
 
 
-def carry_out(wishes, **how):
+def carry_out(options, **how):
     there = mission()
     halt = how.pop("halt", threading.Event())
-    report = carried_out(there, muster.solve(there, iterations=50), WorldAsFleet(there), wishes, halt, **how)
+    report = carried_out(there, muster.solve(there, iterations=50), WorldAsFleet(there), options, halt, **how)
     return there, report, halt
 
 
 def test_robots_are_told_how_to_end_before_anything_is_drawn(tmp_path):
     page, seen = tmp_path / "page.html", []
-    carry_out(Wishes(**{**ASKED, "html": page}), at_end=lambda: seen.append(page.exists()))
+    carry_out(RealRunOptions(**{**ASKED, "html": page}), at_end=lambda: seen.append(page.exists()))
     assert seen == [False]
     assert page.exists()
 
@@ -44,9 +45,9 @@ def test_the_report_counts_more_than_what_is_drawn_of_it(tmp_path, monkeypatch, 
         raise OSError(28, "No space left on device", "page.html")
 
     monkeypatch.setattr("muster.cli.record_output.draw_record", full)
-    wishes = Wishes(**{**ASKED, "html": tmp_path / "page.html"})
-    there, report, halt = carry_out(wishes)
-    assert reported(there, report, wishes, halt, "") == 0
+    options = RealRunOptions(**{**ASKED, "html": tmp_path / "page.html"})
+    there, report, halt = carry_out(options)
+    assert reported(there, report, options, halt, "", ()) == 0
     out, err = capsys.readouterr()
     assert "tasks done        4 of 4" in out
     assert err == "warning: [Errno 28] No space left on device: 'page.html'\n"
@@ -66,9 +67,9 @@ def test_a_signal_to_end_halts_once_and_is_as_before_afterwards(number):
 def test_who_was_interrupted_hears_what_robots_do(capsys):
     halt = threading.Event()
     halt.set()
-    wishes = Wishes(**ASKED)
-    there, report, _ = carry_out(wishes, halt=halt)
-    assert reported(there, report, wishes, halt, "robots hover") == 130
+    options = RealRunOptions(**ASKED)
+    there, report, _ = carry_out(options, halt=halt)
+    assert reported(there, report, options, halt, "robots hover", ()) == 130
     assert capsys.readouterr().err == "interrupted at 0.0 s of the mission; robots hover\n"
 
 
@@ -86,14 +87,14 @@ def test_a_plan_that_breaks_a_rule_moves_no_robot(tmp_path):
     text = '{"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["t_0", "t_9"]}]}'
     (tmp_path / "plan.json").write_text(text)
     with pytest.raises(muster.PlanError, match=r"plan.json.*t_9.*expected an admissible plan of mission mission"):
-        real.read_wanted(Wishes(**{**ASKED, "plan": tmp_path / "plan.json"}), there)
+        real.read_given_plan(RealRunOptions(**{**ASKED, "plan": tmp_path / "plan.json"}), there)
 
 
 def test_a_port_that_is_taken_is_told_before_robots_move():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(muster.MusterError, match=rf"--foxglove: 127.0.0.1:{port}: Address already in use"):
-            real.require_outputs(Wishes(**{**ASKED, "foxglove": port}), ())
+            real.require_outputs(RealRunOptions(**{**ASKED, "foxglove": port}), ())
 
 
 @pytest.mark.parametrize("name", ["9 bad/", "a-b", "a//b", "é"])

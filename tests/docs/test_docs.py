@@ -1,6 +1,7 @@
 """What the documents say is so."""
 
 import re
+import tomllib
 from dataclasses import fields
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from muster.allocation import search
 from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
-from muster.cli.main import VERBS, run
+from muster.cli.main import VERBS, other_verbs, run
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.records import specified
 from muster.mission.yaml_reader import parse_yaml
@@ -47,11 +48,12 @@ def test_the_topics_of_a_record_are_described():
     assert dict(re.findall(r"^\| `(/[a-z/]+)` \| `([A-Za-z.]+)` \|", text, flags=re.MULTILINE)) == TOPICS
 
 
-def test_the_verbs_of_the_readme_are_those_of_the_command():
+def test_the_verbs_that_are_shown_are_those_of_the_command():
+    text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     verbs = {
-        line.split()[1] for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("muster ")
+        line.split()[1] for block in blocks(text, "sh") for line in block.splitlines() if line.startswith("muster ")
     }
-    assert verbs == set(VERBS)
+    assert verbs == {*VERBS, *other_verbs()}
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -60,8 +62,9 @@ def test_every_verb_has_help(verb, capsys):
     assert f"muster {verb}" in capsys.readouterr().out
 
 
-def test_the_readme_has_every_allocator():
-    rows = re.findall(r"^\| `([a-z+-]+)`( \(default\))? \|", README, flags=re.MULTILINE)
+def test_every_allocator_is_described():
+    text = (ROOT / "docs" / "algorithms.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([a-z+-]+)`( \(default\))? \|", text, flags=re.MULTILINE)
     assert {name for name, _ in rows} == set(ALLOCATORS)
     assert [name for name, default in rows if default] == [DEFAULT_ALLOCATOR]
 
@@ -106,7 +109,9 @@ def test_every_key_of_a_mission_is_described():
 
 
 def test_the_example_missions_are_missions():
-    for example in blocks(MISSION_FILE, "yaml"):
+    whole = [example for example in blocks(MISSION_FILE, "yaml") if example.startswith("schema:")]
+    assert len(whole) == 2
+    for example in whole:
         mission = parse_yaml(example, Path("example.yaml"))
         assert [task.id for task in mission.tasks] == ["1", "2"]
 
@@ -174,5 +179,19 @@ def test_every_key_of_a_map_is_described():
     assert {f.name for model in (Map, Zone) for f in specified(model)} <= set(re.findall(r"`([a-z_0-9]+)`", section))
 
 
-def test_the_readme_links_to_every_document():
-    assert set(re.findall(r"\]\(docs/([a-z0-9-]+\.md)", README)) == {file.name for file in (ROOT / "docs").glob("*.md")}
+def test_the_index_links_to_every_document():
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    documents = {file.name for file in (ROOT / "docs").glob("*.md")}
+    assert set(re.findall(r"\]\(([a-z0-9-]+\.md)", index)) == documents - {"index.md"}
+    assert "](docs/index.md)" in README
+
+
+def test_the_index_lists_every_extra():
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8").split("## Extras", 1)[1]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    described = set(re.findall(r"^\| `([a-z0-9]+)` \|", index, flags=re.MULTILINE))
+    assert described == {name for name, needs in project["optional-dependencies"].items() if needs}
+
+
+def test_the_readme_is_short():
+    assert len(README.split()) <= 700

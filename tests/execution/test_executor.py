@@ -317,12 +317,12 @@ def test_a_robot_that_joins_takes_work():
 def test_what_a_robot_cannot_do_goes_to_another():
     mission = line(5.0, robots=2)
 
-    def doing(task, robot):
+    def plan_motion(task, robot):
         return Impossible("no camera") if robot.id == "r_0" else actions.plan(task, robot)
 
-    executor = carried_out(mission, plan_of(r_0=["0"]), doing=doing)
+    executor = carried_out(mission, plan_of(r_0=["0"]), plan_motion=plan_motion)
     assert executor.crew["r_1"].done == ["0"]
-    lost = carried_out(line(5.0), plan_of(r_0=["0"]), doing=doing).lost()
+    lost = carried_out(line(5.0), plan_of(r_0=["0"]), plan_motion=plan_motion).lost()
     assert lost == {"0": "no camera (r_0)"}
 
 

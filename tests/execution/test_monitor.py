@@ -5,59 +5,59 @@ from tests.execution.world import Point
 
 from muster import Robot
 from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck
-from muster.execution.robot_state import Activity, Hand
+from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.motion.port import Waypoint
 
 
 def driving(speed=1.0, way=100.0):
     point = Point(Robot(id="r", position=(0, 0), speed_mps=speed))
-    hand = Hand(Robot(id="r", position=(0, 0), speed_mps=speed), point, None, in_time=False, heard_s=0.0)
+    state = RobotState(Robot(id="r", position=(0, 0), speed_mps=speed), point, None, in_time=False, last_heard_s=0.0)
     point.step(0.0)
-    hand.hear(0.0)
-    hand.send(0.0, Activity.DRIVING, [Waypoint((way, 0.0, 0.0))])
-    return hand, point
+    state.hear(0.0)
+    state.send(0.0, Activity.DRIVING, [Waypoint((way, 0.0, 0.0))])
+    return state, point
 
 
-def stuck_at(hand, point, until, limits):
+def stuck_at(state, point, until, limits):
     now = 0.0
     while now < until:
         point.step(0.5)
         now += 0.5
-        hand.hear(now)
-        if is_stuck(hand, now, limits):
+        state.hear(now)
+        if is_stuck(state, now, limits):
             return now
     return None
 
 
 def test_telemetry_is_missed_after_the_limit():
-    hand, point = driving()
+    state, point = driving()
     limits = Limits(silent_after_s=5)
     point.step(1.0)
-    hand.hear(1.0)
+    state.hear(1.0)
     point.mute = True
     point.step(5.0)
-    hand.hear(6.0)
-    assert not is_silent(hand, 6.0, limits)
-    assert is_silent(hand, 6.1, limits)
+    state.hear(6.0)
+    assert not is_silent(state, 6.0, limits)
+    assert is_silent(state, 6.1, limits)
 
 
 @pytest.mark.parametrize("speed", [0.05, 0.26, 5.0])
 def test_a_robot_that_gets_on_is_not_stuck(speed):
-    hand, point = driving(speed, way=200 * speed)
-    assert stuck_at(hand, point, 195, Limits(stuck_after_s=10)) is None
+    state, point = driving(speed, way=200 * speed)
+    assert stuck_at(state, point, 195, Limits(stuck_after_s=10)) is None
 
 
 def test_a_robot_that_stands_is_stuck_after_the_limit():
-    hand, point = driving()
+    state, point = driving()
     point.broken = True
-    assert stuck_at(hand, point, 100, Limits(stuck_after_s=10)) == pytest.approx(10.5, abs=0.6)
+    assert stuck_at(state, point, 100, Limits(stuck_after_s=10)) == pytest.approx(10.5, abs=0.6)
 
 
 def test_a_robot_far_slower_than_it_should_be_is_stuck():
-    hand, point = driving()
+    state, point = driving()
     point.speed = 0.02
-    assert stuck_at(hand, point, 200, Limits(stuck_after_s=10)) is not None
+    assert stuck_at(state, point, 200, Limits(stuck_after_s=10)) is not None
 
 
 def test_capacity_with_room_for_rounding():
@@ -77,22 +77,22 @@ def at_work(name, place, point, held_s=100.0, activity=Activity.WORKING):
     robot = Robot(id=name, position=place, radius_m=0.3)
     port = Point(robot)
     port.step(0.0)
-    hand = Hand(robot, port, None, in_time=False, heard_s=0.0)
-    hand.hear(0.0)
-    hand.send(0.0, activity, [Waypoint((*point, 0.0), hold_s=held_s)])
-    return hand
+    state = RobotState(robot, port, None, in_time=False, last_heard_s=0.0)
+    state.hear(0.0)
+    state.send(0.0, activity, [Waypoint((*point, 0.0), hold_s=held_s)])
+    return state
 
 
 def test_those_are_held_up_who_have_one_at_work_before_them():
     works, waits = at_work("w", (5, 0), (5, 0)), at_work("a", (4.3, 0), (5, 0.1), activity=Activity.DRIVING)
     behind = at_work("b", (3.5, 0), (5, 0.1), activity=Activity.RETURNING)
     elsewhere = at_work("c", (3, 3), (5, 3), activity=Activity.DRIVING)
-    assert {hand.robot.id for hand in held_up([works, behind, elsewhere, waits])} == {"a", "b"}
+    assert {state.robot.id for state in held_up([works, behind, elsewhere, waits])} == {"a", "b"}
 
 
 def test_of_two_at_work_close_by_the_one_that_is_off_its_place_is_held_up():
     works, off = at_work("w", (5, 0), (5, 0)), at_work("o", (5.65, 0), (5.4, 0))
-    assert [hand.robot.id for hand in held_up([works, off])] == ["o"]
+    assert [state.robot.id for state in held_up([works, off])] == ["o"]
 
 
 def test_nobody_is_held_up_by_one_that_does_not_work():

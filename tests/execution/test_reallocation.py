@@ -11,8 +11,8 @@ from muster.allocation import greedy
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Reallocation, told
-from muster.execution.remaining_problem import posed
+from muster.execution.reallocation import Reallocation, reasons_in_one_line
+from muster.execution.remaining_problem import remaining_problem
 from muster.execution.travel import travel_of, way_of
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
@@ -50,7 +50,7 @@ def busiest(executor):
 def after_a_failure(mission, **options):
     executor, world = under_way(mission, **options)
     out = busiest(executor)
-    before = {name: robot for robot, hand in executor.crew.items() for name in hand.route}
+    before = {name: robot for robot, state in executor.crew.items() for name in state.route}
     executor.report(Event(at_s=0, robot_fails=out))
     executor.tick(world.now)
     return executor, out, before
@@ -67,7 +67,7 @@ def figures(problem, revision):
 def test_a_failure_among_20_robots_and_100_tasks_is_answered_better_than_by_greedy():
     mission = large_mission(100, 20)
     executor, out, before = after_a_failure(mission, step=2.0)
-    problem = posed(asked[0], travel_of(mission)).problem
+    problem = remaining_problem(asked[0], travel_of(mission)).problem
     weight, value = figures(problem, executor.revisions[0])
     by_greedy = problem.value(greedy.completed(problem, [list(route) for route in problem.fixed]))
     still = [
@@ -115,7 +115,7 @@ def test_usages_of_the_rest_are_those_of_the_whole_mission():
         revision = executor._replan(executor._rest())
         if revision.added or revision.dropped:
             continue
-        works = {name: hand.activity.value == "working" for name, hand in executor.crew.items()}
+        works = {name: state.activity.value == "working" for name, state in executor.crew.items()}
         used = {n: h.used_after(world.now) if works[n] else h.used for n, h in executor.crew.items()}
         total = sum(used[name] + revision.ahead[name][""] for name in executor.crew)
         assert total <= sum(executor.usage_planned.values()) + 1e-6
@@ -135,16 +135,16 @@ def test_travel_tables_hold_from_where_robots_are(seed):
     mission = with_travel_tables(random_mission(seed, tasks=7, robots=3), seed)
     executor, _, _ = after_a_failure(mission, share=0.3)
     if asked and asked[0].crew:
-        problem = posed(asked[0], travel_of(mission)).problem
-        for standing in asked[0].crew:
-            i, table = problem.robot_index[standing.robot.id], mission.travel_tables[standing.robot.type]
-            row = table.metres[table.places.index(standing.spot.name)]
+        problem = remaining_problem(asked[0], travel_of(mission)).problem
+        for snapshot in asked[0].crew:
+            i, table = problem.robot_index[snapshot.robot.id], mission.travel_tables[snapshot.robot.type]
+            row = table.metres[table.places.index(snapshot.spot.name)]
             for j, task in enumerate(problem.tasks):
-                if task.id in table.places and standing.task != task.id:
-                    speed = standing.robot.speed_mps if problem.in_time else 1
+                if task.id in table.places and snapshot.task != task.id:
+                    speed = snapshot.robot.speed_mps if problem.in_time else 1
                     assert problem.legs(i, [problem.start(i)], [j])[0, 0] == row[table.places.index(task.id)] / speed
     assert set(executor.ledger.ends_s) | set(executor.lost()) | {
-        name for hand in executor.crew.values() for name in hand.route
+        name for state in executor.crew.values() for name in state.route
     } == {task.id for task in mission.tasks}
 
 
@@ -152,8 +152,8 @@ def test_travel_tables_hold_from_where_robots_are(seed):
 def test_over_a_map_a_failed_robots_work_is_done_by_the_others(name):
     mission = muster.load(name)
     executor, out, before = after_a_failure(mission)
-    problem = posed(asked[0], executor._travel).problem
-    straight = [standing.spot.point for standing in asked[0].crew]
+    problem = remaining_problem(asked[0], executor._travel).problem
+    straight = [snapshot.spot.point for snapshot in asked[0].crew]
     assert all(len(point) == 3 for point in straight)
     assert problem.travel[0].size > 0
     moved = executor.revisions[0].moved
@@ -177,9 +177,9 @@ def test_the_admissible_part_of_routes_is_admissible_and_in_order(seed):
         assert [j for j in whole if j in kept] == kept
 
 
-def test_reasons_are_told_together():
+def test_reasons_are_given_together():
     reasons = (Reason("a", "skill", "lacks x"), Reason("b", "lock", "only c"), Reason("c", "skill", "lacks x"))
-    assert told(reasons) == "skill: lacks x (a, c); lock: only c (b)"
+    assert reasons_in_one_line(reasons) == "skill: lacks x (a, c); lock: only c (b)"
 
 
 def walled_rest(*tasks, delays=(), **rules):
@@ -200,7 +200,7 @@ def walled_rest(*tasks, delays=(), **rules):
     executor.tick(1.0)
     for name, by_s in delays:
         executor.ledger.delay(name, by_s)
-    return posed(executor._rest(), travel).problem, Problem.compile(mission)
+    return remaining_problem(executor._rest(), travel).problem, Problem.compile(mission)
 
 
 PATROL = muster.Task(id="x", position=(14.5, 10), action=Action(name="ground-patrol", side_m=8))

@@ -42,10 +42,11 @@ def test_it_prints_what_the_command_promises():
         "ends_s",
         "objective",
         "tasks",
+        "done_twice",
         "found",
         "remarks",
     ]
-    assert (data["found"], data["remarks"]) == ([], [])
+    assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])
     assert data["tasks_done"] == ["x", "y"]
     assert data["tasks_lost"] == [{"task": "z", "reason": "left out by the plan"}]
     assert (data["contacts"], data["min_distance_m"], data["reallocations"]) == (2, 3.2, 0)
@@ -71,7 +72,7 @@ def test_it_prints_what_the_command_promises():
 
 
 def test_the_objective_as_it_was_flown():
-    """By hand: a comes to x with 6, b to y with 3; a has used 8 in the end, b 3, and both are done after 8 s."""
+    """By state: a comes to x with 6, b to y with 3; a has used 8 in the end, b 3, and both are done after 8 s."""
     flown = {name: reported(objective=name).objective for name in OBJECTIVES}
     assert {name: objective.name for name, objective in flown.items()} == {name: name for name in OBJECTIVES}
     assert flown["total+max"].flown == pytest.approx(19)

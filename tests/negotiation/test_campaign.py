@@ -10,7 +10,7 @@ from tests.negotiation.networks import line_mission, settled_team
 from muster.negotiation.negotiator import Negotiator
 from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import Observer
-from muster.running.negotiation_trials.scenario import scene
+from muster.running.negotiation_trials.scenario import scenario_of
 
 RUNS, CHUNK = 1000, 50
 
@@ -74,7 +74,7 @@ def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
 
 
 def test_scenes_have_everything():
-    scenes = [scene(seed) for seed in range(300)]
+    scenes = [scenario_of(seed) for seed in range(300)]
     kinds = Counter(kind for one in scenes for kind in {incident.kind for incident in one.incidents})
     kinds_there = ("crash", "restart", "forget", "cut", "block", "heal", "announce", "cancel", "release", "withdraw")
     for kind in kinds_there:

@@ -66,7 +66,7 @@ def test_found_becomes_done(world):
 def test_what_is_found_happens_when_it_is_found():
     simulation = simulated(mission())
     found = {event.data["task"]: event.time_s for event in kinds(simulation, "found")}
-    assert found == {find.task: find.found_s for find in simulation.lookout.found}
+    assert found == {find.task: find.found_s for find in simulation.camera_search.found}
     assert found == {event.data["task"]["id"]: event.time_s for event in kinds(simulation, "new_task")}
 
 
@@ -77,7 +77,7 @@ def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_go
     reasons = [event.data["reason"] for event in kinds(simulation, "event_refused")]
     assert reasons == [f'new_task: found-{tag}: "late"; expected the id of a robot' for tag in (9, 4)]
     assert simulation.result().tasks_done == ("search",)
-    assert [find.task for find in simulation.lookout.found] == [None, None]
+    assert [find.task for find in simulation.camera_search.found] == [None, None]
 
 
 @pytest.mark.parametrize("world", WORLDS)
@@ -138,8 +138,8 @@ def test_a_robot_that_failed_sees_nothing():
 def test_of_who_cannot_tell_what_it_sees_nobody_hears(unheard, looked):
     of, looks = mission(), []
     with closing(Simulation(of, muster.solve(of, iterations=50), on_look=looks.append)) as simulation:
-        assert list(simulation.lookout.look(0.0, unheard)) == []
-        assert simulation.lookout.due_s == 0.25
+        assert list(simulation.camera_search.look(0.0, unheard)) == []
+        assert simulation.camera_search.due_s == 0.25
     assert len(looks) == looked
 
 
@@ -166,14 +166,14 @@ def test_new_tasks_come_while_the_drone_still_searches():
 def test_a_find_elsewhere_moves_its_task():
     """The world says so here: its telemetry is far off at first."""
     simulation = Simulation(mission(), muster.solve(mission(), iterations=50))
-    lookout = simulation.lookout
+    camera_search = simulation.camera_search
     while not kinds(simulation, "new_task"):
         simulation.advance(simulation.time_s + 1)
     task = kinds(simulation, "new_task")[0].data["task"]
     tag = int(task["id"].removeprefix("found-"))
-    (find,) = [find for find in lookout.search.finds if find.tag == tag]
+    (find,) = [find for find in camera_search.search.finds if find.tag == tag]
     moved = replace(find, point=replace(find.point, position=find.point.position + 0.5))
-    event = lookout._event(moved, simulation.time_s)
+    event = camera_search._event(moved, simulation.time_s)
     assert event.move_task == MovedTask(task=task["id"], position=(*(round(p, 4) for p in moved.point.position), 0.0))
 
 
@@ -185,7 +185,7 @@ def test_plans_know_nothing_of_tags():
 
 def test_without_tags_nobody_looks():
     simulation = Simulation(mission(tags=()), muster.solve(mission(tags=()), iterations=50))
-    assert simulation.lookout is None
+    assert simulation.camera_search is None
 
 
 def test_every_look_is_told():

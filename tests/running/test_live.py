@@ -11,7 +11,7 @@ from muster.bridges.fleet import Failure
 from muster.execution.record import NoObserver
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.record import read_record
-from muster.running.live import from_where_they_stand
+from muster.running.live import with_reported_starts
 from muster.simulation import KinematicWorld
 
 
@@ -153,7 +153,7 @@ def test_robots_start_where_they_stand():
     there = mission()
     fleet = WorldAsFleet(replace(there, robots=tuple(replace(r, position=(1.0, r.position[1])) for r in there.robots)))
     fleet.advance(0.1)
-    assert [robot.position for robot in from_where_they_stand(there, fleet).robots] == [(1.0, 0.0), (1.0, 3.0)]
+    assert [robot.position for robot in with_reported_starts(there, fleet).robots] == [(1.0, 0.0), (1.0, 3.0)]
 
 
 def test_who_is_halted_before_it_begins_sends_nobody():

@@ -17,7 +17,13 @@ from muster.motion.port import Waypoint
 from muster.perception import ground_fusion
 from muster.perception.pose_tracking import AirTracker, GroundTracker
 from muster.running.simulation import carry_out
-from muster.running.state_estimation import FusedHearing, FusedPorts, air_errors, ground_errors, heard
+from muster.running.state_estimation import (
+    EstimatedPorts,
+    EstimatedWorld,
+    air_errors,
+    ground_errors,
+    with_state_estimation,
+)
 from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
 
@@ -28,7 +34,7 @@ WORLDS = [
 ]
 
 
-class Watched(FusedHearing):
+class Watched(EstimatedWorld):
     """Keeps by how much robots are off at each step, as they say and fused, and what their filters make of it."""
 
     def __init__(self, world):
@@ -111,7 +117,7 @@ def test_usage_is_what_wheels_count_not_the_way_of_fused_poses():
 @pytest.mark.parametrize("noise", [Noise(), Noise(slip=0.1, odometry=0.1, gyro_radps=0.1), Noise(attitude_rad=0.1)])
 def test_where_poses_are_exact_nothing_is_filtered(noise):
     world = KinematicWorld(muster.load("6T-2R"), noise=noise)
-    assert heard(world) is world
+    assert with_state_estimation(world) is world
 
 
 def test_who_says_where_it_is_says_the_fused_place():
@@ -135,15 +141,15 @@ def test_who_joins_is_fused_too():
     while not simulation.done:
         simulation.advance(1000.0)
     assert "new" in simulation.result().tasks_done
-    assert isinstance(simulation._hearing.ports, FusedPorts)
-    assert isinstance(simulation._hearing.ports["late"].tracker, GroundTracker)
+    assert isinstance(simulation._robots.ports, EstimatedPorts)
+    assert isinstance(simulation._robots.ports["late"].tracker, GroundTracker)
     assert math.dist(simulation.positions["late"], simulation._world.positions[2]) < 0.1
 
 
 def test_it_hears_each_step_and_stops_where_something_was_passed():
     mission = muster.Mission(robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=())
     worlds = [KinematicWorld(mission, noise=NOISE, seed=3) for _ in range(2)]
-    fused, plain = heard(worlds[0]), worlds[1]
+    fused, plain = with_state_estimation(worlds[0]), worlds[1]
     for hearing in (fused, plain):
         hearing.ports["r"].send([Waypoint((1.0, 0.0, 0.0), label="there"), Waypoint((2.0, 0.0, 0.0))])
     for _ in range(4):

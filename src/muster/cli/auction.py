@@ -1,4 +1,4 @@
-"""`muster auction`: robots agree among themselves who does what, a process a robot."""
+"""`muster auction`: the robots of a team agree who does what, each in a process of its own."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def command(
 
 
 def _replayed(others: Mapping[str, Any]) -> int:
-    """Print one run of the campaign of random missions, faults and orders; whether nothing failed."""
+    """Print one run of the campaign of random missions, faults and orders; returns the exit code."""
     seed = others["network_seed"]
     if seed is None:
         raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
@@ -141,7 +141,7 @@ def _replayed(others: Mapping[str, Any]) -> int:
 def _agree(
     problem: Problem, terms: Any, method: Method, transport: str, others: dict[str, Any], **speech: bool
 ) -> Agreement:
-    """Let the robots agree: simulated, all here, or one of them here."""
+    """Run the auction: in a simulated network, with the whole team on this machine, or with one robot of it."""
     if others["network_seed"] is not None:
         from muster.cli.auction_simulated import agree_in_memory
 
@@ -156,7 +156,7 @@ def _agree(
 
 
 def _check_together(others: dict[str, Any]) -> None:
-    """Options that mean something beside others alone."""
+    """Refuse options without the option that they belong to."""
     given = {name for name, value in others.items() if value is not None}
     for names, needed in ((_OF_ONE_ROBOT, "robot"), (_OF_A_SIMULATED_NETWORK, "network_seed")):
         for name in names:

@@ -1,4 +1,4 @@
-"""What robots that hold an auction have agreed on, for the command."""
+"""The result of an auction among robots, for the command."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Agreement:
-    """What robots have agreed on: how each sees it (by robot), and how long it took, seconds."""
+    """The result of an auction: the view of each robot, by robot, and the seconds that it took."""
 
     views: dict[str, View]
     took_s: float

@@ -38,12 +38,12 @@ def agree_with_others(
     quiet: bool,
     verbose: bool,
 ) -> Agreement:
-    """Be one robot until all that are there agree.
+    """Take part as one robot until all robots that take part agree.
 
     Raises
     ------
     ParameterError
-        if the options do not tell who it is, which key the team has, or where the others are.
+        if the options do not name the robot, the key of the team, or the addresses of the others.
     NetworkError
         as `one_robot.take_part`; or if the network cannot be used so.
     InputError
@@ -77,7 +77,7 @@ def agree_with_others(
 
 
 class _Watch:
-    """Says who is there."""
+    """Prints which robots take part."""
 
     def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
         self._negotiator, self._say = negotiator, say
@@ -133,7 +133,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
 
 
 def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wait_s: float) -> Transport:
-    """A Zenoh session; where the robot only connects, it waits for somebody to be there."""
+    """A Zenoh session; a robot that only connects waits for another robot."""
     from muster.negotiation.zenoh_transport import ZenohTransport
 
     for option, text in (("--connect", connect), ("--listen", listen)):
@@ -151,7 +151,7 @@ def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wa
 
 
 def _peers(text: str, problem: Problem, robot: str) -> dict[str, tuple[str, int]]:
-    """By robot where it is; by address where the list names none, which works too, with more messages."""
+    """The addresses of the others by robot; by address where the list names no robots, which takes more messages."""
     peers = {}
     for item in _listed(text):
         name, equals, address = item.rpartition("=")

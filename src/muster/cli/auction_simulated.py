@@ -18,14 +18,14 @@ from muster.negotiation.robot_view import view_of
 def agree_in_memory(
     problem: Problem, terms: Any, method: Method, options: dict[str, Any], *, quiet: bool, verbose: bool
 ) -> Agreement:
-    """Let the robots agree in virtual time; the same seed and options give the same run.
+    """Run the auction in virtual time; the same seed and options give the same run.
 
     Raises
     ------
     ParameterError
         if more robots are to crash than may.
     MusterError
-        if those that live do not agree within the time limit, in virtual seconds.
+        if the robots that have not crashed do not agree within the time limit, in virtual seconds.
     """
     names = [robot.id for robot in problem.robots]
     conditions = LinkConditions(
@@ -59,7 +59,7 @@ def agree_in_memory(
 
 
 class _Account:
-    """Tells what happens, as it happens."""
+    """Prints the events of the auction as they happen."""
 
     def __init__(self, network: MemoryNetwork, *, rounds: bool, quiet: bool) -> None:
         self._network, self._rounds, self._quiet = network, rounds, quiet
@@ -72,7 +72,7 @@ class _Account:
             click.echo(f"{self._network.now:9.3f} s  {what}", err=True)
 
     def look(self) -> None:
-        """Tell what is new: epochs entered and begun, rounds."""
+        """Print new epochs and rounds."""
         for robot, node in self._network.nodes.items():
             stage = node.stage
             where = stage.epoch, stage.base != b""

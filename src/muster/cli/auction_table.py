@@ -24,7 +24,7 @@ _NAMES_SHOWN = 3
 
 @contextmanager
 def auction_table(problem: Problem, transport: str, *, wanted: bool) -> Iterator[Callable[[Team], None]]:
-    """A function that shows how far the team is; it does nothing where nothing is to be shown."""
+    """A function that shows the progress of the team; it does nothing without a terminal."""
     if not wanted or not sys.stderr.isatty():
         yield lambda team: None
         return
@@ -48,7 +48,7 @@ def auction_table(problem: Problem, transport: str, *, wanted: bool) -> Iterator
 
 
 def _note_sales(team: Team, sales: list[tuple[int, Sold]]) -> None:
-    """Keep the last rounds' winners, as far as robots told them."""
+    """Keep the last rounds' winners, as far as robots have reported them."""
     for news in team.progress.values():
         status = news.status
         if status.last_sale is not None and (status.round, status.last_sale) not in sales:

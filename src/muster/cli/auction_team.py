@@ -26,7 +26,7 @@ _LOOK_S = 0.05
 def agree_here(
     problem: Problem, terms: Any, method: Method, transport: str, limit_s: float, *, quiet: bool, verbose: bool
 ) -> Agreement:
-    """Start a process for each robot, and wait until all that live agree.
+    """Start a process for each robot, and wait until all that have not crashed agree.
 
     Raises
     ------

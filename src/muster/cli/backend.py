@@ -1,4 +1,4 @@
-"""Where the work of a verb is done: in this process, or at a server of mission control (`--server URL`)."""
+"""The backend of verbs: this process, or a server of mission control (`--server URL`)."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
+    from muster.cli.local_backend import OnLine
     from muster.exchange.export_request import Files, QgcOptions
     from muster.exchange.mission_control import MissionEntry, World
     from muster.execution import Report
@@ -31,13 +32,12 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 Verb = Callable[..., Any]
-OnLine = Callable[[float, str], None]
 TOKEN_VARIABLE = "MUSTER_TOKEN"  # noqa: S105 - a name
 _LONGEST_TOKEN = 1000
 
 
 class Backend(Protocol):
-    """What verbs need done. `file` names a plan in messages."""
+    """The work that verbs ask for; `file` names a plan in messages."""
 
     def missions(self) -> Sequence[MissionSummary | MissionEntry]:
         """The missions that there are."""
@@ -157,7 +157,7 @@ def _token(file: Path | None) -> str | None:
 
 
 def _refuse(names: Sequence[str]) -> None:
-    """Options that mean nothing to a server."""
+    """Refuse options that mean nothing to a server."""
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(str(parameter.name)) is ParameterSource.COMMANDLINE

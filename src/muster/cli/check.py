@@ -67,7 +67,7 @@ def command(
 
 
 def _refused(form: str, error: MissionError | NotSupportedError) -> int:
-    """Print what is wrong with a mission; the exit code."""
+    """Print what is wrong with a mission; returns the exit code."""
     from muster.planning.explaining import Possible
 
     if form == "json":
@@ -79,7 +79,7 @@ def _refused(form: str, error: MissionError | NotSupportedError) -> int:
 
 
 def _checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
-    """Print what can be done of a mission that is right; the exit code."""
+    """Print which tasks can be done; returns the exit code."""
     lost, all_others = found.impossible, found.together
     if form == "json":
         click.echo(json_text({"errors": [], **found.as_dict()}), nl=False)

@@ -1,4 +1,4 @@
-"""`muster db`: the database of mission control: what is in it, copies of it, and what is thrown away."""
+"""`muster db`: the database of mission control: contents, backups, deletion of old runs."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def _db_option(verb: Verb) -> Verb:
 
 @click.group()
 def command() -> None:
-    """Look after the database of mission control: copy it, empty it of old things.
+    """Manage the database of mission control: back it up, restore it, delete old runs.
 
-    Each may be done while a server is at work.
+    All of them work while a server runs.
     """
 
 
@@ -46,7 +46,7 @@ def command() -> None:
 @format_option
 @quiet_option
 def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
-    """Say what is in the database."""
+    """Show what the database contains."""
     from muster.server.store.database_info import database_info
 
     found = database_info(url)
@@ -70,8 +70,8 @@ def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
 def backup(file: Path, url: str, quiet: bool, verbose: bool) -> int:
     """Copy the database into a new FILE.
 
-    The copy is a database of SQLite, of PostgreSQL, too, and `muster db restore` puts it into either. It is of one
-    moment, also while a server writes.
+    The copy is a database of SQLite, of PostgreSQL, too, and `muster db restore` puts it into either. It holds the
+    state of one moment, also while a server writes.
     """
     from muster.server.store.backup import backup as copy
 
@@ -88,7 +88,7 @@ def backup(file: Path, url: str, quiet: bool, verbose: bool) -> int:
 def restore(file: Path, url: str, quiet: bool, verbose: bool) -> int:
     """Put a backup into an empty database.
 
-    A database that is not there yet is made; of PostgreSQL that is done with createdb.
+    A missing SQLite database is created; a PostgreSQL database is created with createdb.
     """
     from muster.server.store.backup import restore as put_back
     from muster.server.store.database_info import database_info

@@ -1,4 +1,4 @@
-"""`muster explain`: why this robot, why not that one, why left out."""
+"""`muster explain`: why a task is done by this robot, not by another, or left out."""
 
 from __future__ import annotations
 

@@ -125,7 +125,7 @@ def _write_plan_files(files: Files, folder: Path, inputs: tuple[str | Path, ...]
 
 
 def _require_free(folder: Path, files: Collection[str], inputs: tuple[str | Path, ...]) -> None:
-    """Refuse a folder in which something would be replaced that was read, or a plan of another mission be left."""
+    """Refuse a folder whose files were read, or that holds plan files of other robots."""
     read = {Path(name).resolve() for name in inputs}
     for name in files:
         if (folder / name).resolve() in read or folder.resolve() in read:

@@ -1,4 +1,4 @@
-"""Films and stills of `muster simulate`: what is asked for is checked before the run, and drawn after."""
+"""Films and stills of `muster simulate`: options are checked before the run, files are written after it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def require_filmable(world: str, film: Path | None, speed: float | None, still: Path | None) -> None:
-    """Find out before the mission is carried out that it cannot be filmed so."""
+    """Refuse, before the run, films that cannot be made."""
     if speed is not None and film is None:
         raise ParameterError("--film-speed given; expected it together with --film")
     if film is None and still is None:
@@ -34,14 +34,14 @@ def require_filmable(world: str, film: Path | None, speed: float | None, still: 
 
 
 def footage_of(mission: Mission) -> Footage:
-    """What is to be filled while the mission is carried out."""
+    """The footage that the run is recorded into."""
     from muster.report.film import Footage
 
     return Footage(mission)
 
 
 def draw_footage(footage: Footage, film: Path | None, speed: float | None, still: Path | None, *, quiet: bool) -> None:
-    """Draw what is asked for, and say of it on standard error."""
+    """Write the film and the still, and report them on standard error."""
     from muster.report.film import write_film, write_still
 
     if still is not None:

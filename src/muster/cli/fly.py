@@ -1,4 +1,4 @@
-"""`muster fly`: a plan carried out by drones over MAVLink; without --arm it only shows what would be sent."""
+"""`muster fly`: a plan carried out by drones over MAVLink; without --arm it shows the orders and sends none."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
-    Wishes,
+    RealRunOptions,
     carried_out,
     planned,
-    read_wanted,
+    read_given_plan,
     real_options,
     reported,
     require_outputs,
@@ -65,27 +65,27 @@ def command(
 ) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 
-    Without --arm nothing flies: the drones are listened to, and it is shown what they would be told. Ctrl-C
-    lets them hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
+    Without --arm nothing flies: telemetry is received, and the orders are shown. Ctrl-C lets drones
+    hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
     """
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
 
-    wishes = Wishes(**asked)
-    require_outputs(wishes, mission.files)
-    loaded = mission.load(verbose=wishes.verbose)
-    given = read_wanted(wishes, loaded)
+    options = RealRunOptions(**asked)
+    require_outputs(options, mission.files)
+    loaded = mission.load(verbose=options.verbose)
+    given = read_given_plan(options, loaded)
     settings = Settings(arm=arm, offboard=offboard, low_battery=low_battery / 100)
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
     try:
-        plan = given or planned(wishes, loaded)
-        if not wishes.quiet:
+        plan = given or planned(options, loaded)
+        if not options.quiet:
             _warn(loaded, plan, height)
         fleet.connect(wait)
         if not arm:
-            _show(loaded, plan, fleet, wishes.form)
+            _show(loaded, plan, fleet, options.form)
             return DONE
-        return _fly(loaded, plan, fleet, at_end, wishes)
+        return _fly(loaded, plan, fleet, at_end, options)
     finally:
         fleet.close()
 
@@ -101,7 +101,7 @@ def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
 
 
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
-    """Say where drones, which do not see each other, would meet."""
+    """Warn where drones, which do not avoid each other, would meet."""
     from muster import verify
     from muster.exchange.itinerary import itineraries
     from muster.exchange.separation import meetings
@@ -112,7 +112,7 @@ def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
 
 
 def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> None:
-    """What each drone would be told, in order."""
+    """Print the orders of each drone, in order."""
     from muster.bridges.mavlink.dry_run import lines_of
     from muster.cli.tables import print_table
     from muster.execution import way_of
@@ -141,20 +141,20 @@ def _degrees(value: float | None) -> str:
     return "-" if value is None else f"{value:.7f}"
 
 
-def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, wishes: Wishes) -> int:
+def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, options: RealRunOptions) -> int:
     with ctrl_c_halts(TO_END) as halt:
         try:
-            report = carried_out(mission, plan, fleet, wishes, halt, at_end=lambda: _end(fleet, at_end, halt))
+            report = carried_out(mission, plan, fleet, options, halt, at_end=lambda: _end(fleet, at_end, halt))
         except BaseException:
             show_final_states(fleet.final_states())
             raise
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
-    return reported(mission, report, wishes, halt, "drones were told to hover", fleet.final_states())
+    return reported(mission, report, options, halt, "drones were told to hover", fleet.final_states())
 
 
 def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:
-    """What drones do when all is done, other than to hover."""
+    """Give the order of --at-end to all drones; without one they hover."""
     if at_end != "hold" and not halt.is_set():
         fleet.end(at_end)
         fleet.await_landing(halt.is_set)

@@ -1,4 +1,4 @@
-"""A mission shown while it is carried out: told on standard error, and to those who connect with Foxglove."""
+"""A mission shown while it is carried out: events on standard error, and a server for Foxglove."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ foxglove_option = click.option(
 
 
 def require_free_port(port: int | None) -> None:
-    """Find out before robots move that a mission cannot be shown on a port.
+    """Refuse, before robots move, a port that cannot be used.
 
     Raises
     ------
     NetworkError
-        if it is taken, or not for everybody.
+        if it is in use, or reserved.
     """
     if port is None:
         return
@@ -43,7 +43,7 @@ def require_free_port(port: int | None) -> None:
 
 @contextmanager
 def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[Sequence[Any]]:
-    """Who is to be told of the mission so that it is shown on a port; nobody where there is none."""
+    """The observers that show the mission on a port: none without a port."""
     if port is None:
         yield ()
         return
@@ -55,13 +55,13 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
         yield (server,)
 
 
-def tell(event: ExecutionEvent) -> None:
+def print_event(event: ExecutionEvent) -> None:
     """Print an event on standard error as it happens."""
     from muster.mission.event_descriptions import event_line
 
-    tell_line(event.time_s, event_line(event.kind, event.data))
+    print_event_line(event.time_s, event_line(event.kind, event.data))
 
 
-def tell_line(time_s: float, line: str) -> None:
+def print_event_line(time_s: float, line: str) -> None:
     """Print the line of an event on standard error, with its time."""
     click.echo(f"{time_s:9.1f} s  {line}", err=True)

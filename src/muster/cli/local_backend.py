@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muster.cli.backend import OnLine
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
     from muster.planning.solving import Solution
     from muster.running.negotiated.simulation import Negotiation
     from muster.verification import Verdict
+
+OnLine = Callable[[float, str], None]
+"""Gets what happens, with its time in seconds."""
 
 
 class LocalBackend:
@@ -80,11 +82,11 @@ class LocalBackend:
         from muster import simulate
         from muster.mission.event_descriptions import event_line
 
-        def tell(event: ExecutionEvent) -> None:
+        def report(event: ExecutionEvent) -> None:
             assert on_line is not None
             on_line(event.time_s, event_line(event.kind, event.data))
 
         with ctrl_c_halts() as halt:
-            on_event = None if on_line is None else tell
-            report = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
-        return report, report.mission_time_s if halt.is_set() else None
+            on_event = None if on_line is None else report
+            outcome = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
+        return outcome, outcome.mission_time_s if halt.is_set() else None

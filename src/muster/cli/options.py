@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Finite(click.FloatRange):
-    """A number between two limits; not NaN, which a range takes."""
+    """A number between two limits. NaN is refused, which `FloatRange` accepts."""
 
     def __init__(self, least: float, most: float) -> None:
         super().__init__(min=least, max=most)
@@ -39,7 +39,7 @@ _FILE = click.Path(path_type=Path)
 
 @dataclass(frozen=True, kw_only=True)
 class MissionFile:
-    """A MISSION as the command names it: a file, or one that ships with Muster, and what some forms of it need."""
+    """The argument MISSION, a file or the name of a shipped mission, with the flags that some formats need."""
 
     name: str
     robots: Path | None
@@ -49,11 +49,11 @@ class MissionFile:
 
     @property
     def files(self) -> tuple[str | Path | None, ...]:
-        """What is read, where it is given."""
+        """The files that are read; None for those not given."""
         return self.name, self.robots, self.suitability
 
     def load(self, *, verbose: bool = False) -> Mission:
-        """Read it; with -v a line says which file it is, and how much is in it."""
+        """Read the mission; with -v print the file and the numbers of robots and tasks."""
         from muster import load
 
         if self.depot is not None and self.salesmen is None:
@@ -70,12 +70,12 @@ MISSION_FLAGS = ("robots", "suitability", "salesmen", "depot")
 
 
 def mission_argument(verb: Verb) -> Verb:
-    """MISSION, and the flags that some forms of it need, as a `MissionFile`."""
+    """The argument MISSION and its flags, as a `MissionFile`."""
     return _with_mission(verb, required=True)
 
 
 def optional_mission_argument(verb: Verb) -> Verb:
-    """MISSION, which the verb may do without: it gets None then."""
+    """The optional argument MISSION and its flags, as a `MissionFile` or None."""
     return _with_mission(verb, required=False)
 
 
@@ -102,14 +102,14 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
 
 
 def require_none_without_mission(**of_mission: object) -> None:
-    """Options that say something of a mission need one."""
+    """Refuse options of a mission without a mission."""
     for name, value in of_mission.items():
         if value is not None:
             raise ParameterError(f"--{name} given without a MISSION; expected both")
 
 
 def load_plan(file: Path, mission: Mission, ignore: tuple[str, ...] = (), *, quiet: bool, verbose: bool) -> Plan:
-    """The plan of a file, and what `say_of_plan` says of it."""
+    """Read a plan file and print what `say_of_plan` prints."""
     plan = read_plan(file)
     say_of_plan(plan, file, mission, ignore, quiet=quiet, verbose=verbose)
     return plan
@@ -195,12 +195,12 @@ def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[
 
 
 def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[str, Any]:
-    """What `--set NAME=VALUE` gives, by name, together with options of their own, which are None where not given.
+    """Parameters by name: those of `--set NAME=VALUE`, and those with options of their own (None: not given).
 
     Raises
     ------
     ParameterError
-        if one is given twice, or a setting is none.
+        if one is given twice, or a setting is not NAME=VALUE.
     """
     given = {name: value for name, value in options.items() if value is not None}
     values: dict[str, Any] = {}

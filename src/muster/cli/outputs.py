@@ -1,4 +1,4 @@
-"""Files that a verb writes: refused before the work, not after it."""
+"""Checks of the files that a verb writes, made before the work."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def require_writable(
     inputs: tuple[str | Path | None, ...],
     plans: tuple[Path | None, ...],
 ) -> None:
-    """Find out before a long search, not after it, that its result cannot be written or would replace something.
+    """Refuse files that cannot be written, or that are read, written twice, or would replace an input.
 
     The plan may replace one of the plans that are read.
     """

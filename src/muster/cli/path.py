@@ -1,4 +1,4 @@
-"""`muster path`: how one robot gets from one point to another over a mission's map."""
+"""`muster path`: a path for one robot from one point to another on a mission's map."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ def command(
     quiet: bool,
     verbose: bool,
 ) -> int:
-    """Find a way for one body over the map of a MISSION, from one point to another.
+    """Find a path for one robot on the map of a MISSION, from one point to another.
 
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
-    the reason, and no error. Without a map the way is straight.
+    the reason, and no error. Without a map the path is straight.
     """
     require_writable(None, (plot,), mission.files, ())
     require_drawable(plot)

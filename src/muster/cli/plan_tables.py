@@ -1,4 +1,4 @@
-"""A plan's figures on standard output; all of them are the judge's."""
+"""Tables of plans and verdicts; all figures are the judge's."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OPTIMAL = 1e-6
 
 
 def print_plan(plan: Plan, verdict: Verdict) -> None:
-    """The routes, the figures, and what is left out."""
+    """Print the routes, the figures, and the tasks left out."""
     unit = verdict.usage_unit
     limited = any(route.capacity is not None for route in verdict.routes)
     columns = ["robot", "tasks in order", f"usage [{unit}]", *([f"capacity [{unit}]"] if limited else [])]
@@ -52,7 +52,7 @@ def _print_ignored(verdict: Verdict) -> None:
 
 
 def print_figures(verdict: Verdict) -> None:
-    """The figures, one a line."""
+    """Print the figures, one per line."""
     unit = verdict.usage_unit
     own_unit = "s" if verdict.objective_name == "makespan" else unit
     click.echo(f"objective         {number(verdict.value(), own_unit)}  ({verdict.objective_name})")
@@ -65,7 +65,7 @@ def print_figures(verdict: Verdict) -> None:
 
 
 def print_verdict(plan: Plan, verdict: Verdict) -> None:
-    """Whether a plan holds, and all that is wrong with it. A bound that it states is compared, not proven again."""
+    """Print whether a plan is valid, and every violation. A stated bound is compared, not proven again."""
     print_figures(verdict)
     click.echo(f"weight completed  {verdict.weight_completed:g}")
     _print_ignored(verdict)

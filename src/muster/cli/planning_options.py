@@ -95,7 +95,7 @@ def planning_options(verb: Verb) -> Verb:
 
 
 def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    """`quick` may be left out, and then what stands next is taken for it: `--bound MISSION` deserves a hint."""
+    """Check the bound. `--bound MISSION` reads the mission as the bound, so the message says how to write it."""
     if value not in (None, *BOUNDS):
         hint = "--bound alone stands after the mission, or as --bound=quick"
         raise ParameterError(f"bound: {shown(value)}; expected {' or '.join(BOUNDS)}; {hint}")

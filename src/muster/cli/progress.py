@@ -1,4 +1,4 @@
-"""The progress bar of a long run, on standard error and only on a terminal."""
+"""The progress bar of planning, on standard error and only on a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _QUIET_UNTIL_S = 0.5
 
 @contextmanager
 def progress_bar(wanted: bool, mission: Mission) -> Iterator[Callable[[Progress], None] | None]:
-    """A function that shows the progress it is called with; None where nothing is to be shown."""
+    """A function that shows the progress it is called with; None without a terminal."""
     if not wanted or not sys.stderr.isatty():
         yield None
         return

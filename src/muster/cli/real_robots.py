@@ -1,4 +1,4 @@
-"""What verbs that command real robots have in common: what is asked for, waiting, carrying out, the report."""
+"""What the verbs for real robots share: options, planning, carrying out, the report."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, STILL_MOVING
-from muster.cli.live_output import foxglove_option, require_free_port, shown_live, tell
+from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
     Finite,
     Verb,
@@ -39,8 +39,8 @@ _FILE = click.Path(path_type=Path)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wishes:
-    """What was asked for, but for the mission and what the bridge needs: the values of `real_options`."""
+class RealRunOptions:
+    """The values of `real_options`: everything but the mission and the options of the bridge."""
 
     plan: Path | None
     ignore: tuple[str, ...]
@@ -58,7 +58,7 @@ class Wishes:
 
 
 def real_options(verb: Verb) -> Verb:
-    """The options of which `Wishes` is made."""
+    """The options that become `RealRunOptions`."""
     options = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
         ignore_option,
@@ -116,41 +116,41 @@ def ros_options(verb: Verb) -> Verb:
     return verb
 
 
-def require_outputs(wishes: Wishes, inputs: tuple[str | Path | None, ...]) -> None:
-    """Find out before robots move that a file cannot be written, or would replace one that is read."""
-    files = (wishes.record, wishes.html, wishes.plot, wishes.gantt)
-    require_writable(None, files, inputs, (wishes.plan,))
-    require_drawable(wishes.plot, wishes.gantt)
-    require_free_port(wishes.foxglove)
+def require_outputs(options: RealRunOptions, inputs: tuple[str | Path | None, ...]) -> None:
+    """Refuse, before robots move, files that cannot be written or would replace one that is read."""
+    files = (options.record, options.html, options.plot, options.gantt)
+    require_writable(None, files, inputs, (options.plan,))
+    require_drawable(options.plot, options.gantt)
+    require_free_port(options.foxglove)
 
 
-def read_wanted(wishes: Wishes, mission: Mission) -> Plan | None:
-    """The plan that was given, before robots are looked for; None: there is none.
+def read_given_plan(options: RealRunOptions, mission: Mission) -> Plan | None:
+    """The plan of --plan, read before robots are searched for; None without --plan.
 
     Raises
     ------
     PlanError
-        if it is none, or breaks a rule of the mission.
+        if the file is no plan, or the plan breaks a rule of the mission.
     """
-    if wishes.plan is None:
+    if options.plan is None:
         return None
-    plan = load_plan(wishes.plan, mission, wishes.ignore, quiet=wishes.quiet, verbose=wishes.verbose)
-    require_admissible(mission, plan, wishes.plan, wishes.ignore)
+    plan = load_plan(options.plan, mission, options.ignore, quiet=options.quiet, verbose=options.verbose)
+    require_admissible(mission, plan, options.plan, options.ignore)
     return plan
 
 
-def planned(wishes: Wishes, mission: Mission) -> Plan:
-    """A plan made now."""
+def planned(options: RealRunOptions, mission: Mission) -> Plan:
+    """A plan made by the default allocator."""
     from muster import solve
 
-    return solve(mission, seed=wishes.seed, time_limit=wishes.time_limit, ignore=wishes.ignore)
+    return solve(mission, seed=options.seed, time_limit=options.time_limit, ignore=options.ignore)
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
-    """The mission from where robots stand; who stands elsewhere than it says is told of."""
-    from muster.running.live import elsewhere, from_where_they_stand
+    """The mission with robots at their measured positions; robots that the mission has elsewhere are printed."""
+    from muster.running.live import elsewhere, with_reported_starts
 
-    there = from_where_they_stand(mission, fleet)
+    there = with_reported_starts(mission, fleet)
     for line in elsewhere(mission, there):
         click.echo(line, err=True)
     return there
@@ -160,33 +160,33 @@ def carried_out(
     mission: Mission,
     plan: Plan,
     fleet: Fleet,
-    wishes: Wishes,
+    options: RealRunOptions,
     halt: threading.Event,
     observers: Sequence[Recorder] = (),
     at_end: Callable[[], None] = lambda: None,
 ) -> Report:
-    """Carry a plan out; what happens is told, recorded and shown as was asked for.
+    """Carry a plan out; its events are printed, recorded and shown as the options say.
 
     Parameters
     ----------
     at_end
-        what else robots are told when all is done; comes before anything is drawn, which takes its time.
+        gives robots their last orders when the plan is done, before pictures are drawn.
     """
     from muster import carry_out
 
     report = None
     try:
-        kept = kept_record(wishes.record, wishes.html, wishes.plot, wishes.gantt)
-        with kept as file, shown_live(mission, wishes.foxglove, quiet=wishes.quiet) as viewers:
+        kept = kept_record(options.record, options.html, options.plot, options.gantt)
+        with kept as file, shown_live(mission, options.foxglove, quiet=options.quiet) as viewers:
             report = carry_out(
                 mission,
                 plan,
                 fleet,
-                seed=wishes.seed,
-                ignore=wishes.ignore,
+                seed=options.seed,
+                ignore=options.ignore,
                 record=file,
                 observers=(*observers, *viewers),
-                on_event=None if wishes.quiet else tell,
+                on_event=None if options.quiet else print_event,
                 halt=halt,
             )
             at_end()
@@ -200,23 +200,23 @@ def carried_out(
 def reported(
     mission: Mission,
     report: Report,
-    wishes: Wishes,
+    options: RealRunOptions,
     halt: threading.Event,
     left: str,
     final_states: Sequence[FinalState],
 ) -> int:
-    """Print what came of it, and where each robot is; returns the exit code.
+    """Print the report and the final state of each robot; returns the exit code.
 
     Parameters
     ----------
     left
-        what robots do if it was interrupted: "the robots were told to stand".
+        what robots do after an interruption: "the robots were told to stand".
     """
     figures: dict[str, Any] = report.as_dict()
-    if wishes.form == "json":
+    if options.form == "json":
         click.echo(json_text(figures), nl=False)
     else:
-        print_report(figures, mission, with_tasks=wishes.verbose)
+        print_report(figures, mission, with_tasks=options.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
     show_final_states(final_states)
@@ -224,7 +224,7 @@ def reported(
         return INTERRUPTED
     if any(state.moving for state in final_states):
         return STILL_MOVING
-    return INCOMPLETE if wishes.require_complete and report.tasks_lost else DONE
+    return INCOMPLETE if options.require_complete and report.tasks_lost else DONE
 
 
 def show_final_states(states: Sequence[FinalState]) -> None:

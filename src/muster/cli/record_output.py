@@ -1,4 +1,4 @@
-"""The record of a mission that is carried out: kept where it is wanted, and what is drawn of it at the end."""
+"""The record of a run: its file, and the page and pictures made of it at the end."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def record_option(verb: Verb) -> Verb:
 
 @contextmanager
 def kept_record(record: Path | None, html: Path | None, plot: Path | None, gantt: Path | None) -> Iterator[Path | None]:
-    """Where the record is to be written; None: nowhere. What is wanted of it is drawn at the end."""
+    """The file to write the record to, or None. The page and pictures are made of it at the end."""
     wanted = any((html, plot, gantt))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "record.mcap" if record is None and wanted else record
@@ -50,7 +50,7 @@ def kept_record(record: Path | None, html: Path | None, plot: Path | None, gantt
 
 
 def draw_record(recording: Recording, html: Path | None, plot: Path | None, gantt: Path | None) -> None:
-    """Write what is wanted: its page, its picture, its time chart."""
+    """Write the page, the picture and the time chart that are asked for."""
     if html is not None:
         from muster.report.page import write_page
 

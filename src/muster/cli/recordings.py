@@ -27,19 +27,19 @@ def require_recordings(
     topics: tuple[str, ...],
     begins: float | None,
 ) -> None:
-    """Find out before anything is written that options do not go together.
+    """Refuse, before anything is written, options that exclude each other.
 
     Raises
     ------
     ParameterError
-        if they do not, or a file has another suffix than its format.
+        if options exclude each other, or a file has another suffix than its format.
     """
     from muster.report.recordings import is_recording
 
     if is_recording(record):
-        wishes = {"html": html, "gantt": gantt, "ros2": ros2, "ros1": ros1, "reference": reference}
-        for option, wish in wishes.items():
-            if wish is not None:
+        outputs = {"html": html, "gantt": gantt, "ros2": ros2, "ros1": ros1, "reference": reference}
+        for option, value in outputs.items():
+            if value is not None:
                 raise ParameterError(f"--{option}: {record} is a recording of poses; expected a record of muster")
     for file, option, suffix in ((ros2, "--ros2", ".mcap"), (ros1, "--ros1", ".bag")):
         if file is not None and file.suffix != suffix:
@@ -102,7 +102,7 @@ def _row(track: PoseTrack) -> dict[str, Any]:
 def write_for_ros(
     recording: Recording, ros2: Path | None, ros1: Path | None, begins: float | None, *, quiet: bool
 ) -> None:
-    """Write a record as files of ROS, where these are wanted."""
+    """Write a record as files of ROS."""
     from muster.report.recordings import write_ros1, write_ros2
 
     for file, write in ((ros2, write_ros2), (ros1, write_ros1)):
@@ -116,7 +116,7 @@ def write_for_ros(
 def errors_against(
     recording: Recording, file: Path, topics: tuple[str, ...], begins: float | None, *, quiet: bool
 ) -> Mapping[str, Any]:
-    """How far robots were from what a recording has: its file, its clock and a row a robot."""
+    """Distances of robots from a recording: its file, its clock, and a row for each robot."""
     from muster.report.recordings import Reference, deviations
 
     reference = Reference.of(recording, _tracks(file, quiet=quiet), _topics(topics), begins)

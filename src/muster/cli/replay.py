@@ -1,4 +1,4 @@
-"""`muster replay`: what a record holds; as a page, as a picture, for ROS, beside what others recorded."""
+"""`muster replay`: what a record holds: as text, page, picture, file of ROS, or beside another recording."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def command(
 ) -> int:
     """Show the RECORD of a mission that was carried out (MCAP), or the poses in a recording of ROS.
 
-    A record that breaks off, because what wrote it was killed, is shown up to there. With -v all events are listed.
+    A record that breaks off, because its writer was killed, is shown up to there. With -v all events are listed.
     """
     from muster.report.record import read_record
     from muster.report.recordings import is_recording

@@ -1,4 +1,4 @@
-"""Tables of what carrying a mission out took, as its report tells it."""
+"""Tables of the report of a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ all but the ids."""
 
 
 def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
-    """Print usage of robots beside what was planned, figures, tasks lost, and each task done if wanted."""
+    """Print the usage of robots beside the plan, figures, tasks lost, and with `with_tasks` each task done."""
     unit = "s" if mission.rules.usage == "time" else "m"
     columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
     rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
@@ -60,14 +60,14 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
 
 
 def _nearness(report: Report) -> str:
-    """How near robots came to each other, where somebody measured it."""
+    """The least distance between robots, where it was measured."""
     least, contacts = report.get("min_distance_m"), report.get("contacts")
     distance = "-" if least is None else f"{number(least)} m"
     return "not measured" if contacts is None else f"{distance}, {counted(contacts, 'contact')}"
 
 
 def _print_found(report: Report, mission: Mission) -> None:
-    """What cameras found, and what they did not."""
+    """Print which tags cameras found, and which they did not."""
     found = [row for row in report.get("found", ()) if "tag" in row and len(row.get("position", ())) >= 2]
     if found:
         columns = ("tag", "x [m]", "y [m]", "sure to [m]", "off by [m]", "seen", "by", "found [s]", "became")
@@ -90,7 +90,7 @@ def _print_found(report: Report, mission: Mission) -> None:
 
 
 def _is(row: Report, tag: Tag) -> bool:
-    """Whether what was found is this tag."""
+    """Whether a finding is this tag."""
     return bool(row["tag"] == tag.id and math.dist(row["position"][:2], tag.position[:2]) < _NEAR_M)
 
 

@@ -1,4 +1,4 @@
-"""A plan as it leaves the command: written, drawn, printed; and the book of an auction."""
+"""Output of a plan: file, pictures, table; and the book of an auction."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _draw(mission: Mission, plan: Plan, verdict: Verdict, plot: Path | None, gan
 
 
 def write_book(plan: Plan, file: Path, quiet: bool) -> bool:
-    """Write every bid, which takes a while where there are many; whether all are written."""
+    """Write every bid; returns whether all are written. Many bids take a while."""
     if not quiet and sys.stderr.isatty():
         click.echo(f"writing {file} ...", err=True)
     try:

@@ -12,10 +12,10 @@ import click
 from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
 from muster.cli.real_robots import (
-    Wishes,
+    RealRunOptions,
     carried_out,
     from_here,
-    read_wanted,
+    read_given_plan,
     real_options,
     reported,
     require_outputs,
@@ -71,8 +71,8 @@ def command(
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
-    Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION it waits for command_interface/load and start. Ctrl-C
-    stops all robots. The exit code is 4 if a robot still flies or drives at the end.
+    Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION the command waits for command_interface/load and start.
+    Ctrl-C stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
     from muster.bridges.ros1.extra import require_rospy
 
@@ -80,13 +80,13 @@ def command(
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
-    wishes = Wishes(**asked)
+    options = RealRunOptions(**asked)
     if mission is None:
-        require_none_without_mission(plan=wishes.plan)
-    _require_one_mission(wishes, stay)
-    require_outputs(wishes, () if mission is None else mission.files)
-    loaded = None if mission is None else mission.load(verbose=wishes.verbose)
-    given = None if loaded is None else read_wanted(wishes, loaded)
+        require_none_without_mission(plan=options.plan)
+    _require_one_mission(options, stay)
+    require_outputs(options, () if mission is None else mission.files)
+    loaded = None if mission is None else mission.load(verbose=options.verbose)
+    given = None if loaded is None else read_given_plan(options, loaded)
 
     def fleet_of(its: Mission) -> Ros1Fleet:
         return Ros1Fleet(
@@ -101,42 +101,42 @@ def command(
 
     become_node("muster", master)
     try:
-        own = ("--seed", str(wishes.seed), "--time-limit", str(wishes.time_limit))
+        own = ("--seed", str(options.seed), "--time-limit", str(options.time_limit))
         node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
-        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, wishes), node, master, begins=not on_start)
+        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
     finally:
         leave()
 
 
-def _require_one_mission(wishes: Wishes, stay: bool) -> None:
-    """A file holds what came of one mission."""
+def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
+    """Refuse output files beside --stay: each holds the results of one mission."""
     for name in ("record", "html", "plot", "gantt"):
-        if stay and getattr(wishes, name) is not None:
+        if stay and getattr(options, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
 
 
 @dataclass(frozen=True)
 class _Work:
-    """How missions are carried out, whichever they are."""
+    """What is the same for every mission that is carried out."""
 
     fleet_of: Callable[[Mission], Ros1Fleet]
     plan: Plan | None
     wait_s: float
     stay: bool
-    wishes: Wishes
+    options: RealRunOptions
 
 
 def _with_nodes(
     mission: Mission | None, work: _Work, node: tuple[str, ...], master: str | None, *, begins: bool
 ) -> int:
-    """Carry missions out while the nodes beside this one live; returns the exit code.
+    """Carry missions out while the other nodes run; returns the exit code.
 
     Parameters
     ----------
     node
         the command that runs such a node.
     begins
-        whether the mission begins before anybody calls `start`.
+        whether the mission begins without a call of `start`.
     """
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
@@ -147,7 +147,7 @@ def _with_nodes(
         controller.load(mission)
         if begins:
             controller.start()
-    elif not work.wishes.quiet:
+    elif not work.options.quiet:
         click.echo("waits for command_interface/load and start", err=True)
     with ctrl_c_halts(TO_END) as asked:
         children = Children(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
@@ -166,14 +166,14 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
     Raises
     ------
     MusterError
-        if that cannot be done; with --stay that is told, and the next mission may be loaded.
+        if that fails; with --stay the message is published, and the next mission may be loaded.
     """
     mission, code, reason = controller.await_start(), DONE, ""
     try:
         outcome = None if mission is None else _through(mission, controller, work, children)
         if mission is not None and outcome is not None and not children.fault:
             report, states = outcome
-            code = reported(mission, report, work.wishes, controller.halt, _LEFT, states)
+            code = reported(mission, report, work.options, controller.halt, _LEFT, states)
         elif not children.fault and controller.halt.is_set():
             click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
             code = INTERRUPTED
@@ -189,21 +189,21 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
 def _through(
     mission: Mission, controller: Controller, work: _Work, children: Children
 ) -> tuple[Report, list[FinalState]] | None:
-    """Wait for robots, plan, and carry the plan out; None if it was halted before it began."""
+    """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.running.live import wait_for_robots
 
-    fleet, wishes = work.fleet_of(mission), work.wishes
+    fleet, options = work.fleet_of(mission), work.options
     try:
         wait_for_robots(fleet, controller.halt, work.wait_s)
         if controller.halt.is_set():
             return None
         there = from_here(mission, fleet)
-        plan = work.plan or controller.plan(there, seed=wishes.seed, time_limit=wishes.time_limit)
+        plan = work.plan or controller.plan(there, seed=options.seed, time_limit=options.time_limit)
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        report = carried_out(there, plan, fleet, wishes, controller.halt, [controller.board])
+        report = carried_out(there, plan, fleet, options, controller.halt, [controller.board])
         return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()

@@ -9,11 +9,11 @@ import click
 from muster.cli.exits import INTERRUPTED
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
-    Wishes,
+    RealRunOptions,
     carried_out,
     from_here,
     planned,
-    read_wanted,
+    read_given_plan,
     real_options,
     reported,
     require_outputs,
@@ -60,14 +60,14 @@ def command(
     """
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.middleware import open_wire
+    from muster.bridges.ros2.open_wire import open_wire
     from muster.bridges.ros2.port import Arrival
     from muster.running.live import wait_for_robots
 
-    wishes = Wishes(**asked)
-    require_outputs(wishes, mission.files)
-    loaded = mission.load(verbose=wishes.verbose)
-    given = read_wanted(wishes, loaded)
+    options = RealRunOptions(**asked)
+    require_outputs(options, mission.files)
+    loaded = mission.load(verbose=options.verbose)
+    given = read_given_plan(options, loaded)
     with ctrl_c_halts(TO_END) as halt:
         fleet = Ros2Fleet(
             loaded,
@@ -80,12 +80,12 @@ def command(
         try:
             wait_for_robots(fleet, halt, wait_s, _NEEDED[give])
             there = from_here(loaded, fleet)
-            plan = given or planned(wishes, there)
+            plan = given or planned(options, there)
             if halt.is_set():
                 click.echo("interrupted; nothing was sent", err=True)
                 return INTERRUPTED
-            report = carried_out(there, plan, fleet, wishes, halt)
+            report = carried_out(there, plan, fleet, options, halt)
             states = final_states_by_telemetry(fleet, there, fleet.not_told)
         finally:
             fleet.close()
-    return reported(there, report, wishes, halt, "the robots were told to stay where they are", states)
+    return reported(there, report, options, halt, "the robots were told to stay where they are", states)

@@ -17,7 +17,7 @@ from muster.mission.errors import MusterError
 @click.option("--time-limit", type=float, default=2.0)
 @click.argument("duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner"]))
 def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float) -> None:
-    """Do a DUTY until standard input ends."""
+    """Run a node until standard input ends."""
     from muster.bridges.discovery import topics_in
     from muster.bridges.ros1.node_lifetime import live
 

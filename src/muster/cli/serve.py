@@ -97,7 +97,7 @@ def command(
 ) -> int:
     """Open mission control: plan, watch and steer missions in the browser.
 
-    With a MISSION its page is the first. Ctrl-C ends it; missions under way go on when it is started again.
+    With a MISSION its page is the first. Ctrl-C ends the server; missions under way go on when it is started again.
     """
     _require_extra()
     if new_token is not None:
@@ -124,7 +124,7 @@ def _warn_of_password(database: str | None) -> None:
 
 
 def _require_extra() -> None:
-    """Say what to install where a part of mission control is missing, without importing what is there."""
+    """Name the extra to install where a library is missing, without importing those that are installed."""
     from importlib.util import find_spec
 
     if any(find_spec(name) is None for name in ("alembic", "fastapi", "nicegui", "prometheus_client", "sqlalchemy")):
@@ -149,7 +149,7 @@ def _print_token(name: str, role: Any, file: Path | None) -> int:
 
 
 def _add_line(file: Path, line: str, *, is_new: bool) -> None:
-    """Write a line of tokens behind the others: at once, so that whoever adds one meanwhile has a line of its own."""
+    """Append a line of tokens in one write, so that two writers do not mix their lines."""
     descriptor = os.open(
         file, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o644
     )  # no secret: a service that runs as somebody else reads it
@@ -172,7 +172,7 @@ def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]
 
 
 def _require_usable(settings: Settings) -> None:
-    """Find out before anything is opened that it cannot be served in this way."""
+    """Refuse options that exclude each other, before anything is opened."""
     from muster.server.security.serving_rules import require_safe
     from muster.server.serving import require_certificate
 
@@ -188,7 +188,7 @@ def _require_usable(settings: Settings) -> None:
 
 
 def _served(settings: Settings, mission: str | None, *, opens: bool, quiet: bool, verbose: bool) -> int:
-    """Serve until it is ended; returns the exit code."""
+    """Serve until interrupted; returns the exit code."""
     from muster.server.logs import begin_logs
     from muster.server.serving import listening, serve
 
@@ -216,7 +216,7 @@ def _served(settings: Settings, mission: str | None, *, opens: bool, quiet: bool
 
 @contextmanager
 def _collecting_later() -> Iterator[Callable[[], None]]:
-    """Leave the garbage collector out of the start, in which hardly anything is garbage; gives what ends that."""
+    """Switch the garbage collector off for the start, which makes little garbage; returns what switches it on."""
 
     def begin() -> None:
         gc.freeze()  # what was made so far stays: it need not be looked at again and again
@@ -249,7 +249,7 @@ async def _mission_page(app: FastAPI, mission: str) -> str:
 
 
 def _address(settings: Settings, port: int) -> str:
-    """What to type into a browser on this machine, or another one."""
+    """The address of the server for a browser."""
     scheme = "http" if settings.certificate is None else "https"
     host = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(settings.host, settings.host)  # noqa: S104
     host = f"[{host}]" if ":" in host and not host.startswith("[") else host

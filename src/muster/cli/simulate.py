@@ -1,4 +1,4 @@
-"""`muster simulate`: a plan carried out by moving robots, with what it cost beside what was planned."""
+"""`muster simulate`: carry a plan out in a simulated world; the report compares it with the plan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from muster.cli.auction_options import method_options, terms_of, terms_options
 from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
-from muster.cli.live_output import foxglove_option, shown_live, tell_line
+from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
     Finite,
     MissionFile,
@@ -94,7 +94,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     "--speed",
     type=Finite(0.001, 1e6),
     metavar="X",
-    help="X times real time, telling events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
+    help="X times real time, printing events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
 )
 @click.option(
     "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
@@ -150,12 +150,12 @@ def command(
     verbose: bool,
     **others: Any,
 ) -> int:
-    """Carry out a plan of a MISSION with moving robots, in virtual time, and say what it took.
+    """Carry out a plan of a MISSION in a simulated world, in virtual time, and report its cost.
 
-    Robots keep their speeds and go around each other; the mission's events happen, and what is left is planned again.
+    Robots keep their speeds and avoid each other. The mission's events happen, and the tasks left are planned again.
 
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
-    each decides for itself what to do next. They talk in real time.
+    each decides for itself what to do next. They exchange messages in real time.
     """
     _check_together(negotiate)
     require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan,))
@@ -188,7 +188,7 @@ def command(
             noise=noise,
             speed=speed,
             record=file,
-            on_line=tell_line if speed is not None and not quiet else None,
+            on_line=print_event_line if speed is not None and not quiet else None,
             observers=observers,
             film=footage,
             on_look=looks,
@@ -209,7 +209,7 @@ def command(
 
 
 def _check_together(negotiate: bool) -> None:
-    """Options that mean something with --negotiate, or without it, alone."""
+    """Refuse options that go only with --negotiate, or only without it."""
     context = click.get_current_context()
     given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     wrong = given.intersection(_OF_A_PLAN if negotiate else _OF_A_NEGOTIATION)
@@ -219,7 +219,7 @@ def _check_together(negotiate: bool) -> None:
 
 
 def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> CameraPictures | None:
-    """Who keeps what cameras see, where that is wanted."""
+    """What collects the pictures of cameras; None where no option asks for them."""
     if found is None and cameras is None:
         return None
     from muster.report.camera_pictures import CameraPictures
@@ -244,7 +244,7 @@ def _negotiation(method: str, transport: str, others: Mapping[str, Any], setting
 
 
 def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
-    """A plan made now.
+    """A plan of the default allocator.
 
     Raises
     ------
@@ -265,7 +265,7 @@ def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
 
 
 def noise_of(noises: tuple[str, ...]) -> Noise:
-    """What `--noise KIND=AMOUNT` gives."""
+    """The noise of `--noise KIND=AMOUNT`."""
     from muster.simulation import Noise
 
     kinds = [field.name for field in fields(Noise)]

@@ -16,7 +16,7 @@ def print_table(
 ) -> None:
     """Print a table; columns named in `right` are set to the right.
 
-    Where there is little room words fold, figures never: a table that needs more room than the terminal has takes it.
+    In a narrow terminal words wrap and figures do not: a table may be wider than the terminal.
     """
     from rich import box
     from rich.table import Table
@@ -41,7 +41,7 @@ def print_table(
 
 
 def _widths(columns: Sequence[tuple[str, Sequence[str]]], right: Sequence[str], room: int) -> list[int]:
-    """Give columns (head, cells) the width of their cells; where there is no room for that, narrow ones grow first."""
+    """Widths of columns (head, cells): those of their cells; without room for that, narrow columns grow first."""
     wanted, widths = [], []
     for head, cells in columns:
         lines = [line for cell in (head, *cells) for line in cell.split("\n")]
@@ -56,7 +56,7 @@ def _widths(columns: Sequence[tuple[str, Sequence[str]]], right: Sequence[str], 
 
 
 def _whole(widths: Sequence[int]) -> int:
-    """The width of a table with such columns: three spaces between two of them, one before and one after."""
+    """The width of a table: three spaces between columns, one before and one after."""
     return sum(widths) + 3 * len(widths) - 1
 
 

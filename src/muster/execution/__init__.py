@@ -1,7 +1,7 @@
 """Carrying a plan out: dispatch, monitoring, re-allocation. Robots are reached through ports alone."""
 
 from muster.allocation.rewiring import rewire
-from muster.execution.completed_work import Deed, Past
+from muster.execution.completed_work import CompletedTask, CompletedWork
 from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision
@@ -11,12 +11,12 @@ from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of
 
 __all__ = [
-    "Deed",
+    "CompletedTask",
+    "CompletedWork",
     "ExecutionEvent",
     "Executor",
     "Limits",
     "Observer",
-    "Past",
     "Reallocation",
     "Recorder",
     "Report",

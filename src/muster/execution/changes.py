@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from muster.execution.robot_state import Activity, Hand
+from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import place
 from muster.execution.travel import Travel
@@ -52,11 +52,11 @@ class Changes:
 
     mission: Mission
     ledger: Ledger
-    crew: dict[str, Hand]
+    crew: dict[str, RobotState]
     ports: Mapping[str, RobotPort]
     travel: Travel
 
-    def take(self, event: Event, now: float, reason: str = "") -> Iterator[Change]:
+    def apply(self, event: Event, now: float, reason: str = "") -> Iterator[Change]:
         """Let an event happen; yields what asks for a new plan.
 
         That a robot falls silent is for the monitor to notice: nothing is done here. `reason` is why a robot fails.
@@ -67,9 +67,9 @@ class Changes:
             if the event names a robot or task that there is not, or one anew that there is, or a robot without port.
         """
         if event.robot_fails is not None:
-            yield from self.put_out(self._hand(event.robot_fails), FAILED, now, reason)
+            yield from self.exclude(self._robot_state(event.robot_fails), FAILED, now, reason)
         elif event.robot_returns is not None:
-            yield from self.take_back(self._hand(event.robot_returns), now)
+            yield from self.readmit(self._robot_state(event.robot_returns), now)
         elif event.robot_joins is not None:
             yield self._join(event.robot_joins, now)
         elif event.new_task is not None:
@@ -81,23 +81,23 @@ class Changes:
         elif event.delay_task is not None:
             yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
 
-    def put_out(self, hand: Hand, why: str, now: float, detail: str = "") -> Iterator[Change]:
+    def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
         """A robot takes no part any more: what it was to do is free, also what it was doing."""
-        if hand.out == FAILED or (hand.out and why != FAILED):
+        if state.out == FAILED or (state.out and why != FAILED):
             return
-        hand.out, hand.out_s = why, now
-        if hand.route:
-            self.ledger.give_up(hand.route[0])
-        hand.stop(now)
-        yield Change(why, {"robot": hand.robot.id} | ({"reason": detail} if detail else {}))
+        state.out, state.out_s = why, now
+        if state.route:
+            self.ledger.give_up(state.route[0])
+        state.stop(now)
+        yield Change(why, {"robot": state.robot.id} | ({"reason": detail} if detail else {}))
 
-    def take_back(self, hand: Hand, now: float) -> Iterator[Change]:
+    def readmit(self, state: RobotState, now: float) -> Iterator[Change]:
         """A robot takes part again, from where it is."""
-        if hand.out:
-            hand.out, hand.heard_s, hand.stuck_before = "", now, False
-            self.ledger.unblock(hand.robot.id)
-            hand.stop(now)
-            yield Change("robot_returns", {"robot": hand.robot.id})
+        if state.out:
+            state.out, state.last_heard_s, state.stuck_before = "", now, False
+            self.ledger.unblock(state.robot.id)
+            state.stop(now)
+            yield Change("robot_returns", {"robot": state.robot.id})
 
     def require_newcomer(self, robot: Robot) -> None:
         """Raise ParameterError where a robot cannot join: its id is taken, or it does not fit the mission."""
@@ -109,7 +109,7 @@ class Changes:
 
     def _join(self, robot: Robot, now: float) -> Change:
         self.require_newcomer(robot)
-        self.crew[robot.id] = new_hand(self.mission, robot, self.ports, now)
+        self.crew[robot.id] = new_robot_state(self.mission, robot, self.ports, now)
         return Change("robot_joins", {"robot": plain(robot)})
 
     def _add(self, task: Task) -> Change:
@@ -121,7 +121,7 @@ class Changes:
 
     def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
         """A mission with these robots and tasks, and those that there are, must be one."""
-        there = {robot.id: robot for robot in (*self.mission.robots, *(hand.robot for hand in self.crew.values()))}
+        there = {robot.id: robot for robot in (*self.mission.robots, *(state.robot for state in self.crew.values()))}
         try:
             self.mission.at_once(robots=(*there.values(), *robots), tasks=(*self.ledger.tasks.values(), *tasks))
         except MissionError as error:
@@ -134,8 +134,8 @@ class Changes:
             return
         self._leave(task, now)
         self.ledger.withdraw(task, now)
-        for hand in self.crew.values():
-            hand.route = [name for name in hand.route if name != task]
+        for state in self.crew.values():
+            state.route = [name for name in state.route if name != task]
         yield Change("cancel_task", {"task": task})
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
@@ -161,14 +161,14 @@ class Changes:
 
     def _leave(self, task: str, now: float) -> None:
         """Stop the robot that is at a task or on the way to it."""
-        hand = self._at(task)
-        if hand is not None and hand.activity not in (Activity.IDLE, Activity.RETURNING):
-            hand.stop(now)
+        state = self._at(task)
+        if state is not None and state.activity not in (Activity.IDLE, Activity.RETURNING):
+            state.stop(now)
 
-    def _at(self, task: str) -> Hand | None:
-        return next((hand for hand in self.crew.values() if hand.route[:1] == [task]), None)
+    def _at(self, task: str) -> RobotState | None:
+        return next((state for state in self.crew.values() if state.route[:1] == [task]), None)
 
-    def _hand(self, robot: str) -> Hand:
+    def _robot_state(self, robot: str) -> RobotState:
         if robot not in self.crew:
             raise ParameterError(f"robot: {shown(robot)}; expected {' or '.join(self.crew)}")
         return self.crew[robot]
@@ -179,7 +179,7 @@ class Changes:
         return task
 
 
-def new_hand(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float) -> Hand:
+def new_robot_state(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float) -> RobotState:
     """A robot that begins to take part.
 
     Raises
@@ -191,7 +191,9 @@ def new_hand(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now
         raise ParameterError(f"ports: no port for robot {shown(robot.id)}; expected one for each robot")
     home = robot.place_at_end(mission.rules)
     in_time = mission.rules.usage == "time"
-    return Hand(robot, ports[robot.id], None if home is None else place(home), in_time, heard_s=now, since_s=now)
+    return RobotState(
+        robot, ports[robot.id], None if home is None else place(home), in_time, last_heard_s=now, since_s=now
+    )
 
 
 def may_bring_work(event: Event, *, open_tasks: bool) -> bool:

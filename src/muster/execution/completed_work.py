@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from muster.execution.changes import FAILED
-from muster.execution.robot_state import Hand
+from muster.execution.robot_state import RobotState
 from muster.execution.task_ledger import Ledger
 
 
 @dataclass(frozen=True, kw_only=True)
-class Deed:
+class CompletedTask:
     """A task that was done: by whom, when (mission's clock), and usage by the plan and as measured."""
 
     robot: str
@@ -23,7 +23,7 @@ class Deed:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Past:
+class CompletedWork:
     """What is known of the time before.
 
     Parameters
@@ -36,14 +36,14 @@ class Past:
         by robot what it had used, in the mission's unit; since when it takes no part.
     """
 
-    done: Mapping[str, Deed] = field(default_factory=dict)
+    done: Mapping[str, CompletedTask] = field(default_factory=dict)
     cancelled: Mapping[str, float] = field(default_factory=dict)
     delays_s: Mapping[str, float] = field(default_factory=dict)
     barred: Mapping[str, str] = field(default_factory=dict)
     used: Mapping[str, float] = field(default_factory=dict)
     failed_s: Mapping[str, float] = field(default_factory=dict)
 
-    def recall(self, ledger: Ledger, crew: Mapping[str, Hand]) -> None:
+    def recall(self, ledger: Ledger, crew: Mapping[str, RobotState]) -> None:
         """Write it into a ledger and a crew that are new."""
         for task, deed in self.done.items():
             ledger.arrivals_s[task], ledger.starts_s[task] = deed.arrives_s, deed.starts_s

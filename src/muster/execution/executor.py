@@ -11,19 +11,19 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
-from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_hand
-from muster.execution.completed_work import Past
+from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_robot_state
+from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
 from muster.execution.monitor import Limits
-from muster.execution.reallocation import Reallocation, Revision, told, usage_ahead
+from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
-from muster.execution.remaining_problem import Rest
+from muster.execution.remaining_problem import RemainingMission
 from muster.execution.report import Account
-from muster.execution.robot_state import Activity, Hand
-from muster.execution.situation import required_routes, rest_of, whole_plan
-from muster.execution.supervision import Overseer
+from muster.execution.robot_state import Activity, RobotState
+from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
+from muster.execution.supervision import Supervisor
 from muster.execution.task_ledger import Ledger
-from muster.execution.task_motion import Doer, Way, straight
+from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
@@ -50,7 +50,7 @@ class Executor:
         what is to be done, with the events that happen meanwhile; and how. The rules that the plan ignores do not hold.
     ports
         for each robot how it is reached. A robot that joins has its port here by then.
-    doing
+    plan_motion
         what a task makes a robot do; by its action by default.
     way
         the places a robot passes from one place to another, between the way points of an action too.
@@ -82,20 +82,20 @@ class Executor:
         plan: Plan,
         ports: Mapping[str, RobotPort],
         *,
-        doing: Doer = actions.plan,
+        plan_motion: MotionPlanner = actions.plan,
         way: Way = straight,
         travel: Travel | None = None,
-        replan: Callable[[Rest], Revision] | None = None,
+        replan: Callable[[RemainingMission], Revision] | None = None,
         limits: Limits | None = None,
         observer: Observer | None = None,
         now: float = 0.0,
-        past: Past | None = None,
+        past: CompletedWork | None = None,
         peers: Peers | None = None,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored)
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
-        self.crew = {robot.id: new_hand(mission, robot, ports, now) for robot in own}
+        self.crew = {robot.id: new_robot_state(mission, robot, ports, now) for robot in own}
         self.ended_s: float | None = None
         self.events: list[ExecutionEvent] = []
         self.revisions: list[Revision] = []
@@ -106,13 +106,13 @@ class Executor:
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
         may_begin = None if peers is None else peers.may_begin
-        self._dispatch = Dispatch(self.ledger, self._capacity, doing, way, self.tell, may_begin)
-        self._overseer = Overseer(
-            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.tell, now
+        self._dispatch = Dispatch(self.ledger, self._capacity, plan_motion, way, self.emit, may_begin)
+        self._supervisor = Supervisor(
+            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.emit, now
         )
         self._script = sorted(mission.events, key=lambda event: event.at_s)
         self._asked: list[Change] = []
-        self._left_out = {item.task: told(item.reasons) for item in plan.unassigned if item.reasons}
+        self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
         self.begun_s = now if past is None else 0.0
         self._stood_still_at = -1
@@ -138,13 +138,13 @@ class Executor:
     @property
     def idle(self) -> bool:
         """Whether nobody of the crew has anything to do, or a way to go."""
-        ways = [hand for hand in self._present if hand.activity is not Activity.IDLE]
-        return not ways and not any(hand.route or self._dispatch.goes_home(hand) for hand in self._present)
+        ways = [state for state in self._present if state.activity is not Activity.IDLE]
+        return not ways and not any(state.route or self._dispatch.goes_home(state) for state in self._present)
 
     @property
     def due_s(self) -> float:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
-        available = [hand.robot.available_from_s for hand in self._present if hand.route]
+        available = [state.robot.available_from_s for state in self._present if state.route]
         times = [*(event.at_s for event in self._script[:1]), *available]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
@@ -156,24 +156,24 @@ class Executor:
         Raises
         ------
         ParameterError
-            if the event does not fit (see `Changes.take`).
+            if the event does not fit (see `Changes.apply`).
         """
-        changes = list(self._changes.take(event, self.now_s, reason))
+        changes = list(self._changes.apply(event, self.now_s, reason))
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
-            self.tell("without_effect", plain(event))
+            self.emit("without_effect", plain(event))
 
-    def stand(self) -> None:
-        """Let robots stop where they are; nothing is to be asked of this until `go_on`."""
-        for hand in self._present:
-            hand.stand(self.now_s)
+    def pause(self) -> None:
+        """Let robots stop where they are; nothing is to be asked of this until `resume`."""
+        for state in self._present:
+            state.stand(self.now_s)
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Let robots go on with work that they stopped; at the next tick those go on that were under way."""
-        for hand in self._present:
-            if hand.activity is Activity.WORKING:
-                hand.send_again(self.now_s)
+        for state in self._present:
+            if state.activity is Activity.WORKING:
+                state.send_again(self.now_s)
 
     def require_newcomer(self, robot: Robot) -> None:
         """Raise ParameterError where a robot cannot join; its port need not be there yet."""
@@ -184,7 +184,7 @@ class Executor:
         try:
             self.report(event, reason)
         except ParameterError as error:
-            self.tell("event_refused", {"reason": str(error)})
+            self.emit("event_refused", {"reason": str(error)})
             return False
         return True
 
@@ -194,7 +194,7 @@ class Executor:
 
     def end_elsewhere(self, task: str, robot: str) -> None:
         """A robot that is none of the crew has done a task; work of the crew on it that was begun goes on."""
-        at_work = any(hand.activity is Activity.WORKING and hand.route[0] == task for hand in self.crew.values())
+        at_work = any(state.activity is Activity.WORKING and state.route[0] == task for state in self.crew.values())
         if not at_work and task not in self.ledger.ends_s:
             self.ledger.end(task, robot, self.now_s)
 
@@ -204,59 +204,59 @@ class Executor:
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
         first = len(self.events)
-        self.come_to(now)
+        self.set_clock(now)
         self._hear()
-        for hand in self._present:
-            self._dispatch.advance(hand, now)
+        for state in self._present:
+            self._dispatch.advance(state, now)
         self._follow_script()
-        self._ask(self._overseer.look(now))
+        self._ask(self._supervisor.look(now))
         self._go_on()
         self._notice_standstill()
         self._end_if_over()
         return self.events[first:]
 
-    def come_to(self, now: float) -> None:
+    def set_clock(self, now: float) -> None:
         """Let the clock go on without a look at anybody: what is reported or told next happens then."""
         if now < self.now_s:
             raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
         self.now_s = now
 
     @property
-    def _present(self) -> list[Hand]:
-        return [hand for hand in self.crew.values() if not hand.out]
+    def _present(self) -> list[RobotState]:
+        return [state for state in self.crew.values() if not state.out]
 
     def _hear(self) -> None:
-        for hand in self.crew.values():
-            said = hand.hear(self.now_s)
+        for state in self.crew.values():
+            said = state.hear(self.now_s)
             if said is not None:
-                self._observer.on_telemetry(self.now_s, hand.robot.id, said)
-                if hand.out == SILENT:
-                    self._ask(self._changes.take_back(hand, self.now_s))
+                self._observer.on_telemetry(self.now_s, state.robot.id, said)
+                if state.out == SILENT:
+                    self._ask(self._changes.readmit(state, self.now_s))
 
     def _follow_script(self) -> None:
         """Let those events of the mission file happen that are due."""
         while self._script and self._script[0].at_s <= self.now_s:
             self.report_if_it_fits(self._script.pop(0))
 
-    def _capacity(self, hand: Hand) -> float | None:
-        return None if "capacity" in self.planned.ignored else hand.capacity
+    def _capacity(self, state: RobotState) -> float | None:
+        return None if "capacity" in self.planned.ignored else state.capacity
 
-    def _recall(self, past: Past) -> None:
+    def _recall(self, past: CompletedWork) -> None:
         """Robots keep of their routes what is left to do; all of it is planned anew from where they are."""
         past.recall(self.ledger, self.crew)
         left = {task.id for task in self.ledger.open} - past.barred.keys()
-        for hand in self.crew.values():
-            hand.route = [] if hand.out else [task for task in hand.route if task in left]
+        for state in self.crew.values():
+            state.route = [] if state.out else [task for task in state.route if task in left]
         self._script = [event for event in self._script if event.at_s > self.now_s]
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
         if not self._alone:
             return
-        waiting = [hand.route[0] for hand in self._present if hand.activity is Activity.WAITING]
+        waiting = [state.route[0] for state in self._present if state.activity is Activity.WAITING]
         still = all(
-            hand.activity is Activity.WAITING or (hand.activity is Activity.IDLE and not hand.route)
-            for hand in self._present
+            state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
+            for state in self._present
         )
         if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
             self._stood_still_at = len(self.ledger.ends_s)
@@ -269,8 +269,8 @@ class Executor:
         while True:
             if self._asked:
                 self._plan_again()
-            for hand in self._present:
-                self._ask(self._dispatch.send_on(hand, self.now_s))
+            for state in self._present:
+                self._ask(self._dispatch.send_on(state, self.now_s))
             if not self._asked:
                 return
 
@@ -278,33 +278,33 @@ class Executor:
         """Have the rest planned again because of changes."""
         for change in changes:
             self._asked.append(change)
-            self.tell(change.kind, change.data)
+            self.emit(change.kind, change.data)
 
-    def _rest(self) -> Rest:
-        return rest_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
+    def _rest(self) -> RemainingMission:
+        return remaining_mission_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
 
     def _plan_again(self) -> None:
         causes, self._asked = [{"kind": change.kind, **change.data} for change in self._asked], []
         revision = self._replan(self._rest())
-        for hand in self._present:
-            self._dispatch.take_route(hand, revision.routes.get(hand.robot.id, ()), self.now_s)
-        for hand in self.crew.values():
-            if hand.out:
-                hand.route = []
+        for state in self._present:
+            self._dispatch.take_route(state, revision.routes.get(state.robot.id, ()), self.now_s)
+        for state in self.crew.values():
+            if state.out:
+                state.route = []
         fresh = revision.left_out.keys() - self._left_out.keys() - set(revision.dropped)
         left_out = {task: why for task, why in revision.left_out.items() if task in fresh}
         self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
         self.revisions.append(revision)
-        self.tell("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
+        self.emit("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
         self._observer.on_plan(self.now_s, self.plan)
 
     def _end_if_over(self) -> None:
         if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((event.time_s for event in self.events), default=self.begun_s)
-            self.ended_s = max([last, *(hand.begun_s for hand in self._present if hand.done)])
+            self.ended_s = max([last, *(state.begun_s for state in self._present if state.done)])
             for task, reason in self.lost().items():
-                self.tell("lost", {"task": task, "reason": reason})
-            self.tell("mission_ended", {})
+                self.emit("lost", {"task": task, "reason": reason})
+            self.emit("mission_ended", {})
 
     @property
     def _may_bring_work(self) -> bool:
@@ -318,7 +318,7 @@ class Executor:
             objective_planned=self.planned.objective_value,
             ledger=self.ledger,
             lost=self.lost(),
-            used={name: hand.used for name, hand in self.crew.items()},
+            used={name: state.used for name, state in self.crew.items()},
             usage_planned=self.usage_planned,
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=len(self.revisions),
@@ -326,13 +326,15 @@ class Executor:
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
-        under_way = {name for hand in self._present for name in hand.route}
+        under_way = {name for state in self._present for name in state.route}
         gone = {
-            hand.robot.id: f"{OUT[hand.out]} at {round(hand.out_s, 1):g} s" for hand in self.crew.values() if hand.out
+            state.robot.id: f"{OUT[state.out]} at {round(state.out_s, 1):g} s"
+            for state in self.crew.values()
+            if state.out
         }
         return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
 
-    def tell(self, kind: str, data: Mapping[str, Any]) -> None:
+    def emit(self, kind: str, data: Mapping[str, Any]) -> None:
         """Keep, and tell the observer, that something happened now."""
         self.events.append(ExecutionEvent(self.now_s, kind, data))
         self._observer.on_event(self.now_s, kind, data)

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.execution.robot_state import MOVING, Activity, Hand
+from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
@@ -44,59 +44,59 @@ class Limits:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected seconds above 0")
 
 
-def is_silent(hand: Hand, now: float, limits: Limits) -> bool:
+def is_silent(state: RobotState, now: float, limits: Limits) -> bool:
     """Whether telemetry is missed."""
-    return now - hand.heard_s > limits.silent_after_s
+    return now - state.last_heard_s > limits.silent_after_s
 
 
-def is_stuck(hand: Hand, now: float, limits: Limits) -> bool:
+def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
     """Whether a robot that should get on does not: its way grows no shorter, or its work takes far too long."""
-    if hand.activity is Activity.WORKING:
-        return now > hand.nearest_s + 2 * hand.work_s + limits.stuck_after_s
-    if hand.activity not in (Activity.DRIVING, Activity.RETURNING):
+    if state.activity is Activity.WORKING:
+        return now > state.nearest_s + 2 * state.work_s + limits.stuck_after_s
+    if state.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
-    left = hand.way_left_m
-    if left < hand.nearest_m - _LEAST_SHARE * hand.robot.speed_mps * limits.stuck_after_s:
-        hand.nearest_m, hand.nearest_s = left, now
-    arrives = left < _LEAST_SHARE * hand.robot.speed_mps * limits.stuck_after_s
-    return now - hand.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
+    left = state.way_left_m
+    if left < state.nearest_m - _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s:
+        state.nearest_m, state.nearest_s = left, now
+    arrives = left < _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s
+    return now - state.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
 
 
-def seems_late(hand: Hand, now: float, limits: Limits) -> bool:
+def seems_late(state: RobotState, now: float, limits: Limits) -> bool:
     """Whether a robot may soon count as stuck."""
-    works_s = hand.work_s if hand.activity is Activity.WORKING else 0.0
-    return hand.activity in MOVING and now > hand.nearest_s + works_s + limits.stuck_after_s / 2
+    works_s = state.work_s if state.activity is Activity.WORKING else 0.0
+    return state.activity in MOVING and now > state.nearest_s + works_s + limits.stuck_after_s / 2
 
 
-def held_up(crew: Sequence[Hand]) -> list[Hand]:
+def held_up(crew: Sequence[RobotState]) -> list[RobotState]:
     """Those under way who have one before them that stands at work, or is held up itself.
 
     Of two that stand close to their way points at work, the one that is nearer to its own holds the other up.
     """
-    under_way = [hand for hand in crew if hand.activity in MOVING and hand.points_left and hand.robot.radius_m > 0]
-    stand = [hand for hand in under_way if _stands_at_work(hand)]
-    held: list[Hand] = []
+    under_way = [state for state in crew if state.activity in MOVING and state.points_left and state.robot.radius_m > 0]
+    stand = [state for state in under_way if _stands_at_work(state)]
+    held: list[RobotState] = []
     for one in stand:  # grows
-        reached = [hand for hand in under_way if hand not in held and hand is not one and _is_before(one, hand)]
-        reached = [hand for hand in reached if hand not in stand or _off(hand) > _off(one)]
-        stand += [hand for hand in reached if hand not in stand]
+        reached = [state for state in under_way if state not in held and state is not one and _is_before(one, state)]
+        reached = [state for state in reached if state not in stand or _off(state) > _off(one)]
+        stand += [state for state in reached if state not in stand]
         held += reached
     return held
 
 
-def _stands_at_work(hand: Hand) -> bool:
-    still = hand.told is not None and not any(hand.told.velocity)
-    return hand.activity is Activity.WORKING and still and _off(hand) <= hand.robot.radius_m
+def _stands_at_work(state: RobotState) -> bool:
+    still = state.telemetry is not None and not any(state.telemetry.velocity)
+    return state.activity is Activity.WORKING and still and _off(state) <= state.robot.radius_m
 
 
-def _off(hand: Hand) -> float:
-    return math.dist(hand.position, hand.points_left[0])
+def _off(state: RobotState) -> float:
+    return math.dist(state.position, state.points_left[0])
 
 
-def _is_before(other: Hand, hand: Hand) -> bool:
+def _is_before(other: RobotState, state: RobotState) -> bool:
     """Whether a robot cannot get to its next way point without touching another where that is now."""
-    reach = hand.robot.radius_m + other.robot.radius_m + _ASIDE_M
-    return distance_to_piece(other.position, hand.position, hand.points_left[0]) < reach
+    reach = state.robot.radius_m + other.robot.radius_m + _ASIDE_M
+    return distance_to_piece(other.position, state.position, state.points_left[0]) < reach
 
 
 def distance_to_piece(point: Place, start: Place, end: Place) -> float:
@@ -108,13 +108,13 @@ def distance_to_piece(point: Place, start: Place, end: Place) -> float:
     return math.dist(point, [a + share * c for a, c in zip(start, along, strict=True)])
 
 
-def stands_in_the_way(broken: Hand, robot: Robot, points: Sequence[Place]) -> bool:
+def stands_in_the_way(broken: RobotState, robot: Robot, points: Sequence[Place]) -> bool:
     """Whether a robot that is out stands so near one of these points that another cannot get there.
 
     It stands where it was last heard, or as far on as it took to brake.
     """
     reach = broken.robot.radius_m + robot.radius_m
-    last, velocity = broken.position, broken.told.velocity if broken.told is not None else (0.0, 0.0, 0.0)
+    last, velocity = broken.position, broken.telemetry.velocity if broken.telemetry is not None else (0.0, 0.0, 0.0)
     speed, most = math.hypot(*velocity), limits_of(broken.robot).acceleration_mps2
     stood = tuple(c + v * speed / (2 * most) for c, v in zip(last, velocity, strict=True))
     return any(distance_to_piece(point, last, (stood[0], stood[1], stood[2])) < reach for point in points)

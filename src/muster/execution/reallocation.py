@@ -17,7 +17,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewired
 from muster.allocation.search import Parameters, allocate
 from muster.allocation.stop import Stop
-from muster.execution.remaining_problem import Posed, Rest, in_one_line, posed
+from muster.execution.remaining_problem import RemainingMission, RemainingProblem, in_one_line, remaining_problem
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Reason, Unassigned
@@ -86,14 +86,14 @@ class Reallocation:
     hot: float = 1.0
     fill_waiting: bool = False
 
-    def __call__(self, rest: Rest) -> Revision:
+    def __call__(self, rest: RemainingMission) -> Revision:
         """The rest planned again.
 
         Without a crew nothing is done any more.
         """
         if not rest.crew:
             return _nobody(rest)
-        what = posed(rest, self.travel)
+        what = remaining_problem(rest, self.travel)
         problem = what.problem.ready()
         before = _routes_before(problem, rest)
         robot_of = {j: i for i, route in enumerate(before) for j in route[len(problem.beginning(i)) :]}
@@ -129,7 +129,7 @@ class Reallocation:
         return allocate(problem, stop, self.seed, Parameters(hot=self.hot), start).routes
 
 
-def _routes_before(problem: Problem, rest: Rest) -> Routes:
+def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:
     """The plan so far, of the tasks that the problem has; each route begins with the robot's past."""
     routes: Routes = []
     for i, robot in enumerate(problem.robots):
@@ -177,14 +177,14 @@ def _ahead(problem: Problem, i: int, route: list[int]) -> dict[str, float]:
     return ahead
 
 
-def usage_ahead(rest: Rest, travel: Travel) -> dict[str, dict[str, float]]:
+def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, float]]:
     """What each robot will use after each task of the routes as they are; see `Revision.ahead`."""
-    problem = posed(rest, travel).problem
+    problem = remaining_problem(rest, travel).problem
     routes = _routes_before(problem, rest)
     return {robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)}
 
 
-def _revision(rest: Rest, what: Posed, routes: Routes, forced: Iterable[str]) -> Revision:
+def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Iterable[str]) -> Revision:
     problem = what.problem
     planned = {
         robot.id: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :])
@@ -206,7 +206,7 @@ def _revision(rest: Rest, what: Posed, routes: Routes, forced: Iterable[str]) ->
     )
 
 
-def _nobody(rest: Rest) -> Revision:
+def _nobody(rest: RemainingMission) -> Revision:
     names = [task.id for task in rest.tasks]
     return Revision(
         routes={},
@@ -219,13 +219,13 @@ def _nobody(rest: Rest) -> Revision:
     )
 
 
-def _why(item: Unassigned, rest: Rest) -> str:
+def _why(item: Unassigned, rest: RemainingMission) -> str:
     """Why a task is left out; robots that refused it are locked out of the problem, and have a reason of their own."""
     refused = rest.refusals.get(item.task, {})
-    others = told(reason for reason in item.reasons if reason.robot not in refused)
+    others = reasons_in_one_line(reason for reason in item.reasons if reason.robot not in refused)
     return "; ".join(part for part in (in_one_line(refused.items()), others) if part)
 
 
-def told(reasons: Iterable[Reason]) -> str:
+def reasons_in_one_line(reasons: Iterable[Reason]) -> str:
     """Reasons in one line."""
     return in_one_line((reason.robot, f"{reason.reason}: {reason.detail}") for reason in reasons)

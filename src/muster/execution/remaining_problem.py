@@ -24,7 +24,7 @@ _ROUNDING = 1e-9  # relative; by how much a capacity is above what cannot be hel
 
 
 @dataclass(frozen=True, kw_only=True)
-class Standing:
+class RobotSnapshot:
     """Where one robot that takes part stands in the mission.
 
     Parameters
@@ -54,7 +54,7 @@ class Standing:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rest:
+class RemainingMission:
     """What is left of a mission at a time.
 
     Parameters
@@ -79,7 +79,7 @@ class Rest:
     mission: Mission
     ignored: Collection[str]
     now_s: float
-    crew: Sequence[Standing]
+    crew: Sequence[RobotSnapshot]
     tasks: Sequence[Task]
     ended: Collection[str]
     delays_s: Mapping[str, float]
@@ -89,14 +89,14 @@ class Rest:
 
 
 @dataclass(frozen=True)
-class Posed:
+class RemainingProblem:
     """The rest as a problem, and why it does not have some tasks."""
 
     problem: Problem
     hopeless: Mapping[str, str]
 
 
-def posed(rest: Rest, travel: Travel) -> Posed:
+def remaining_problem(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     """The problem that the rest is. There must be a crew."""
     tasks, hopeless = _tasks_with_hope(rest, travel)
     past = _past(rest)
@@ -108,35 +108,35 @@ def posed(rest: Rest, travel: Travel) -> Posed:
     problem = _delayed(rest, replace(problem, known=known))
     problem = _bearable(problem, past)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
-    return Posed(keeping(problem, Plan(routes=routes)), hopeless)
+    return RemainingProblem(keeping(problem, Plan(routes=routes)), hopeless)
 
 
-def _past(rest: Rest) -> dict[str, Task]:
+def _past(rest: RemainingMission) -> dict[str, Task]:
     """For each robot that has one, its past as a task."""
     names = {task.id for task in rest.tasks}
     past = {}
-    for standing in rest.crew:
-        if standing.has_past:
-            name = standing.task or f"{standing.robot.id} {SO_FAR}"
+    for snapshot in rest.crew:
+        if snapshot.has_past:
+            name = snapshot.task or f"{snapshot.robot.id} {SO_FAR}"
             while name in names:
                 name += "'"
-            past[standing.robot.id] = _past_task(rest, standing, name)
+            past[snapshot.robot.id] = _past_task(rest, snapshot, name)
     return past
 
 
-def _past_task(rest: Rest, standing: Standing, name: str) -> Task:
+def _past_task(rest: RemainingMission, snapshot: RobotSnapshot, name: str) -> Task:
     in_time = rest.mission.rules.usage == "time"
-    lasts = standing.used if in_time else max(0.0, standing.free_s - rest.now_s)
+    lasts = snapshot.used if in_time else max(0.0, snapshot.free_s - rest.now_s)
     return Task(
         id=name,
         type=None if rest.mission.suitability is None else SO_FAR,
-        position=standing.spot.point[: rest.mission.dimensions],
-        actuation_cost=0.0 if in_time else standing.used,
-        duration_s=lasts * standing.robot.efficiency,
+        position=snapshot.spot.point[: rest.mission.dimensions],
+        actuation_cost=0.0 if in_time else snapshot.used,
+        duration_s=lasts * snapshot.robot.efficiency,
     )
 
 
-def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, str]]:
+def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task], dict[str, str]]:
     """The tasks that can be planned, as they are now; and why the others cannot."""
     hopeless: dict[str, str] = {}
     hopeful: dict[str, Task] = {}
@@ -150,7 +150,7 @@ def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, 
         else:
             before = tuple(name for name in task.prerequisites if needs_order and name not in rest.ended)
             hopeful[task.id] = replace(task, prerequisites=before, only_robots=robots)
-    sure = {standing.task for standing in rest.crew if standing.task is not None}
+    sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
     while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
         for name in ready:
@@ -162,13 +162,13 @@ def _tasks_with_hope(rest: Rest, travel: Travel) -> tuple[list[Task], dict[str, 
     return [task for name, task in hopeful.items() if name in sure], hopeless
 
 
-def _robots_for(rest: Rest, task: Task) -> tuple[tuple[str, ...] | None, str]:
+def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | None, str]:
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
     lock = None if "lock" in rest.ignored else task.only_robots
     if lock is None and not refused:
         return None, ""
-    crew = [standing.robot.id for standing in rest.crew]
+    crew = [snapshot.robot.id for snapshot in rest.crew]
     meant = crew if lock is None else [name for name in lock if name in crew]
     robots = tuple(name for name in meant if name not in refused)
     if lock is not None and not meant:
@@ -184,7 +184,7 @@ def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:
     return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())
 
 
-def _delayed(rest: Rest, problem: Problem) -> Problem:
+def _delayed(rest: RemainingMission, problem: Problem) -> Problem:
     """With delays, as durations that are right for the robot that has the task, else for the fastest."""
     fastest = max(problem.robots, key=lambda robot: robot.speed_mps).id
     tasks = list(problem.tasks)
@@ -204,7 +204,7 @@ def _lasting(task: Task, duration_s: float) -> Task:
     return replace(task, duration_s=duration_s)
 
 
-def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
+def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     """The mission of which the problem is made. Travel is handed to the problem apart."""
     mission = rest.mission
     rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
@@ -215,29 +215,29 @@ def _mission(rest: Rest, tasks: Sequence[Task]) -> Mission:
         travel=None,
         travel_tables={},
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
-        robots=tuple(_robot(rest, standing) for standing in rest.crew),
+        robots=tuple(_robot(rest, snapshot) for snapshot in rest.crew),
         tasks=tuple(tasks),
     )
 
 
-def _robot(rest: Rest, standing: Standing) -> Robot:
+def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     """A robot from now on. The reserve is kept of what it has left, so that detours may use it up by and by."""
-    robot, mission = standing.robot, rest.mission
+    robot, mission = snapshot.robot, rest.mission
     capacity = robot.work_capacity
     if capacity is not None:
-        left = max(0.0, capacity - standing.used)
-        capacity = standing.used + left * (1 - mission.rules.capacity_reserve)
+        left = max(0.0, capacity - snapshot.used)
+        capacity = snapshot.used + left * (1 - mission.rules.capacity_reserve)
     # Usage of time is the past's duration, of which waiting is no part: it is put before the past.
-    leaves = standing.free_s - standing.used if mission.rules.usage == "time" else rest.now_s
-    if not standing.has_past:
+    leaves = snapshot.free_s - snapshot.used if mission.rules.usage == "time" else rest.now_s
+    if not snapshot.has_past:
         leaves = rest.now_s
     return replace(
         robot,
-        position=standing.spot.point[: mission.dimensions],
-        end_position=None if standing.home is None else standing.home[: mission.dimensions],
+        position=snapshot.spot.point[: mission.dimensions],
+        end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
         work_capacity=capacity,
-        available_from_s=max(0.0, leaves if standing.has_past else max(leaves, robot.available_from_s)),
+        available_from_s=max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s)),
     )
 
 

@@ -1,4 +1,4 @@
-"""One robot of the crew: what it is doing, what it was told, what it said, and what it has used.
+"""One robot of the crew: its activity, its order, its telemetry and its usage.
 
 The availability `a_i` of [tcf-thesis], 5.3.1: a robot is busy while it moves to a task or does it.
 """
@@ -29,7 +29,7 @@ MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
 
 
 @dataclass
-class Hand:
+class RobotState:
     """Working state of one robot.
 
     Parameters
@@ -41,7 +41,7 @@ class Hand:
     in_time
         whether usage is time.
     route
-        tasks that it is still to do, that at hand first.
+        tasks that it is still to do, the current one first.
     out
         why it takes no part now: failed, silent, stuck; empty if it does.
     """
@@ -50,23 +50,23 @@ class Hand:
     port: RobotPort
     home: Place | None
     in_time: bool
-    heard_s: float
+    last_heard_s: float
     route: list[str] = field(default_factory=list)
     done: list[str] = field(default_factory=list)
     out: str = ""
     out_s: float = 0.0  # since when
     activity: Activity = Activity.IDLE
-    told: Telemetry | None = None
-    work: Work | None = None  # at hand
+    telemetry: Telemetry | None = None
+    work: Work | None = None  # at state
     to_task: int = 0  # way points of the last order that lead to the task
     works: bool = False  # whether the order holds the work too
-    delay_s: float = 0.0  # that the work at hand was ordered with
+    delay_s: float = 0.0  # that the current work was ordered with
     at_home: bool = True
     begun_s: float = 0.0  # the activity
-    work_s: float = 0.0  # how long the work at hand takes, delays included
+    work_s: float = 0.0  # how long the current work takes, delays included
     charged: float = 0.0  # usage of works that ended, as far as it was not travelled
     used_before: float = 0.0  # usage at the end of the last task
-    usage_to_task: float = 0.0  # from then to the end of the task at hand, as planned
+    usage_to_task: float = 0.0  # from then to the end of the current task, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
     nearest_m: float = math.inf  # least way left of this order, and when it was reached, or others last held it up
@@ -74,7 +74,7 @@ class Hand:
     stuck_before: bool = False
     warned_of: str = ""  # the task on the way to which its capacity was found too small
     left: Place | None = None  # the last place known to be free: a way point passed
-    home_usage: float = 0.0  # from the exit of the task at hand to `home`, in the mission's unit
+    home_usage: float = 0.0  # from the exit of the current task to `home`, in the mission's unit
     _order: int = 0
     _waypoints: tuple[Waypoint, ...] = ()
 
@@ -85,7 +85,7 @@ class Hand:
 
     @property
     def position(self) -> Place:
-        return self.told.position if self.told is not None else place(self.robot.position)
+        return self.telemetry.position if self.telemetry is not None else place(self.robot.position)
 
     @property
     def refuge(self) -> Place:
@@ -95,12 +95,12 @@ class Hand:
     @property
     def passed(self) -> int:
         """How many way points of the last order it has passed."""
-        return self.told.passed if self.told is not None and self.told.order == self._order else 0
+        return self.telemetry.passed if self.telemetry is not None and self.telemetry.order == self._order else 0
 
     @property
     def refused(self) -> str:
         """Why it will not get to the next way point of the last order; empty while it goes on."""
-        return self.told.refused if self.told is not None and self.told.order == self._order else ""
+        return self.telemetry.refused if self.telemetry is not None and self.telemetry.order == self._order else ""
 
     @property
     def arrived(self) -> bool:
@@ -118,9 +118,9 @@ class Hand:
             self.busy_s += now - self.since_s
         self.since_s = now
         said = self.port.telemetry()
-        if said is None or (self.told is not None and said.time_s <= self.told.time_s):
+        if said is None or (self.telemetry is not None and said.time_s <= self.telemetry.time_s):
             return None
-        self.told, self.heard_s = said, now
+        self.telemetry, self.last_heard_s = said, now
         if self.passed:
             self.left = self._waypoints[self.passed - 1].position
         return said
@@ -129,7 +129,7 @@ class Hand:
         """Order it to pass way points."""
         self._waypoints = tuple(waypoints)
         self._order = self.port.send(self._waypoints)
-        self.turn_to(now, activity)
+        self.begin_activity(now, activity)
 
     def send_again(self, now: float) -> None:
         """Order what is left of the last order."""
@@ -144,7 +144,7 @@ class Hand:
         self._waypoints = ()
         self._order = self.port.cancel()
         self.work = None
-        self.turn_to(now, Activity.IDLE)
+        self.begin_activity(now, Activity.IDLE)
 
     def stand(self, now: float) -> None:
         """Stop for a while: who is under way has to be sent again, who works keeps what is left of the work."""
@@ -154,7 +154,7 @@ class Hand:
         elif self.activity in MOVING:
             self.stop(now)
 
-    def turn_to(self, now: float, activity: Activity) -> None:
+    def begin_activity(self, now: float, activity: Activity) -> None:
         """Go on to another activity under the same order."""
         self.activity, self.begun_s = activity, now
         self.nearest_m, self.nearest_s = math.inf, now
@@ -172,22 +172,22 @@ class Hand:
     @property
     def used(self) -> float:
         """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
-        return self.busy_s if self.in_time else self.charged + (self.told.odometry_m if self.told else 0.0)
+        return self.busy_s if self.in_time else self.charged + (self.telemetry.odometry_m if self.telemetry else 0.0)
 
     @property
     def capacity(self) -> float | None:
         """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
         most = self.robot.work_capacity
-        if most is None or self.told is None or self.told.charge is None:
+        if most is None or self.telemetry is None or self.telemetry.charge is None:
             return most
-        return min(most, self.used + self.told.charge * most)
+        return min(most, self.used + self.telemetry.charge * most)
 
     def work_left_s(self, now: float) -> float:
         """Seconds until the work under way ends, if all goes well."""
         return max(0.0, self.begun_s + self.work_s - now) if self.activity is Activity.WORKING else 0.0
 
     def used_after(self, now: float) -> float:
-        """Usage when the task at hand is done, in the mission's unit; without one, now."""
+        """Usage when the current task is done, in the mission's unit; without one, now."""
         if self.work is None:
             return self.used
         works = self.activity is Activity.WORKING
@@ -199,16 +199,16 @@ class Hand:
 
     @property
     def travel_left_m(self) -> float:
-        """Metres to the entry of the task at hand."""
+        """Metres to the entry of the current task."""
         work_m = self.work.way_m if self.works and self.work is not None else 0.0
         return max(0.0, self.way_left_m - work_m)
 
     def charge_work(self) -> None:
-        """The work at hand has ended: its cost is used up, as far as it was not travelled."""
+        """The current work has ended: its cost is used up, as far as it was not travelled."""
         self.charged += self._stayed_cost
         self.work = None
 
     @property
     def _stayed_cost(self) -> float:
-        """Usage of the work at hand, by distance, that is not travelled."""
+        """Usage of the current work, by distance, that is not travelled."""
         return 0.0 if self.work is None else self.work.stayed_cost_m

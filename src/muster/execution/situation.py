@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from muster.execution.remaining_problem import Rest, Standing
-from muster.execution.robot_state import Activity, Hand
+from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
+from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
 from muster.execution.travel import Spot
 from muster.mission.errors import ParameterError
@@ -36,44 +36,48 @@ def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[str, ...]]:
     return routes
 
 
-def rest_of(mission: Mission, plan: Plan, crew: Mapping[str, Hand], ledger: Ledger, now: float) -> Rest:
+def remaining_mission_of(
+    mission: Mission, plan: Plan, crew: Mapping[str, RobotState], ledger: Ledger, now: float
+) -> RemainingMission:
     """What is left of the mission."""
-    present = [hand for hand in crew.values() if not hand.out]
-    under_way = {hand.route[0]: hand for hand in present if hand.activity is Activity.WORKING}
-    return Rest(
+    present = [state for state in crew.values() if not state.out]
+    under_way = {state.route[0]: state for state in present if state.activity is Activity.WORKING}
+    return RemainingMission(
         mission=mission,
         ignored=plan.ignored,
         now_s=now,
-        crew=[_standing(hand, now) for hand in present],
+        crew=[_snapshot(state, now) for state in present],
         tasks=[task for task in ledger.open if task.id not in under_way],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,
-        routes={hand.robot.id: [name for name in hand.route if name not in under_way] for hand in present},
-        former={name: hand.robot.id for hand in crew.values() for name in hand.route if name not in under_way},
+        routes={state.robot.id: [name for name in state.route if name not in under_way] for state in present},
+        former={name: state.robot.id for state in crew.values() for name in state.route if name not in under_way},
     )
 
 
-def _standing(hand: Hand, now: float) -> Standing:
-    works = hand.activity is Activity.WORKING
-    point = hand.work.exit if works and hand.work is not None else hand.position
-    at_task = hand.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
-    before = hand.done[-1] if hand.done and not hand.at_home else hand.robot.id
-    return Standing(
-        robot=replace(hand.robot, work_capacity=hand.capacity),
-        home=hand.home,
-        spot=Spot(point, hand.route[0] if at_task else before, point if works else hand.refuge),
-        free_s=now + hand.work_left_s(now),
-        used=hand.used_after(now) if works else hand.used,
-        task=hand.route[0] if works else None,
+def _snapshot(state: RobotState, now: float) -> RobotSnapshot:
+    works = state.activity is Activity.WORKING
+    point = state.work.exit if works and state.work is not None else state.position
+    at_task = state.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
+    before = state.done[-1] if state.done and not state.at_home else state.robot.id
+    return RobotSnapshot(
+        robot=replace(state.robot, work_capacity=state.capacity),
+        home=state.home,
+        spot=Spot(point, state.route[0] if at_task else before, point if works else state.refuge),
+        free_s=now + state.work_left_s(now),
+        used=state.used_after(now) if works else state.used,
+        task=state.route[0] if works else None,
     )
 
 
 def whole_plan(
-    mission: Mission, plan: Plan, crew: Mapping[str, Hand], ledger: Ledger, left_out: Mapping[str, str]
+    mission: Mission, plan: Plan, crew: Mapping[str, RobotState], ledger: Ledger, left_out: Mapping[str, str]
 ) -> Plan:
     """The plan of the whole mission, what is done included; without figures."""
-    routes = tuple(Route(hand.robot.id, (*hand.done, *(hand.route if not hand.out else ()))) for hand in crew.values())
+    routes = tuple(
+        Route(state.robot.id, (*state.done, *(state.route if not state.out else ()))) for state in crew.values()
+    )
     there = {name for route in routes for name in route.tasks}
     return Plan(
         mission=mission.name,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from muster.execution.changes import OUT
-from muster.execution.robot_state import Activity, Hand
+from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class RobotStatus:
     waits_for
         the prerequisites for which it waits there.
     route
-        tasks that it is still to do, that at hand first.
+        tasks that it is still to do, the current one first.
     used, usage_left
         in the mission's unit; None left: any amount.
     charge
@@ -63,23 +63,23 @@ class Status:
 def status_of(executor: Executor) -> Status:
     """How the mission that is carried out stands."""
     limited = "capacity" not in executor.planned.ignored
-    robots = {name: _robot(hand, executor.ledger, limited=limited) for name, hand in executor.crew.items()}
+    robots = {name: _robot(state, executor.ledger, limited=limited) for name, state in executor.crew.items()}
     return Status(robots, {task: _state(task, executor) for task in executor.ledger.tasks})
 
 
-def _robot(hand: Hand, ledger: Ledger, *, limited: bool) -> RobotStatus:
-    at_task = hand.activity in _AT_TASK and bool(hand.route)
-    capacity = hand.capacity if limited else None
+def _robot(state: RobotState, ledger: Ledger, *, limited: bool) -> RobotStatus:
+    at_task = state.activity in _AT_TASK and bool(state.route)
+    capacity = state.capacity if limited else None
     return RobotStatus(
-        activity=hand.activity.value,
-        out=OUT.get(hand.out, hand.out),
-        task=hand.route[0] if at_task else None,
-        waits_for=tuple(ledger.missing(hand.route[0])) if hand.activity is Activity.WAITING else (),
-        route=tuple(hand.route),
-        used=hand.used,
-        usage_left=None if capacity is None else max(0.0, capacity - hand.used),
-        charge=None if hand.told is None else hand.told.charge,
-        available=hand.available,
+        activity=state.activity.value,
+        out=OUT.get(state.out, state.out),
+        task=state.route[0] if at_task else None,
+        waits_for=tuple(ledger.missing(state.route[0])) if state.activity is Activity.WAITING else (),
+        route=tuple(state.route),
+        used=state.used,
+        usage_left=None if capacity is None else max(0.0, capacity - state.used),
+        charge=None if state.telemetry is None else state.telemetry.charge,
+        available=state.available,
     )
 
 

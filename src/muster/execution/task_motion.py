@@ -12,7 +12,7 @@ from muster.mission.model import Point, Robot, Task
 from muster.motion.actions import Doing, Impossible, duration_of
 from muster.motion.port import Place, Waypoint
 
-Doer = Callable[[Task, Robot], Doing | Impossible]
+MotionPlanner = Callable[[Task, Robot], Doing | Impossible]
 """What a task makes a robot do, or why the robot cannot do it."""
 
 Way = Callable[[Robot, Place, Place], Sequence[Place] | None]
@@ -61,13 +61,13 @@ class Work:
         return max(0.0, self.cost_m - self.way_m)
 
 
-def work_of(task: Task, robot: Robot, doing: Doer, way: Way) -> Work | Impossible:
+def work_of(task: Task, robot: Robot, plan_motion: MotionPlanner, way: Way) -> Work | Impossible:
     """How a robot does a task: what `doing` says, by `way` from each way point to the next.
 
     What the task takes, if that is given, it takes over a map too: by what the ways are longer there the robot stays
     less. Where they alone take longer, so does the work.
     """
-    found = doing(task, robot)
+    found = plan_motion(task, robot)
     if isinstance(found, Impossible):
         return found
     waypoints = [found.waypoints[0]]

@@ -1,10 +1,10 @@
-"""Where a drone is, from odometry, inertial data and position fixes: an extended Kalman filter.
+"""The position of a drone from odometry, inertial data and position fixes: an extended Kalman filter.
 
-[tcf-thesis], section 2.1.1: odometry and inertial unit give a continuous estimate, fixes from outside one that does not
-drift. The attitude is the autopilot's: what is measured comes here in axes of the map.
+[tcf-thesis], section 2.1.1: odometry and inertial unit give a continuous estimate, external fixes one that does not
+drift. The attitude is the autopilot's: measurements are given in axes of the map.
 
-The state is (7,): position in metres and velocity in m/s, both in the map frame; slip, the share of what odometry
-counts that is not flown. As in `ground_fusion` the velocity is the one that odometry counts.
+The state is (7,): position in metres and velocity in m/s, both in the map frame; slip, the share of the counted
+odometry that is not flown. As in `ground_fusion` the velocity is the one that odometry counts.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def moved_as_counted(
     Parameters
     ----------
     acceleration_mps2
-        (3,) by how much this mean differs from that of as long a time before, a second: as it was felt.
+        (3,) the measured acceleration: the change of this mean from that of the interval before, a second.
 
     Raises
     ------
@@ -78,12 +78,12 @@ def moved_as_counted(
 
 
 def by_odometry(estimate: Estimate, velocity_mps: npt.ArrayLike, errors: AirErrors) -> Correction:
-    """What odometry says: a velocity (3,)."""
+    """Correct by odometry: a velocity (3,)."""
     return corrected(estimate, _VELOCITY, velocity_mps, errors.velocity_mps**2 * np.eye(3))
 
 
 def by_position(estimate: Estimate, position: npt.ArrayLike, errors: AirErrors) -> Correction:
-    """A fix (3,) from outside."""
+    """Correct by an external position fix (3,)."""
     return corrected(estimate, _POSITION, position, errors.position_m**2 * np.eye(3))
 
 

@@ -30,8 +30,8 @@ def read_intrinsics(path: str | Path) -> Intrinsics:
     Raises
     ------
     InputError
-        if it cannot be read, lacks something, has a number out of its range, or tells of a lens that bends: images
-        of such a lens must be rectified, and have a file of their own then.
+        if it cannot be read, lacks something, has a number out of its range, or has distortion: images of such a
+        lens must be rectified, and then have a calibration file of their own.
     """
     content = _mapping(path)
     width, height = _number(path, content, "image_width"), _number(path, content, "image_height")

@@ -58,10 +58,10 @@ RB5_MOUNT = mount_of([0.087, 0.0, -0.001, 0.0, math.pi / 4, 0.0])
 
 @dataclass(frozen=True, kw_only=True)
 class Intrinsics:
-    """What a camera is like in itself, in pixels: size of the picture, focal lengths, principal point.
+    """Intrinsic parameters of a camera, in pixels: size of the picture, focal lengths, principal point.
 
-    The thesis has one focal length; a real camera's two differ a little. The lens bends nothing: pictures of one that
-    does must be rectified before.
+    The thesis has one focal length; the two of a real camera differ a little. There is no distortion: pictures of a
+    lens with distortion must be rectified before.
 
     Raises
     ------
@@ -101,7 +101,7 @@ class Intrinsics:
 
 
 def fault_in(values: Mapping[str, Any]) -> tuple[str, Any, str] | None:
-    """What is wrong first with the numbers of `Intrinsics`, by name: which one, its value, what was expected."""
+    """The first fault in the numbers of `Intrinsics`: the name, the value, and what was expected."""
     for name, value in values.items():
         if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
             return name, repr(value), "a number of pixels"

@@ -1,6 +1,6 @@
-"""A robot that looks: from an image and the robot's pose to raw estimates ([tcf-thesis], Figure 4.8); sans I/O.
+"""A robot's camera: from an image and the robot's pose to raw estimates ([tcf-thesis], Figure 4.8); sans I/O.
 
-What goes wrong with one image (its size, a tag twice, a pose that is none) is told, and the mission goes on.
+A fault of one image (its size, a tag twice, an invalid pose) becomes a remark, and the mission goes on.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from muster.perception.localisation import Uncertainty, ground_covariance, on_gr
 
 @dataclass(frozen=True)
 class Observation:
-    """What one image told: the tags in it, where they are on the ground (x, y), and what was wrong."""
+    """The result of one image: the tags in it, their estimated positions (x, y) on the ground, and remarks."""
 
     sightings: Sightings
     estimates: RawEstimates
@@ -29,10 +29,10 @@ class Observation:
 
 @dataclass(frozen=True, kw_only=True)
 class CameraObserver:
-    """One robot's camera and what it knows of its errors.
+    """One robot's camera and its assumed errors.
 
-    `mount` is (4, 4) from body to image; images need a `detector`. Of what is farther away than `farthest_m` no
-    estimate is made: near the horizon a pixel is worth many metres.
+    `mount` is (4, 4) from body to image; images need a `detector`. No estimate is made of a tag farther away than
+    `farthest_m`: near the horizon a pixel is worth many metres.
     """
 
     robot: str
@@ -44,20 +44,20 @@ class CameraObserver:
     farthest_m: float = 20.0
 
     def look(self, image: Image, body: npt.ArrayLike, time_s: float) -> Observation:
-        """Find tags in an image taken at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4)."""
-        assert self.detector is not None, "who looks at images needs a detector"
+        """Find tags in an image taken at `time_s` at the estimated pose `body`, (6,) or (4, 4), of the robot."""
+        assert self.detector is not None, "images need a detector"
         try:
             return self.locate(self.detector.detect(image, self.intrinsics), body, time_s)
         except ParameterError as error:
             return Observation(Sightings((), ()), RawEstimates.joined([]), (f"{self._when(time_s)}: {error}",))
 
     def locate(self, sightings: Sightings, body: npt.ArrayLike, time_s: float) -> Observation:
-        """Say where that is which was seen at `time_s`, when the robot took its own pose for `body`, (6,) or (4, 4).
+        """Estimate positions of tags seen at `time_s` at the estimated pose `body`, (6,) or (4, 4), of the robot.
 
         Raises
         ------
         ParameterError
-            if the pose is none.
+            if the pose is invalid.
         """
         view = View.from_body(self.intrinsics, body, self.mount)
         said = tuple(f"{self._when(time_s)}: tag {tag} is twice in one image" for tag in sightings.repeated)

@@ -1,14 +1,14 @@
-"""Which raw estimates belong together: by k-means, by density, by the tag that was decoded.
+"""Clusters of raw estimates of one object each: by k-means, by density, by the decoded tag.
 
 Each gives labels (n,): the number of each estimate's cluster, from 0, or `LONE`.
 
-- `by_means`: k-means, [tcf-thesis] (4.46); the number of clusters must be known. What it makes least is the sum of
-  squares over all estimates. So where one thing is seen a thousand times and another five times, it costs less to cut
-  the thousand in two and to leave the five to a neighbour. The thesis lost its tag 1 so, by 1.142 m (Table 6.4).
-- `by_density`: DBSCAN [ester1996]. The number follows, and how often a thing was seen
-  does not matter. Things nearer to each other than their estimates scatter become one.
-- `by_tag`: those of one id are one thing, unless they lie apart: then the id is there more than once.
-- `linked` is how it tells what lies apart; it takes new places in without a look at how the others belong together.
+- `by_means`: k-means, [tcf-thesis] (4.46); the number of clusters must be known. It minimises the sum of
+  squares over all estimates. So where one object is seen a thousand times and another five times, it costs less to
+  split the thousand and to join the five to a neighbour. So the thesis missed its tag 1 by 1.142 m (Table 6.4).
+- `by_density`: DBSCAN [ester1996]. It finds the number of clusters, and does not depend on how often an object is
+  seen. Objects nearer to each other than their estimates scatter become one.
+- `by_tag`: estimates with one id are one object, unless they lie apart: then the id is there more than once.
+- `linked`: single-linkage clusters, which `by_tag` uses; it adds new places to earlier clusters.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """AprilTags in an image: family 36h11, by the detector of its authors [wang2016] in pupil-apriltags.
 
 [tcf-thesis] (4.3.2) uses the centre of a tag's bounding box. Here the centre is where the diagonals of the tag's own
-four corners cross, which is the picture of the tag's middle from whatever side it is seen; the box's centre is not.
+four corners cross, which is the image of the tag's middle from every side; the box's centre is not.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ class _Deviations:
 
 @dataclass(frozen=True, kw_only=True)
 class GroundErrors(_Deviations):
-    """Of a robot in the plane. All are standard deviations of independent errors.
+    """Errors of a robot in the plane: standard deviations of independent errors.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class GroundErrors(_Deviations):
 
 @dataclass(frozen=True, kw_only=True)
 class AirErrors(_Deviations):
-    """Of a drone. All are standard deviations of independent errors, each coordinate of the map frame.
+    """Errors of a drone: standard deviations of independent errors, for each coordinate of the map frame.
 
     Parameters
     ----------

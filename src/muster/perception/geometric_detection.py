@@ -1,7 +1,7 @@
-"""What a camera would see of tags, by geometry alone: for worlds that draw no pictures.
+"""Sightings of tags by geometry alone: for worlds without rendered pictures.
 
-A tag is seen that lies within the picture, faces the camera and is large enough for a detector. Nothing is in the way,
-and no light is poor: what detection itself gets wrong is not here, but an error of the corners.
+A tag is seen that lies within the picture, faces the camera and is large enough for a detector. There is no occlusion
+and no poor light; the only error of detection is that of the corners.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from muster.perception.tags import CORNERS
 Floats = npt.NDArray[np.float64]
 
 LEAST_PX = 16.0
-"""So many pixels across its black square a tag needs to be found in every image (docs/perception.md)."""
+"""The pixels across its black square with which a tag is found in every image (docs/perception.md)."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundTag:
-    """A tag where it truly is: its id, its pose (4, 4) in the map, and the side of its black square in metres."""
+    """A tag at its true pose: its id, the pose (4, 4) in the map, and the side of its black square in metres."""
 
     id: int
     pose: Floats

@@ -1,10 +1,10 @@
-"""Where a robot in the plane is, from odometry, inertial data and fixes: an extended Kalman filter.
+"""The pose of a robot in the plane from odometry, inertial data and fixes: an extended Kalman filter.
 
-[tcf-thesis], section 2.1.1: a filter that fuses odometry and inertial unit, and what both give with fixes from outside:
+[tcf-thesis], section 2.1.1: a filter that fuses odometry and inertial unit, and the result with external fixes:
 positions, as of GPS or motion capture, and artificial landmarks (tags, cylinders) at known places.
 
 The state is (7,): x, y in metres and heading in radians of the map frame; speed ahead in m/s, as
-wheels count it; yaw rate in rad/s; bias of the gyro in rad/s; slip, the share of what wheels count that is not
+wheels count it; yaw rate in rad/s; bias of the gyro in rad/s; slip, the share of the counted way that is not
 travelled. Its heading is kept in [-pi, pi). Speed is counted, not true, so that odometry is linear in the state: as a
 product of both it would teach the filter a slip out of noise alone.
 """
@@ -73,10 +73,10 @@ def moved_as_counted(
     errors: GroundErrors,
     turning_radps: float | None = None,
 ) -> Estimate:
-    """The estimate `dt` seconds later, by what an odometer counted in between and the heading that the robot then has.
+    """The estimate `dt` seconds later, by the odometer's count in between and the measured heading at the end.
 
-    For reports that are rare: odometry makes the prediction itself, as in the thesis. Speed and yaw rate of the state
-    are then means of the interval. Who turned before or after it drove is off that arc by up to half the way times the
+    For rare reports: odometry makes the prediction itself, as in the thesis. Speed and yaw rate of the state are then
+    means of the interval. A robot that turned before or after it drove is off that arc by up to half the way times the
     turn; half of this is taken for a standard deviation. `turning_radps` is the mean yaw rate by the gyro; None where
     there is none.
 
@@ -129,25 +129,25 @@ def arc(state: Floats, dt: float) -> tuple[Floats, Floats]:
 
 
 def by_odometry(estimate: Estimate, speed_mps: float, yaw_rate_radps: float, errors: GroundErrors) -> Correction:
-    """What the wheels say: speed ahead and yaw rate."""
+    """Correct by wheel odometry: speed ahead and yaw rate."""
     spread = [math.hypot(errors.odometry_share * speed_mps, errors.odometry_mps), errors.odometry_radps]
     return _linear(estimate, np.eye(_NUMBERS)[[SPEED, YAW_RATE]], [speed_mps, yaw_rate_radps], spread)
 
 
 def by_gyro(estimate: Estimate, yaw_rate_radps: float, errors: GroundErrors) -> Correction:
-    """What the inertial unit says: yaw rate and bias together."""
+    """Correct by the gyro, which measures the sum of yaw rate and bias."""
     sensor = np.zeros((1, _NUMBERS))
     sensor[0, [YAW_RATE, BIAS]] = 1.0
     return _linear(estimate, sensor, [yaw_rate_radps], [errors.gyro_radps])
 
 
 def by_position(estimate: Estimate, position: npt.ArrayLike, errors: GroundErrors) -> Correction:
-    """A fix (2,) from outside, in the map frame."""
+    """Correct by an external position fix (2,) in the map frame."""
     return _linear(estimate, np.eye(_NUMBERS)[[X, Y]], position, [errors.position_m] * 2)
 
 
 def by_heading(estimate: Estimate, heading_rad: float, errors: GroundErrors) -> Correction:
-    """A heading from outside, in radians from east."""
+    """Correct by an external heading, in radians from east."""
     near = estimate.mean[HEADING] + wrapped(heading_rad - estimate.mean[HEADING])
     return _linear(estimate, np.eye(_NUMBERS)[[HEADING]], [near], [errors.heading_rad])
 
@@ -155,12 +155,12 @@ def by_heading(estimate: Estimate, heading_rad: float, errors: GroundErrors) -> 
 def by_landmark(
     estimate: Estimate, landmark: npt.ArrayLike, range_m: float, bearing_rad: float, errors: GroundErrors
 ) -> Correction:
-    """A landmark at a known place (2,) of the map, seen at a range and a bearing from straight ahead, to the left.
+    """Correct by a landmark at a known place (2,) of the map: range, and bearing from straight ahead to the left.
 
     Raises
     ------
     ParameterError
-        if the robot is believed to stand on it: it has no bearing then.
+        if the estimated position is that of the landmark: it has no bearing then.
     """
     place = np.asarray(landmark, dtype=np.float64)
 

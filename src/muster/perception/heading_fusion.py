@@ -1,7 +1,7 @@
-"""How a robot is turned that does not face its way, from its gyro and headings said: a linear Kalman filter.
+"""The heading of a robot that moves in any direction, from gyro and reported headings: a linear Kalman filter.
 
-The state is (2,): heading in radians of the map frame, kept in [-pi, pi), and bias of the gyro in rad/s. For robots
-that face their way `ground_fusion` has both among more.
+The state is (2,): heading in radians of the map frame, kept in [-pi, pi), and bias of the gyro in rad/s. The state of
+`ground_fusion`, for robots that face their way, has both among others.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ HEADING, BIAS = range(2)
 
 
 def turned_to(heading_rad: float, deviation_rad: float, errors: AirErrors) -> Estimate:
-    """A robot of a heading that is known within a standard deviation."""
+    """A robot whose heading is known within a standard deviation."""
     return _wrapped(Estimate(np.array([heading_rad, 0.0]), np.diag([deviation_rad**2, errors.gyro_bias_radps**2])))
 
 
@@ -39,7 +39,7 @@ def turned(estimate: Estimate, dt: float, yaw_rate_radps: float, errors: AirErro
 
 
 def by_heading(estimate: Estimate, heading_rad: float, errors: AirErrors) -> Correction:
-    """A heading from outside, in radians from east."""
+    """Correct by an external heading, in radians from east."""
     near = estimate.mean[HEADING] + wrapped(heading_rad - estimate.mean[HEADING])
     found = corrected(estimate, np.eye(2)[[HEADING]], [near], [[errors.heading_rad**2]])
     return Correction(_wrapped(found.estimate), found.innovation, found.innovation_covariance, found.gain)

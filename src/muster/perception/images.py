@@ -18,7 +18,7 @@ _PURPOSE = "reading images"
 
 
 def grey(image: Image, intrinsics: Intrinsics | None = None) -> Image:
-    """Take the colours out of an image: (height, width), a grey one as it is.
+    """The grey image (height, width) of an image; a grey one is returned as it is.
 
     Raises
     ------

@@ -90,7 +90,7 @@ class Correction:
 
     @property
     def nis(self) -> float:
-        """The normalised innovation squared, v^T S^-1 v: of a filter that knows its errors chi-square of m degrees."""
+        """The normalised innovation squared, v^T S^-1 v: chi-square of m degrees for a consistent filter."""
         return float(self.innovation @ np.linalg.solve(self.innovation_covariance, self.innovation))
 
 
@@ -213,7 +213,7 @@ def require_covariance(name: str, value: npt.ArrayLike, size: int) -> Floats:
 
 
 def _lowest_eigenvalue(symmetric: Floats) -> float:
-    """Of a diagonal matrix, which most are, its lowest entry."""
+    """The lowest eigenvalue; of a diagonal matrix, the usual case, its lowest entry."""
     diagonal = symmetric.diagonal()
     if np.count_nonzero(symmetric) == np.count_nonzero(diagonal):
         return float(diagonal.min())

@@ -60,12 +60,12 @@ class Scanner:
 
     @property
     def bearings(self) -> Floats:
-        """Of the beams, (n,) radians, rising."""
+        """Bearings of the beams, (n,) radians, rising."""
         to_a_side = math.floor(self.field_rad / 2 / self.step_rad + 1e-9)
         return np.arange(-to_a_side, to_a_side + 1, dtype=np.float64) * self.step_rad
 
     def ranges(self, pose: tuple[float, float, float], walls: Floats = NO_WALLS, discs: Floats = NO_DISCS) -> Floats:
-        """What it would measure without error: (n,) metres, inf beyond reach.
+        """Ranges without errors: (n,) metres, inf beyond reach.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ def points_of(ranges: Floats, bearings: Floats) -> Floats:
 
 
 def faces_at(faces: Floats, height_m: float) -> Floats:
-    """Of upright faces (k, 6) - both ends' x, y, lowest and highest z - the walls (j, 4) that stand at a height."""
+    """The walls (j, 4) at a height, from upright faces (k, 6): both ends' x, y, lowest and highest z."""
     return faces[(faces[:, 4] <= height_m) & (height_m <= faces[:, 5]), :4]
 
 

@@ -1,7 +1,7 @@
-"""Where on the map is what a camera sees: [tcf-thesis] (4.41)-(4.45).
+"""Positions on the map of what a camera sees: [tcf-thesis] (4.41)-(4.45).
 
-`on_ground` takes the ground as flat, (4.41)-(4.43). `by_size` knows how large a tag is, and needs no ground: it finds
-the pose from which the four corners are where they are seen (perspective-n-point). OpenCV's own method for squares,
+`on_ground` assumes flat ground, (4.41)-(4.43). `by_size` uses the known size of a tag and needs no ground: it finds
+the tag's pose from the image of its four corners (perspective-n-point). OpenCV's own method for squares,
 `SOLVEPNP_IPPE_SQUARE`, is not used: on exact corners it gives NaN for many poses (5.0).
 
 `by_length_as_printed` is (4.44) and (4.45), which the thesis proposes for that. It is kept to show its error: a tag

@@ -1,4 +1,4 @@
-"""What was found beside what is there: the tables 6.4 and 6.5 of [tcf-thesis], as data.
+"""Estimated positions matched with true ones: the tables 6.4 and 6.5 of [tcf-thesis], as data.
 
 Matched by linear sum assignment: one to one, so that the sum of all distances is least.
 """

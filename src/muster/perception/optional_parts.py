@@ -1,4 +1,4 @@
-"""The optional parts that seeing asks for."""
+"""The optional parts that perception needs."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Points of interest while they are being found: sightings in, what is known by now out; sans I/O.
+"""Incremental search for points of interest: raw estimates in, points found so far out; sans I/O.
 
-The tag that is decoded tells what belongs together, so their number need not be known; a tag that lies at two places is
-two points. A point counts as found when it was seen often enough and is known well enough.
+Estimates are grouped by decoded tag, so the number of points need not be known; a tag that lies at two places is two
+points. A point counts as found when it has enough sightings and a small enough covariance.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from muster.perception.points_of_interest import PointOfInterest, points_of_inte
 
 @dataclass(frozen=True, kw_only=True)
 class FoundCriteria:
-    """When a point of interest counts as found.
+    """The criteria by which a point of interest counts as found.
 
     Parameters
     ----------
     sightings
-        in at least so many images.
+        the least number of images in which it was seen.
     deviation_m
-        along no direction is the standard deviation of its place greater.
+        the greatest standard deviation of its position in any direction.
     moved_m
-        by which a place must differ from the one that was told before it is told again.
+        the distance by which its position must differ from the reported one to be reported again.
     apart_m, independent_after_s
         see `linked` and `points_of_interest`.
 
@@ -57,7 +57,7 @@ class FoundCriteria:
 
 @dataclass(frozen=True, eq=False)
 class FoundPoint:
-    """A point of interest that was found: the how-manieth with its tag, from 0; when first; what is known of it now."""
+    """A point of interest that was found: its tag, its number among those with this tag, when, its latest estimate."""
 
     tag: int
     number: int
@@ -66,14 +66,14 @@ class FoundPoint:
 
 
 class PointSearch:
-    """What a team has seen so far, and found."""
+    """What a team has seen and found so far."""
 
-    def __init__(self, proof: FoundCriteria | None = None) -> None:
-        self._proof = proof or FoundCriteria()
+    def __init__(self, criteria: FoundCriteria | None = None) -> None:
+        self._criteria = criteria or FoundCriteria()
         self._seen: dict[int, list[RawEstimates]] = defaultdict(list)
         self._labels: dict[int, Labels] = {}
         self._finds: dict[int, list[FoundPoint]] = defaultdict(list)
-        self._told: dict[tuple[int, int], PointOfInterest] = {}
+        self._reported: dict[tuple[int, int], PointOfInterest] = {}
 
     @property
     def raw(self) -> RawEstimates:
@@ -82,44 +82,46 @@ class PointSearch:
 
     @property
     def seen(self) -> frozenset[int]:
-        """The tags that were seen at all."""
+        """The tags that were seen."""
         return frozenset(self._seen)
 
     @property
     def finds(self) -> tuple[FoundPoint, ...]:
-        """All that was found, in order of time, with what is known of it now."""
+        """All points found, in order of time, with their latest estimates."""
         return tuple(sorted((find for of in self._finds.values() for find in of), key=lambda find: find.at_s))
 
     def take(self, estimates: RawEstimates, now: float) -> tuple[FoundPoint, ...]:
-        """Take new estimates in; returns what is found by that, or lies elsewhere than was told."""
-        news = []
+        """Add estimates; returns points that are newly found, or have moved since they were reported."""
+        new = []
         for tag in np.unique(estimates.tags).tolist():
             self._seen[tag].append(_of_tag(estimates, tag))
-            news += [find for find in self._known(tag, now) if self._is_news(find)]
-        for find in news:
-            self._told[find.tag, find.number] = find.point
-        return tuple(news)
+            new += [find for find in self._known(tag, now) if self._is_new(find)]
+        for find in new:
+            self._reported[find.tag, find.number] = find.point
+        return tuple(new)
 
     def _known(self, tag: int, now: float) -> list[FoundPoint]:
-        """What is known now of the points with a tag; those that were found before stay found."""
-        proof, finds = self._proof, self._finds[tag]
+        """The latest estimates of the points with a tag; points that were found before stay found."""
+        criteria, finds = self._criteria, self._finds[tag]
         raw = RawEstimates.joined(self._seen[tag])
         self._seen[tag] = [raw]
-        labels = self._labels[tag] = linked(raw.positions, proof.apart_m, self._labels.get(tag))
-        points = points_of_interest(raw, labels, independent_after_s=proof.independent_after_s)
-        free = list(finds)  # a find is one point: that which was seen most often, should more be near
+        labels = self._labels[tag] = linked(raw.positions, criteria.apart_m, self._labels.get(tag))
+        points = points_of_interest(raw, labels, independent_after_s=criteria.independent_after_s)
+        free = list(finds)  # each found point takes one cluster: of several near ones that with most sightings
         for point in sorted(points, key=lambda point: -point.sightings):
-            known = _nearest(free, point, proof.apart_m)
+            known = _nearest(free, point, criteria.apart_m)
             if known is not None:
                 free.remove(known)
                 finds[known.number] = FoundPoint(tag, known.number, known.at_s, point)
-            elif proof.holds(point):
+            elif criteria.holds(point):
                 finds.append(FoundPoint(tag, len(finds), now, point))
         return finds
 
-    def _is_news(self, find: FoundPoint) -> bool:
-        told = self._told.get((find.tag, find.number))
-        return told is None or float(np.linalg.norm(find.point.position - told.position)) > self._proof.moved_m
+    def _is_new(self, find: FoundPoint) -> bool:
+        reported = self._reported.get((find.tag, find.number))
+        if reported is None:
+            return True
+        return float(np.linalg.norm(find.point.position - reported.position)) > self._criteria.moved_m
 
 
 def _of_tag(estimates: RawEstimates, tag: int) -> RawEstimates:
@@ -130,7 +132,7 @@ def _of_tag(estimates: RawEstimates, tag: int) -> RawEstimates:
 
 
 def _nearest(finds: list[FoundPoint], point: PointOfInterest, apart_m: float) -> FoundPoint | None:
-    """The find that this point is, if any."""
+    """The found point at this position, if any."""
     away = [float(np.linalg.norm(find.point.position - point.position)) for find in finds]
     nearest = int(np.argmin(away)) if away else 0
     return finds[nearest] if away and away[nearest] <= apart_m else None

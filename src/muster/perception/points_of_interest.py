@@ -1,13 +1,13 @@
-"""Points of interest: what the estimates of a cluster say together, with how sure that is ([tcf-thesis] 4.3.3).
+"""Points of interest: the fused estimate of each cluster, with its covariance ([tcf-thesis] 4.3.3).
 
-The thesis takes the mean of a cluster. Where every estimate has its covariance, they are weighed by it, as a Kalman
-filter would that sees a thing at rest again and again: views from afar and aslant, which are stretched along the view,
-count less along it. Where they scatter more than their covariances say, the answer's covariance grows by as much.
+The thesis takes the mean of a cluster. Where every estimate has a covariance, estimates are weighed by it, as a Kalman
+filter weighs repeated sightings of an object at rest: distant and oblique views, which are stretched along the line of
+sight, count less along it. Where estimates scatter more than their covariances say, the covariance of the result grows
+by as much.
 
-A robot that takes itself to be beside where it is does so for a while: sightings that follow on each other fast share
-that error. So those of one robot within one stretch of time (`independent_after_s`) count as one together, and a drone
-that hovers weighs no more than one that passes by. What is the same in all sightings (a camera mounted askew) does not
-average out, and no scatter shows it.
+A robot's localisation error lasts for a while, and sightings in quick succession share it. So sightings of one robot
+within one interval (`independent_after_s`) together count as one, and a drone that hovers weighs no more than one that
+passes by. A constant error (a misaligned camera) does not average out, and scatter does not show it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PointOfInterest:
-    """A thing that was found.
+    """An object that was found.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ def points_of_interest(
 
 
 def remarks(points: tuple[PointOfInterest, ...], seen: Collection[int] = ()) -> tuple[str, ...]:
-    """What a person should hear of: nothing found, or a tag at more than one place; `seen` are tags that were seen."""
+    """Remarks for the user: nothing found, or a tag at more than one place; `seen` are the tags that were seen."""
     if not points:
         if not seen:
             return ("no point of interest: no tag was seen",)

@@ -1,8 +1,7 @@
-"""What a robot says of itself, fused: telemetry with errors in, telemetry with the filter's pose out.
+"""State estimation of one robot: telemetry with errors in, telemetry with the filter's pose out.
 
-Each report is taken in as a position fix, with the odometer's count as odometry and the inertial unit's reading. So
-whoever carries a plan out works with the fused pose where noise is on, and needs to know nothing of filters: a
-`FusedPort` is a robot's port as others.
+Each report is used as a position fix, with its odometry and the inertial unit's reading. A `FusedPort` is a robot port
+with the fused pose, so that execution needs no knowledge of filters.
 """
 
 from __future__ import annotations
@@ -23,10 +22,10 @@ _SAME_S = 1e-6
 
 
 class Tracker(Protocol):
-    """Of one robot; reports come in the order in which they were made."""
+    """The filter of one robot; reports come in order of their time."""
 
     def fused(self, said: Telemetry) -> Telemetry:
-        """The report with the filter's pose. One that is no newer than the last changes nothing in the filter."""
+        """The report with the filter's pose. A report that is no newer than the last does not change the filter."""
         ...
 
     @property
@@ -36,19 +35,19 @@ class Tracker(Protocol):
 
     @property
     def fix(self) -> Correction | None:
-        """What the last report's place changed; None before the second."""
+        """The correction by the last report's position; None before the second report."""
         ...
 
 
 class GroundTracker:
-    """A robot that drives the way it looks. Its speed comes from `odometry_m`, place and heading from fixes.
+    """A robot that faces its way. Its speed comes from `odometry_m`, its position and heading from fixes.
 
-    A gyro is used where it was read for just the time between two reports.
+    A gyro reading is used if it spans exactly the time between two reports.
 
     Raises
     ------
     ParameterError
-        if place or heading are said without error: there is nothing to filter then.
+        if the errors of position or heading are 0: there is nothing to filter then.
     """
 
     def __init__(self, errors: GroundErrors) -> None:
@@ -102,15 +101,15 @@ class GroundTracker:
 
 
 class AirTracker:
-    """A robot that moves in any direction. Its velocity is odometry.
+    """A robot that moves in any direction. Its velocity is used as odometry.
 
-    An inertial unit is used where it was read for just the time between two reports; without one the heading stays as
-    it was said.
+    The inertial unit's reading is used if it spans exactly the time between two reports; without one the heading is as
+    reported.
 
     Raises
     ------
     ParameterError
-        if place, heading or velocity are said without error: there is nothing to filter then.
+        if the errors of position, heading or velocity are 0: there is nothing to filter then.
     """
 
     def __init__(self, errors: AirErrors) -> None:

@@ -1,4 +1,4 @@
-"""Which shape points from one side of an obstacle show: a line, a circle, a rectangle's corner, or none of them.
+"""The shape that points on one side of an obstacle show: a line, a circle, a rectangle's corner, or none.
 
 Rules for what [tcf-thesis], section 2.1.2, calls shape association. A circle bulges towards the scanner, which is at
 the origin.

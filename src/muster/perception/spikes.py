@@ -28,7 +28,7 @@ _INNER = 0.8
 
 @dataclass(frozen=True, kw_only=True)
 class SpikeParameters:
-    """What is taken for a landmark.
+    """The parameters of spike detection.
 
     Parameters
     ----------
@@ -85,12 +85,12 @@ class Landmark:
 
     @property
     def range_m(self) -> float:
-        """To its centre."""
+        """The range of its centre."""
         return math.hypot(*self.position)
 
     @property
     def bearing_rad(self) -> float:
-        """Of its centre, from straight ahead, anticlockwise."""
+        """The bearing of its centre, from straight ahead, anticlockwise."""
         return math.atan2(self.position[1], self.position[0])
 
 

@@ -62,7 +62,7 @@ def tag_pose(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]
 
 @cache
 def _cells() -> npt.NDArray[np.uint8]:
-    """All tags (n, 10, 10): 1 where a cell is white. Bits are told from the highest one on."""
+    """All tags (n, 10, 10): 1 where a cell is white. Bits are in order from the highest."""
     detector = new_detector("a picture of a tag")  # frees the family when it goes
     family = detector.tag_families[FAMILY].contents
     codes = np.array(family.codes[: family.ncodes], dtype=np.uint64)

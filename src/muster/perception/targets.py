@@ -1,8 +1,8 @@
-"""Where a target is that several robots see: their sightings in the map, weighed by what each of them can know.
+"""The position of a target that several robots see: their sightings in the map, weighed by their information.
 
-[market-paper] (sections 4.2 and 5) measures how far its rangeBot's targets are from the truth and prints no rule by
-which sightings are joined. Here sightings with range and bearing are averaged by their information, the best that can
-be done with independent errors; bearings alone are crossed.
+[market-paper] (sections 4.2 and 5) measures the error of its rangeBot's targets and prints no rule for joining
+sightings. Here sightings with range and bearing are averaged by their information, which is optimal for independent
+errors; bearings alone are intersected.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class TargetSighting:
 
     @property
     def target(self) -> Estimate:
-        """Where the target is, (2,), map frame; the covariance to first order."""
+        """The target's position (2,), map frame; the covariance to first order."""
         x, y, heading = self.pose.mean
         direction = heading + self.bearing_rad
         c, s = math.cos(direction), math.sin(direction)

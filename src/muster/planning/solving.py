@@ -1,25 +1,17 @@
-"""The one way from a planning request to a judged plan. Heavy parts are imported where they are used."""
+"""Answers planning requests with judged plans. Heavy modules are imported where they are used."""
 
 from __future__ import annotations
 
-import inspect
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING
 
-from muster.allocation.parameter_types import AllocatorParameters
-from muster.mission.keywords import require_known
-from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
 from muster.planning.judging import judged
-from muster.planning.options import DEFAULT_ALLOCATOR
 from muster.planning.request import Request
 
 if TYPE_CHECKING:
-    from muster.allocation.allocator import Allocator
-    from muster.allocation.function_allocator import AllocatingFunction
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Progress, Stop
     from muster.verification import Verdict
@@ -110,7 +102,7 @@ def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tup
 
 
 def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> OnProgress:
-    """What adds the bound that was asked for to progress, and lets its share include the time of an exact proof."""
+    """A function that adds the bound to progress, and the time of an exact proof to its share."""
     from muster.allocation.bounds import lower_bound
     from muster.allocation.proofs import EXACT_TIME_LIMIT_S
 
@@ -127,87 +119,3 @@ def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> 
         on_progress(replace(progress, share=share, bound=bound if known else None))
 
     return report
-
-
-def solve(
-    mission: Mission,
-    allocator: str | Allocator | AllocatingFunction = DEFAULT_ALLOCATOR,
-    time_limit: float | None = None,
-    seed: int = 0,
-    on_progress: OnProgress | None = None,
-    *,
-    iterations: int | None = None,
-    objective: str | Callable[[Verdict], float] | None = None,
-    candidates: int = 10,
-    ignore: str | Collection[str] = (),
-    start: Plan | None = None,
-    fixed: Plan | None = None,
-    bound: str | None = None,
-    rewire: bool = False,
-    parameters: Mapping[str, Any] | None = None,
-    **own: Unpack[AllocatorParameters],
-) -> Plan:
-    """Plan a mission; the plan is judged by code that no allocator uses.
-
-    Parameters
-    ----------
-    allocator
-        one of `muster solve --list-allocators`, an allocator, or a function that makes routes.
-    time_limit, iterations
-        when an anytime allocator stops; 5 s if neither is given. With `iterations` alone the same seed gives the same
-        plan.
-    objective
-        instead of the mission's own; or a function of the judge's `Verdict`, the lower the better, by which several
-        plans are ranked. That is slower: no allocator searches by it (see docs/extending.md).
-    candidates
-        how many plans such a function ranks; they share the time or the iterations.
-    ignore
-        rules that do not hold: prerequisite, suitability, skill, lock, capacity.
-    start
-        a plan to go on from.
-    fixed
-        a plan whose routes stay as the beginnings of the new ones, for planning under way; `search` and `greedy` alone.
-    bound
-        `quick` or `exact`: prove how good the plan is, as its `lower_bound`.
-    rewire
-        fill waiting time with later tasks of the same robot: the mission ends sooner, for some usage.
-    parameters
-        of the allocator by name, for those of functions and of other packages.
-    own
-        parameters of an allocator that ships, such as `population_size`.
-
-    Raises
-    ------
-    ParameterError, NotSupportedError
-    """
-    given = {**(parameters or {}), **own}
-    _require_no_misspelt_argument(given)
-    request = Request(
-        mission=mission,
-        allocator=allocator,
-        parameters=given,
-        objective=None if callable(objective) else objective,
-        time_limit=time_limit,
-        iterations=iterations,
-        seed=seed,
-        ignore=tuple(ignore) if not isinstance(ignore, str) else (ignore,),
-        start=start,
-        fixed=fixed,
-        bound=bound,
-        rewire=rewire,
-    )
-    if callable(objective):
-        from muster.planning.custom_objective import best_by
-
-        return best_by(objective, request, candidates, on_progress)
-    return answer(request, on_progress=on_progress).plan
-
-
-def _require_no_misspelt_argument(parameters: Mapping[str, Any]) -> None:
-    """Refuse what looks like an argument of `solve`; what the allocator does not have is refused by the allocator."""
-    for name in parameters:
-        if name not in AllocatorParameters.__annotations__ and did_you_mean(name, _ARGUMENTS):
-            require_known([name], _ARGUMENTS)
-
-
-_ARGUMENTS = tuple(name for name in inspect.signature(solve).parameters if name != "own")

@@ -1,4 +1,4 @@
-"""Pictures of what is given: routes on the ground, charts over time; records and pages of what was carried out.
+"""Pictures and records: routes on the ground, charts over time, records of missions and pages that show them.
 
 Matplotlib is loaded only when a picture is drawn, mcap only when a record is written or read.
 """

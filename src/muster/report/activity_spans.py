@@ -1,4 +1,4 @@
-"""What robots did over time: travelling, waiting, working, each from when until when, as a record's events tell."""
+"""What robots did over time, from a record's events: spans of travel, waiting and work."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BREAKS_OFF = (*OUT, "cancel_task", "lost")
 
 @dataclass(frozen=True)
 class Span:
-    """What a robot does, for which task, from when until when, seconds; no task on the way to where its route ends."""
+    """What a robot does, for which task, from when until when, seconds; no task on the way to the route's end."""
 
     robot: str
     task: str
@@ -26,10 +26,10 @@ class Span:
 
 
 def spans(events: Sequence[ExecutionEvent], duration_s: float) -> list[Span]:
-    """The spans in a record's events, in the order of their ends; of those of no length only work is told.
+    """The spans in a record's events, in the order of their ends; of spans without length only work is included.
 
     A span ends when the robot begins something else, ends the task or fails, when the task is cancelled, lost, or given
-    to another or to none by a new plan, and at the latest with the record.
+    to another robot or to none by a new plan, and at the latest with the record.
     """
     found: list[Span] = []
     doing: dict[str, tuple[str, str, float]] = {}
@@ -55,7 +55,7 @@ def spans(events: Sequence[ExecutionEvent], duration_s: float) -> list[Span]:
 
 
 def _breaks_off(event: ExecutionEvent, robot: str, task: str, kind: str) -> bool:
-    """Whether a robot leaves what it does for a task because of this."""
+    """Whether an event ends what a robot does for a task."""
     if event.kind in _BREAKS_OFF:
         who = event.data.get("robot")
         return who == robot or (who is None and event.data.get("task") == task)

@@ -1,4 +1,4 @@
-"""What cameras saw while a mission was carried out, as pictures: one of each tag by each robot, and a map of all."""
+"""Pictures of what cameras saw during a mission: one of each tag by each robot, and a map of all."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ FARTHEST_M = 1.0
 
 
 class CameraPictures:
-    """Is told every look; see `Simulation`.
+    """Collects every camera image; see `Simulation`.
 
     Parameters
     ----------
     folder
-        that is to hold, for each robot and tag, the picture in which the tag is largest, with all tags in it drawn;
-        it is made where it is not there. None: no pictures are kept.
+        for each robot and tag the picture in which the tag is largest, with all tags in it drawn; it is made where it
+        does not exist. None: no pictures are kept.
 
     Raises
     ------
@@ -46,7 +46,7 @@ class CameraPictures:
         self._search = PointSearch()
 
     def __call__(self, look: Look) -> None:
-        """Take one look in."""
+        """Process one camera image."""
         self._search.take(look.observation.estimates, look.time_s)
         if self._folder is not None and look.image is not None:
             self._keep(look, self._folder)
@@ -89,7 +89,7 @@ def _size(sighting: Sighting) -> float:
 
 
 def _named(mission: Mission) -> dict[str, tuple[float, float]]:
-    """Where the tags are, by their ids; of one id the second is `7 (2)`."""
+    """The places of tags by their ids; the second one of an id is `7 (2)`."""
     seen: Counter[int] = Counter()
     named = {}
     for tag in mission.tags:

@@ -1,4 +1,4 @@
-"""What all pictures share: axes, titles, legends, text."""
+"""Common parts of all pictures: axes, titles, legends, text."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def frame_of_map(ax: Any, low: NDArray[np.float64], high: NDArray[np.float64]) -
 
 
 def quiet_frame(ax: Any) -> None:
-    """Draw frame and grid lightly, so that the data is what one sees."""
+    """Draw frame and grid lightly, so that the data stands out."""
     ax.tick_params(labelsize=8, color=FRAME)
     ax.xaxis.label.set_size(9)
     ax.yaxis.label.set_size(9)
@@ -136,12 +136,12 @@ def add_title(ax: Axes, name: str, facts: Sequence[str], alarm: str = "") -> Non
 
 
 def shortened(name: str, longest: int = _LONGEST_NAME) -> str:
-    """Cut a name that would push everything else aside."""
+    """Cut a name that is too long for a picture."""
     return name if len(name) <= longest else name[: longest - 1] + "…"
 
 
 def facts_of(verdict: Verdict, plan: Plan | None = None) -> list[str]:
-    """Name the allocator, the objective with its value and unit, and the tasks done."""
+    """The allocator, the objective with its value and unit, and the tasks done."""
     value = verdict.value()
     unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
     shown = "none" if value is None else f"{value:.2f} {unit}"
@@ -151,13 +151,13 @@ def facts_of(verdict: Verdict, plan: Plan | None = None) -> list[str]:
 
 
 def alarm_of(verdict: Verdict) -> str:
-    """Say, beside the figures of a plan that is not admissible, that it is not."""
+    """The text beside the figures of a plan that says that it is not admissible; empty for an admissible one."""
     count = len(verdict.violations)
     return "" if verdict.valid else f"not admissible: {count} violation{'s' if count > 1 else ''}"
 
 
 def named_rows(count: int) -> int:
-    """Return how many of `count` robots a legend names."""
+    """The number of robots, of `count`, that a legend names."""
     return count if count <= LEGEND_ROWS else _NAMED_OF_MANY
 
 
@@ -183,7 +183,7 @@ def add_legend(ax: Axes, entries: Sequence[tuple[Any, str]], title: str | None =
 
 
 def note_entries(names: Names) -> list[tuple[Any, str]]:
-    """Make the legend's lines on how names are written, where that has to be said."""
+    """Make the legend's lines on how names are written, where that is needed."""
     from matplotlib.lines import Line2D
 
     return [(Line2D([], [], linestyle="none"), note) for note in names.notes]
@@ -208,7 +208,7 @@ def write(
 ) -> Any:
     """Write a text centred at a point of the data, shifted by an offset in points (1/72 inch); 2-D or 3-D.
 
-    A halo parts the text from lines that it crosses.
+    A halo separates the text from lines that it crosses.
     """
     from matplotlib.patheffects import withStroke
     from matplotlib.transforms import ScaledTranslation
@@ -234,7 +234,7 @@ def to_points(ax: Any, places: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def settle(ax: Any) -> None:
-    """Lay the figure out, so that places on the page are as they will be drawn."""
+    """Lay the figure out, so that places on the page no longer change."""
     if ax.figure.get_layout_engine() is not None:
         ax.figure.canvas.figure.draw_without_rendering()  # the outermost one, also from a subfigure
     else:

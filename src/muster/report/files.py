@@ -1,4 +1,4 @@
-"""Pictures to files."""
+"""Writes pictures to files."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import Finding, InputError
 from muster.report.canvas import require_matplotlib
+from muster.report.figure_data import figure_data
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +30,8 @@ def check_suffix(path: str | Path) -> None:
 def save_figure(picture: Axes | Figure, path: str | Path) -> None:
     """Write a figure, or the figure that axes are on, as PNG, SVG or PDF, by the path's suffix; 150 dots per inch.
 
+    PNG and SVG hold `figure_data` as their Description, by which two pictures can be compared.
+
     Raises
     ------
     InputError
@@ -41,7 +44,8 @@ def save_figure(picture: Axes | Figure, path: str | Path) -> None:
     from matplotlib import rc_context
 
     figure: Any = picture.figure.canvas.figure  # the outermost one, also from a subfigure
-    metadata = _METADATA[Path(path).suffix.lower()]
+    suffix = Path(path).suffix.lower()
+    metadata = {**_METADATA[suffix], **({} if suffix == ".pdf" else {"Description": figure_data(figure)})}
     try:
         with rc_context({"svg.hashsalt": "muster"}):
             figure.savefig(path, dpi=150, bbox_inches="tight", pad_inches=0.12, metadata=metadata)

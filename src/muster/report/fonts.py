@@ -1,4 +1,4 @@
-"""Names in scripts that the usual font lacks: in another font that is installed, or as numbers where there is none."""
+"""Fonts for names in scripts that the default font lacks: another installed font, or numbers in place of the names."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Names:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a legend has to say of the names."""
+        """The legend's remarks on the names."""
         return (NOTE,) if self._robots or self._tasks else ()
 
     def robot(self, name: str) -> str:
@@ -45,7 +45,7 @@ class Names:
 
     @contextmanager
     def fonts(self) -> Iterator[None]:
-        """Within this, new texts have the fonts that the names need."""
+        """A context in which new texts have the fonts that the names need."""
         from matplotlib import rc_context, rcParams
 
         with rc_context({"font.family": [*rcParams["font.family"], *self._families]}):

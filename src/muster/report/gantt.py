@@ -1,4 +1,4 @@
-"""A plan over time: a row for each robot."""
+"""A Gantt chart of a plan: a row for each robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Where to write beside a point so that the text covers as little as possible. Greedy; all in points (1/72 inch)."""
+"""Label placement: where to write beside points so that the text covers as little as possible.
+
+Greedy; all in points (1/72 inch).
+"""
 
 from __future__ import annotations
 

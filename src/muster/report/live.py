@@ -1,6 +1,6 @@
 """A mission shown live in Foxglove: a WebSocket with the topics and schemas of a record.
 
-Who connects later is told the scene and the map anew, and the plan in force. Nothing is taken from who watches.
+A client that connects later receives the scene, the map and the plan in force. Nothing is accepted from clients.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class FoxgloveServer(Publisher):
         self.close()
 
     def close(self) -> None:
-        """Close all connections, once who watches has had time to hear the last messages; may be called again."""
+        """Close all connections after clients had time to receive the last messages; may be called again."""
         if self._server is not None:
             if self._watched:
                 time.sleep(_LAST_WORDS_S)
@@ -78,10 +78,10 @@ class FoxgloveServer(Publisher):
             self._server = None
 
     def _flush(self) -> None:
-        """What is told is on its way at once."""
+        """Messages are sent at once; nothing is buffered."""
 
     def _ask(self, topic: str) -> None:
-        """Somebody has begun to listen; called by threads of the server."""
+        """A client has subscribed; called by threads of the server."""
         with self._lock:
             self._asked.add(topic)
             self._watched = True
@@ -98,7 +98,7 @@ class FoxgloveServer(Publisher):
         self._log(topic, now, data)
 
     def _answer(self, now: float) -> None:
-        """Tell those who came since what holds."""
+        """Send the current state to clients that have subscribed since the last call."""
         with self._lock:
             asked, self._asked = self._asked, set()
         holds = {**self._last, "/scene": scene.update(list(self._entities.values()))}
@@ -117,7 +117,7 @@ class _Listener:
         self._ask(channel.topic)
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        """What holds is told anew to whoever comes back."""
+        """A client that subscribes again receives the current state again."""
 
 
 def _foxglove() -> Any:

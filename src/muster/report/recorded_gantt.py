@@ -1,4 +1,4 @@
-"""What robots did in a mission that was recorded, over time: a row for each robot."""
+"""A Gantt chart of a recorded mission: a row for each robot."""
 
 from __future__ import annotations
 

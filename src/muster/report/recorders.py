@@ -1,4 +1,4 @@
-"""Several recorders that are told the same."""
+"""Combines several recorders into one."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from muster.motion.port import Telemetry
 
 
 class Recorders:
-    """Tells each what it is told, in the order in which they are given; see `execution.Recorder`.
+    """Forwards each call to several recorders, in their order; see `execution.Recorder`.
 
     Parameters
     ----------
     on_failure
-        is told of an error, such as that of a full disk: who raised it is told nothing more, as nobody waits for a
-        record where robots move. None: the error goes on to who tells.
+        receives the error of a recorder, such as that of a full disk. That recorder receives no more calls, as robots
+        do not wait for a record. None: the error is raised.
     """
 
     def __init__(self, *recorders: Recorder, on_failure: Callable[[Exception], None] | None = None) -> None:
@@ -40,8 +40,8 @@ class Recorders:
     def on_report(self, report: dict[str, Any]) -> None:
         self._each(lambda recorder: recorder.on_report(report))
 
-    def forgiving(self, act: Callable[[], None]) -> bool:
-        """Do something that may fail as telling may; returns whether it did not."""
+    def attempt(self, act: Callable[[], None]) -> bool:
+        """Do something that may fail like a recorder; return whether it succeeded."""
         try:
             act()
         except Exception as error:
@@ -52,4 +52,4 @@ class Recorders:
         return True
 
     def _each(self, tell: Callable[[Recorder], None]) -> None:
-        self._recorders = [one for one in self._recorders if self.forgiving(partial(tell, one))]
+        self._recorders = [one for one in self._recorders if self.attempt(partial(tell, one))]

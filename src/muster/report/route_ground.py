@@ -1,4 +1,4 @@
-"""What lies beneath the routes: the stems of places in the air, and the arrows of prerequisites."""
+"""Below the routes: stems of places in the air, and arrows of prerequisites."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.report.styles import FRAME, MOST_ARROWS, PREREQUISITE
 
 
 def draw_stems(ax: Any, tops: Places, floor: float) -> None:
-    """Draw thin lines from the points `(n, 3)` of a 3-D picture down to its floor, which give them a place."""
+    """Draw thin lines from the points `(n, 3)` of a 3-D picture down to its floor, which show their position."""
     feet = tops * [1, 1, 0] + [0, 0, floor]
     rows = np.stack([tops, feet, np.full_like(tops, np.nan)], axis=1).reshape(-1, 3)
     ax.plot(*rows.T, color=FRAME, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.8, gid="stems")

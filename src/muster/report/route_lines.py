@@ -1,4 +1,4 @@
-"""Where the robots of a plan go, as lines to be drawn. No drawing here.
+"""The routes of a plan as lines to be drawn. No drawing here.
 
 All places are metres in the map frame, `(n, d)` with d 2 or 3 as the picture has dimensions.
 """
@@ -21,13 +21,13 @@ Places = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Trace:
-    """One robot's way.
+class RobotLines:
+    """One robot's route as lines.
 
-    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven;
-    `work` along the way points of a task's action, else from its entry through its position to its exit, where these
-    differ. Both are polylines, parted by
-    rows of NaN. `end` is the leg from the last task to where the route must end, no rows where it may end anywhere.
+    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven.
+    `work` runs along the way points of a task's action, else from its entry through its position to its exit, where
+    these differ. Both are polylines, separated by rows of NaN. `end` is the leg from the last task to where the route
+    must end; it has no rows where the route may end anywhere.
     """
 
     index: int
@@ -40,23 +40,23 @@ class Trace:
     end: Places
 
 
-Way = Callable[[Robot, Point, Point], Sequence[Point]]
-"""The points that a robot passes on its way from one place to another, both included."""
+PathFunction = Callable[[Robot, Point, Point], Sequence[Point]]
+"""The points that a robot passes from one place to another, both included."""
 
 
-def traces(mission: Mission, verdict: Verdict, dimensions: int) -> list[Trace]:
-    """Trace the ways of all robots, in mission order."""
-    way = way_in(mission)
+def robot_lines(mission: Mission, verdict: Verdict, dimensions: int) -> list[RobotLines]:
+    """The lines of all robots, in mission order."""
+    path = path_function(mission)
     tasks = {task.id: task for task in mission.tasks}
     found = []
     for index, (robot, figures) in enumerate(zip(mission.robots, verdict.routes, strict=True)):
         route = tuple(tasks[name] for name in figures.tasks)
-        found.append(_trace(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions, way))
+        found.append(_lines_of(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions, path))
     return found
 
 
-def way_in(mission: Mission) -> Way:
-    """How robots go from place to place: along the paths of the map where travel is by it, else straight."""
+def path_function(mission: Mission) -> PathFunction:
+    """The path of a robot between two places: over the map where travel is by the map, else straight."""
     if mission.travel_rule != "map":
         return lambda robot, start, goal: (start, goal)
     from muster.motion.map_world import body_of
@@ -64,33 +64,33 @@ def way_in(mission: Mission) -> Way:
 
     robot_paths = RobotPaths.of(mission)
 
-    def way(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
+    def path(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
         found = robot_paths.path(body_of(robot), start, goal)
         return (start, goal) if isinstance(found, NoPath) else [tuple(point) for point in found.points.tolist()]
 
-    return way
+    return path
 
 
-def _trace(
+def _lines_of(
     index: int,
     robot: Robot,
     figures: RouteFigures,
     tasks: tuple[Task, ...],
     end: Point | None,
     dimensions: int,
-    way: Way,
-) -> Trace:
+    path: PathFunction,
+) -> RobotLines:
     travel, work, here = [[robot.position]], [], robot.position
     for task in tasks:
         points = work_points(task, robot)
-        travel[-1] += way(robot, here, points[0])[1:]
+        travel[-1] += path(robot, here, points[0])[1:]
         if len(points) > 1:
-            legs = [way(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(task) else [points]
+            legs = [path(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(task) else [points]
             work.append([points[0], *(point for leg in legs for point in leg[1:])])
         here = points[-1]
         if points[0] != here:
             travel.append([here])
-    return Trace(
+    return RobotLines(
         index=index,
         robot=robot,
         figures=figures,
@@ -98,12 +98,12 @@ def _trace(
         positions=places((task.position for task in tasks), dimensions),
         travel=_polylines(travel, dimensions),
         work=_polylines(work, dimensions),
-        end=places(way(robot, here, end) if end is not None and tasks else [], dimensions),
+        end=places(path(robot, here, end) if end is not None and tasks else [], dimensions),
     )
 
 
 def work_points(task: Task, robot: Robot) -> Sequence[Point]:
-    """What a robot passes at a task; of one that it cannot do, the position."""
+    """The points that a robot passes at a task; the task's position for a robot that cannot do it."""
     doing = plan(task, robot)
     return (task.position,) if isinstance(doing, Impossible) else doing.points
 
@@ -125,7 +125,7 @@ def places(points: Iterable[Point], dimensions: int) -> Places:
 
 
 def _polylines(lines: Sequence[Sequence[Point]], dimensions: int) -> Places:
-    """Put lines of at least two points below one another, parted by rows of NaN."""
+    """Join lines of at least two points, separated by rows of NaN."""
     gap = np.full((1, dimensions), np.nan)
     parts: list[Places] = []
     for line in lines:

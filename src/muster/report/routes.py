@@ -1,4 +1,4 @@
-"""The routes of a plan on the ground."""
+"""Draws the routes of a plan on the ground."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
 from muster.report.fonts import Names
 from muster.report.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
 from muster.report.route_ground import draw_prerequisites, draw_stems, drawn_prerequisites
-from muster.report.route_lines import Places, Trace, left_out, places, traces
+from muster.report.route_lines import Places, RobotLines, left_out, places, robot_lines
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
 from muster.verification import Verdict
 
@@ -87,13 +87,13 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
 def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
     frame_of_map(ax, *_limits(scene, scene.dimensions))
     entries = _draw_ground(ax, scene)
-    for trace in scene.traces:
-        _draw_lines(ax, trace, scene.detail)
-    for trace in scene.traces:
-        _draw_tasks(ax, trace, scene.detail)
+    for lines in scene.lines:
+        _draw_lines(ax, lines, scene.detail)
+    for lines in scene.lines:
+        _draw_tasks(ax, lines, scene.detail)
     _draw_left_out(ax, scene)
     _draw_starts(ax, scene)
-    limited = any(trace.figures.capacity is not None for trace in scene.traces)
+    limited = any(lines.figures.capacity is not None for lines in scene.lines)
     entries = [*_robot_entries(scene, verdict.usage_unit), *_mark_entries(scene), *entries, *note_entries(scene.names)]
     add_legend(ax, entries, "usage / work capacity" if limited else "usage")
     add_title(ax, scene.names.title(scene.mission.name), facts_of(verdict, plan), alarm_of(verdict))
@@ -113,7 +113,7 @@ class _Detail:
 @dataclass(frozen=True)
 class _Scene:
     mission: Mission
-    traces: list[Trace]
+    lines: list[RobotLines]
     left_out: list[Task]
     dimensions: int
     detail: _Detail
@@ -129,11 +129,11 @@ class _Scene:
 
 def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None) -> _Scene:
     dimensions = 3 if spatial else 2
-    drawn = traces(mission, verdict, dimensions)
-    idle = [trace.robot.id for trace in drawn if not trace.tasks]
+    drawn = robot_lines(mission, verdict, dimensions)
+    idle = [lines.robot.id for lines in drawn if not lines.tasks]
     return _Scene(
         mission=mission,
-        traces=drawn,
+        lines=drawn,
         left_out=left_out(mission, verdict),
         dimensions=dimensions,
         detail=_detail(len(mission.tasks)),
@@ -168,8 +168,8 @@ def _all_points(scene: _Scene) -> list[Point]:
     points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
     for task in mission.tasks:
         points += [task.position, task.entry or task.position, task.exit or task.position]
-    for trace in scene.traces:
-        points += [tuple(point) for point in trace.work[~np.isnan(trace.work).any(axis=1)].tolist()]
+    for lines in scene.lines:
+        points += [tuple(point) for point in lines.work[~np.isnan(lines.work).any(axis=1)].tolist()]
     if mission.map is not None:
         points += map_corners(mission.map, scene.image)
     return points
@@ -210,36 +210,36 @@ def _stroke(style: Style, width: float) -> dict[str, Any]:
     return {"color": style.color, "linewidth": 1.25 * width, "linestyle": "-", "path_effects": core}
 
 
-def _draw_lines(ax: Any, trace: Trace, detail: _Detail) -> None:
+def _draw_lines(ax: Any, lines: RobotLines, detail: _Detail) -> None:
     """Draw travel in the robot's stroke, the leg to the end dashed, work from entry to exit dotted."""
-    style, name = robot_style(trace.index), trace.robot.id
+    style, name = robot_style(lines.index), lines.robot.id
     thin = {"color": style.color, "linewidth": 0.75 * detail.line, "zorder": 2}
-    if len(trace.travel):
+    if len(lines.travel):
         stroke = _stroke(style, detail.line)
-        ax.plot(*trace.travel.T, gid=f"travel-{name}", zorder=2, solid_joinstyle="round", **stroke)
-    if len(trace.work):
-        ax.plot(*trace.work.T, gid=f"work-{name}", linestyle=(0, (1, 1)), **thin)
-    if len(trace.end):
-        ax.plot(*trace.end.T, gid=f"end-{name}", linestyle=DASHED, **thin)
-        if trace.robot.end_position is not None:
+        ax.plot(*lines.travel.T, gid=f"travel-{name}", zorder=2, solid_joinstyle="round", **stroke)
+    if len(lines.work):
+        ax.plot(*lines.work.T, gid=f"work-{name}", linestyle=(0, (1, 1)), **thin)
+    if len(lines.end):
+        ax.plot(*lines.end.T, gid=f"end-{name}", linestyle=DASHED, **thin)
+        if lines.robot.end_position is not None:
             mark = {"marker": "v", "markersize": 0.7 * detail.mark, "markerfacecolor": "white", **thin, "zorder": 3}
-            ax.plot(*trace.end[-1:].T, gid=f"end-place-{name}", linestyle="none", **mark)
+            ax.plot(*lines.end[-1:].T, gid=f"end-place-{name}", linestyle="none", **mark)
 
 
-def _draw_tasks(ax: Any, trace: Trace, detail: _Detail) -> None:
+def _draw_tasks(ax: Any, lines: RobotLines, detail: _Detail) -> None:
     """Draw the tasks of a route, numbered from 1. Marks of a later robot lie wholly above those of an earlier one."""
-    style, zorder = robot_style(trace.index), 3 + trace.index * 1e-5
-    if not trace.tasks:
+    style, zorder = robot_style(lines.index), 3 + lines.index * 1e-5
+    if not lines.tasks:
         return
     size = detail.mark * (0.88 if style.marker in "sD" else 1.0)
     edge = 0.8 if detail.numbers else 0.0
     mark = {"marker": style.marker, "markersize": size, "color": style.color, "markeredgecolor": "white"}
     ax.plot(
-        *trace.positions.T, gid=f"tasks-{trace.robot.id}", linestyle="none", markeredgewidth=edge, zorder=zorder, **mark
+        *lines.positions.T, gid=f"tasks-{lines.robot.id}", linestyle="none", markeredgewidth=edge, zorder=zorder, **mark
     )
     if detail.numbers:
         look: dict[str, Any] = {"color": style.ink, "fontweight": "bold", "zorder": zorder + 0.5e-5}
-        for order, (task, place) in enumerate(zip(trace.tasks, trace.positions, strict=True), 1):
+        for order, (task, place) in enumerate(zip(lines.tasks, lines.positions, strict=True), 1):
             font = detail.mark * (0.6 if order < 10 else 0.53 if order < 100 else 0.43)
             write(ax, place, str(order), gid=f"order-{task.id}", fontsize=font, **look)
 
@@ -278,13 +278,13 @@ def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
     from matplotlib.lines import Line2D
 
     entries: list[tuple[Any, str]] = []
-    named = [trace for trace in scene.traces if trace.robot.id not in scene.idle]
+    named = [lines for lines in scene.lines if lines.robot.id not in scene.idle]
     shown = named_rows(len(named))
-    for trace in named[:shown]:
-        style = robot_style(trace.index)
+    for lines in named[:shown]:
+        style = robot_style(lines.index)
         mark = Line2D([], [], color=style.color, marker=style.marker, markersize=5.5, linestyle="none")
         line = Line2D([], [], **_stroke(style, 1.6))
-        entries.append(((line, mark), f"{shortened(scene.names.robot(trace.robot.id))}  {_usage_text(trace, unit)}"))
+        entries.append(((line, mark), f"{shortened(scene.names.robot(lines.robot.id))}  {_usage_text(lines, unit)}"))
     if shown < len(named):
         entries.append((Line2D([], [], linestyle="none"), f"... and {len(named) - shown} more"))
     if scene.idle:
@@ -292,8 +292,8 @@ def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
     return entries
 
 
-def _usage_text(trace: Trace, unit: str) -> str:
-    usage, capacity = trace.figures.usage, trace.figures.capacity
+def _usage_text(lines: RobotLines, unit: str) -> str:
+    usage, capacity = lines.figures.usage, lines.figures.capacity
     if capacity is None:
         return f"{usage:.2f} {unit}"
     limit = f"{capacity:.2f}".rstrip("0").rstrip(".")
@@ -312,11 +312,11 @@ def _mark_entries(scene: _Scene) -> list[tuple[Any, str]]:
         label = f"left out ({len(scene.left_out)})"
         entries.append(entry(label, marker="x", color=LEFT_OUT, markersize=6, markeredgewidth=1.6))
     entries.append(entry("start", marker="^", markersize=7))
-    ends = [trace for trace in scene.traces if len(trace.end)]
+    ends = [lines for lines in scene.lines if len(lines.end)]
     if ends:
-        label = "way to end" if any(trace.robot.end_position is not None for trace in ends) else "way back"
+        label = "way to end" if any(lines.robot.end_position is not None for lines in ends) else "way back"
         entries.append(entry(label, linestyle=DASHED, linewidth=1.3))
-    if any(len(trace.work) for trace in scene.traces):
+    if any(len(lines.work) for lines in scene.lines):
         entries.append(entry("work", linestyle=(0, (1, 1)), linewidth=1.3))
     return entries
 
@@ -359,7 +359,7 @@ def _obstacles(ax: Any, scene: _Scene) -> Places:
     radius = scene.detail.mark / 2
     tasks = to_points(ax, scene.places([task.position for task in scene.mission.tasks]))
     starts = to_points(ax, scene.places([robot.position for robot in scene.mission.robots]))
-    lines = [line for trace in scene.traces for line in (trace.travel, trace.work, trace.end) if len(line)]
+    lines = [line for lines in scene.lines for line in (lines.travel, lines.work, lines.end) if len(line)]
     at = {task.id: task.position for task in scene.mission.tasks}
     lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission)]
     if scene.mission.map is not None:

@@ -1,8 +1,8 @@
-"""How a robot looks in every picture: fixed by its place in the mission, whatever the plan.
+"""The style of a robot in every picture: fixed by its place in the mission, whatever the plan.
 
-Colours are those of [okabe2008], which readers of all kinds of colour vision tell
-apart; their yellow, too faint on white, is replaced by a wine red, and their black by a dark grey. After eight robots
-the colours come again with another marker and another stroke.
+Colours are those of [okabe2008], which readers of all kinds of colour vision distinguish. Their yellow, too faint on
+white, is replaced by a wine red, and their black by a dark grey. After eight robots the colours repeat with another
+marker and another stroke.
 """
 
 from __future__ import annotations

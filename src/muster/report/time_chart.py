@@ -1,4 +1,4 @@
-"""A chart of rows over time, for plans and for what was carried out: what each robot does from when until when."""
+"""A chart of rows over time, for plans and for recorded missions: what each robot does from when until when."""
 
 from __future__ import annotations
 
@@ -141,13 +141,13 @@ def new_chart_axes(rows: int) -> Axes:
 
 
 def duration(seconds: float) -> str:
-    """A length of time for people."""
+    """A duration in words."""
     _, unit, size = next(limit for limit in _UNITS if seconds <= limit[0])
     return f"{seconds / size:.2f} {unit}"
 
 
 def lasting(spans: Iterable[Span]) -> tuple[Span, ...]:
-    """The spans that take time."""
+    """The spans with a length above 0."""
     return tuple((start, end) for start, end in spans if end > start)
 
 

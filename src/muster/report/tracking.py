@@ -1,4 +1,4 @@
-"""A robot's reference and where it went, on the map and as deviation; and measures as bars with their spread."""
+"""Draws a robot's reference and flights on the map, their deviation over time, and measures as bars with spreads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Tracked:
     Parameters
     ----------
     name
-        of what kind it is; flights of a kind have one colour.
+        the kind of flight; flights of a kind have one colour.
     places
         (k, 2) metres.
     times, aside
@@ -95,7 +95,7 @@ _MARKERS = {".": 1.5, "^": 5.0, "o": 5.0, "x": 5.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Measure:
-    """One measure: by robot its mean and its spread, in the unit that `label` tells; `printed`, a published value."""
+    """One measure: its mean and spread by robot, in the unit that `label` states; `printed`, a published value."""
 
     label: str
     means: Mapping[str, float]

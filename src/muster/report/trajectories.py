@@ -1,4 +1,4 @@
-"""Where robots went and how near they came to each other, for several methods side by side."""
+"""Draws robots' trajectories and distances for several methods of collision avoidance side by side."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _INCHES = 3.6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MethodRun:
-    """What one method made of one scenario.
+    """The result of one method in one scenario.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class MethodRun:
 
 
 def plot_trajectories(ways: Sequence[MethodRun], title: str) -> Figure:
-    """Draw for each method, from above: the ways, the least distance over time, and both components of velocity.
+    """For each method draw from above the trajectories, then the least distance and both velocity components over time.
 
     Raises
     ------

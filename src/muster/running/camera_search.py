@@ -40,7 +40,7 @@ class _Eye:
     due_s: float
 
 
-class Lookout:
+class CameraSearch:
     """All cameras of a team, and what they find.
 
     Parameters
@@ -214,14 +214,18 @@ def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Camer
     return RenderedCameras(world), TagDetector()
 
 
-def lookout_for(mission: Mission, world: SimulatedWorld, ports: Mapping[str, RobotPort], **how: Any) -> Lookout | None:
-    """The cameras of a mission in which there is something to find; see `Lookout`."""
-    return Lookout(mission, world, ports, **how) if mission.tags else None
+def camera_search_for(
+    mission: Mission, world: SimulatedWorld, ports: Mapping[str, RobotPort], **how: Any
+) -> CameraSearch | None:
+    """The cameras of a mission in which there is something to find; see `CameraSearch`."""
+    return CameraSearch(mission, world, ports, **how) if mission.tags else None
 
 
-def with_found(report: Report, lookout: Lookout | None) -> Report:
+def with_found(report: Report, camera_search: CameraSearch | None) -> Report:
     """A report with what cameras found."""
-    return report if lookout is None else replace(report, found=lookout.found, remarks=lookout.remarks)
+    return (
+        report if camera_search is None else replace(report, found=camera_search.found, remarks=camera_search.remarks)
+    )
 
 
 def intrinsics_of(camera: Camera) -> Intrinsics:

@@ -10,7 +10,7 @@ from muster.mission.model import Event
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort
 
 
-class FromZero:
+class FleetWithMissionClock:
     """A `Fleet` that is another's from now on; what robots said before is of times below its beginning.
 
     Parameters

@@ -75,7 +75,7 @@ def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
 
 def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.middleware import open_wire
+    from muster.bridges.ros2.open_wire import open_wire
     from muster.bridges.ros2.port import Arrival
 
     fleet = Ros2Fleet(

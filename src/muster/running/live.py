@@ -13,8 +13,8 @@ import numpy as np
 
 from muster.bridges.fleet import Fleet, reason_of
 from muster.execution import (
+    CompletedWork,
     Executor,
-    Past,
     Reallocation,
     Recorder,
     Status,
@@ -29,7 +29,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
-from muster.running.fleet_clock import FromZero
+from muster.running.fleet_clock import FleetWithMissionClock
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
@@ -124,10 +124,10 @@ class Live:
         seed: int = 0,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
-        past: Past | None = None,
+        past: CompletedWork | None = None,
         begin_s: float = 0.0,
     ) -> None:
-        self._fleet, self._recorder = FromZero(fleet, begin_s), recorder
+        self._fleet, self._recorder = FleetWithMissionClock(fleet, begin_s), recorder
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
         self.executor = Executor(
@@ -179,14 +179,14 @@ class Live:
 
     def pause(self) -> None:
         """Robots stop where they are, and the mission's clock too, until `resume`."""
-        self.executor.stand()
+        self.executor.pause()
         self._fleet.pause()
 
     def resume(self) -> None:
         """Robots go on."""
         self._fleet.resume()
-        self.executor.come_to(self.time_s)
-        self.executor.go_on()
+        self.executor.set_clock(self.time_s)
+        self.executor.resume()
 
     def stop(self) -> None:
         """Robots stay where they are."""
@@ -224,7 +224,7 @@ def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed:
         time.sleep(0.05)
 
 
-def from_where_they_stand(mission: Mission, fleet: Fleet) -> Mission:
+def with_reported_starts(mission: Mission, fleet: Fleet) -> Mission:
     """The mission with robots that start where they say that they are, and as they head; the others as it has them."""
     said = {robot.id: fleet.ports[robot.id].telemetry() for robot in mission.robots}
     robots = (
@@ -237,7 +237,7 @@ def from_where_they_stand(mission: Mission, fleet: Fleet) -> Mission:
 
 
 def elsewhere(mission: Mission, there: Mission) -> list[str]:
-    """A line for each robot that does not stand where the mission says; `there` is by `from_where_they_stand`."""
+    """A line for each robot that does not stand where the mission says; `there` is by `with_reported_starts`."""
     lines = []
     for says, stands in zip(mission.robots, there.robots, strict=True):
         far = math.dist(says.position[: len(stands.position)], stands.position)

@@ -156,7 +156,7 @@ def _recorded(
         yield told
     finally:
         if record is not None:
-            told.forgiving(file.close)
+            told.attempt(file.close)
 
 
 def _footage(mission: Mission, film: str | Path | Footage) -> Footage:

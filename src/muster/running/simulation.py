@@ -25,8 +25,8 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
-from muster.running.camera_search import Lookout, OnLook, lookout_for, with_found
-from muster.running.state_estimation import heard
+from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.state_estimation import with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 from muster.verification import verify
@@ -95,18 +95,20 @@ class Simulation:
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         if on_world is not None:
             on_world(self._world)
-        self._hearing = heard(self._world)
+        self._robots = with_state_estimation(self._world)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
-            self._hearing.ports,
+            self._robots.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
             replan=Reallocation(travel=travel, seed=seed),
             observer=recorder,
             now=self._world.time_s,
         )
-        self._lookout = lookout_for(mission, self._world, self._hearing.ports, noise=noise, seed=seed, on_look=on_look)
+        self._camera_search = camera_search_for(
+            mission, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
+        )
         self._recorder = recorder
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
         self._executor.tick(self.time_s)
@@ -139,7 +141,7 @@ class Simulation:
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
         """Where robots say that they are, metres: those that were heard."""
-        told = {name: port.telemetry() for name, port in self._hearing.ports.items()}
+        told = {name: port.telemetry() for name, port in self._robots.ports.items()}
         return {name: said.position for name, said in told.items() if said is not None}
 
     def advance(self, until_s: float) -> Sequence[ExecutionEvent]:
@@ -150,7 +152,7 @@ class Simulation:
         first = len(self._executor.events)
         while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.events) == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
-            self._hearing.advance(max(due_s, self.time_s + self._world.dt_s))
+            self._robots.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._take_event(self._ahead.pop(0))
             self._look()
@@ -186,7 +188,7 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-        return with_found(report, self._lookout)
+        return with_found(report, self._camera_search)
 
     @property
     def status(self) -> Status:
@@ -201,14 +203,14 @@ class Simulation:
         return report
 
     @property
-    def lookout(self) -> Lookout | None:
+    def camera_search(self) -> CameraSearch | None:
         """What cameras see, where the mission has tags."""
-        return self._lookout
+        return self._camera_search
 
     def close(self) -> None:
         """Give back what pictures hold of the graphics library."""
-        if self._lookout is not None:
-            self._lookout.close()
+        if self._camera_search is not None:
+            self._camera_search.close()
 
     def _tick(self) -> None:
         self._executor.tick(self.time_s)
@@ -217,19 +219,19 @@ class Simulation:
 
     @property
     def _look_due_s(self) -> float:
-        return math.inf if self._lookout is None else self._lookout.due_s
+        return math.inf if self._camera_search is None else self._camera_search.due_s
 
     def _look(self) -> None:
         """Let cameras look; what they find becomes tasks, and what lies elsewhere moves those not yet done."""
-        if self._lookout is None:
+        if self._camera_search is None:
             return
-        for found, event in self._lookout.look(self.time_s):
-            self._executor.come_to(self.time_s)
-            self._executor.tell("found", found)
+        for found, event in self._camera_search.look(self.time_s):
+            self._executor.set_clock(self.time_s)
+            self._executor.emit("found", found)
             if event is None or not (event.new_task or self._is_open(event)):
                 continue
             if not self._executor.report_if_it_fits(event) and event.new_task is not None:
-                self._lookout.refused(event.new_task.id)
+                self._camera_search.refused(event.new_task.id)
 
     def _is_open(self, event: Event) -> bool:
         return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
@@ -244,8 +246,8 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
-            if self._lookout is not None:
-                self._lookout.join(event.robot_joins)
+            if self._camera_search is not None:
+                self._camera_search.join(event.robot_joins)
 
 
 def _with_objective(mission: Mission, plan: Plan) -> Plan:

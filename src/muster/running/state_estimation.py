@@ -25,7 +25,7 @@ SLIP_SHARE = 1 / 3
 """Of the greatest slip: what odometry errs by in a step, as slip is drawn evenly from 0."""
 
 
-class Hearing(Protocol):
+class RobotsInWorld(Protocol):
     """Robots' ports, and the time that goes by between what they say."""
 
     @property
@@ -38,17 +38,17 @@ class Hearing(Protocol):
         ...
 
 
-def heard(world: SimulatedWorld) -> Hearing:
+def with_state_estimation(world: SimulatedWorld) -> RobotsInWorld:
     """Where the world's noise leaves poses exact, the world itself; else with filters between."""
-    return FusedHearing(world) if world.noise.of_pose else world
+    return EstimatedWorld(world) if world.noise.of_pose else world
 
 
-class FusedHearing:
+class EstimatedWorld:
     """A world whose robots are heard through `FusedPort`s that miss no step."""
 
     def __init__(self, world: SimulatedWorld) -> None:
         self._world = world
-        self.ports = FusedPorts(world)
+        self.ports = EstimatedPorts(world)
         self._listen()
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
@@ -65,7 +65,7 @@ class FusedHearing:
             port.telemetry()
 
 
-class FusedPorts(Mapping[str, FusedPort]):
+class EstimatedPorts(Mapping[str, FusedPort]):
     """Of all robots that are in the world, made as they come."""
 
     def __init__(self, world: SimulatedWorld) -> None:

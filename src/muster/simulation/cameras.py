@@ -1,4 +1,4 @@
-"""What a robot's camera sees in a simulated world: by geometry, or in a picture that is drawn."""
+"""Robots' cameras in a simulated world: they see by geometry, or in rendered pictures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from muster.perception.tags import tag_pose
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One look of one robot: when, what the world showed (None where it draws none), and what that told."""
+    """One image of one robot's camera: its time, the picture (None where none is rendered), and the observation."""
 
     robot: str
     time_s: float
@@ -30,14 +30,14 @@ class Look:
 
 
 class Cameras(Protocol):
-    """How cameras of a world see."""
+    """The cameras of a world."""
 
     def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
-        """Let a robot look from where its camera truly is; `body`, (6,) or (4, 4), is where it takes itself to be."""
+        """Look from the camera's true `view`; `body`, (6,) or (4, 4), is the pose that the robot estimates."""
         ...
 
     def close(self) -> None:
-        """Give back what it holds."""
+        """Release resources."""
         ...
 
 
@@ -57,7 +57,7 @@ class GeometricCameras:
         return Look(observer.robot, now, None, observer.locate(sightings, body, now))
 
     def close(self) -> None:
-        """See `Cameras`; it holds nothing."""
+        """See `Cameras`; nothing is held."""
 
 
 def true_body(frame: Floats, axes: Floats) -> Floats:

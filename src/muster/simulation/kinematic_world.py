@@ -12,7 +12,7 @@ from muster.simulation.world_base import Event, WorldBase
 
 
 class KinematicWorld(WorldBase):
-    """Robots that go as they are told, but for noise; see `WorldBase`."""
+    """Robots that follow their velocity commands exactly, but for noise; see `WorldBase`."""
 
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
         """See `SimulatedWorld`. Robots are seen as large as their radius; those without are not seen."""

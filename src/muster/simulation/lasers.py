@@ -1,6 +1,6 @@
-"""Lasers on the robots of a world: where they are mounted, what of robots as discs and balls they see, how they err.
+"""Lasers on the robots of a world: their mounting, other robots as discs and balls, and measurement errors.
 
-What a scanner is says `perception.laser`; what it measures from where a robot truly is, `SimulatedWorld.scan`.
+`perception.laser` has the scanner; `SimulatedWorld.scan` measures from a robot's true pose, without errors.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _STREAM = (0x1A5E,)
 
 
 class Laser:
-    """A robot's laser in a world. Its errors are drawn by seed, robot and step: asked twice, it says the same.
+    """A robot's laser in a world. Errors are drawn by seed, robot and step: a second scan in a step is the same.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Laser:
 
     @property
     def bearings(self) -> Floats:
-        """Of the beams, (n,) radians from straight ahead, rising."""
+        """Bearings of the beams, (n,) radians from straight ahead, rising."""
         return self.scanner.bearings
 
     def scan(self, cylinders: Floats = NO_DISCS) -> Floats:
@@ -88,7 +88,7 @@ class Laser:
 
 
 def laser_height_m(robot: Robot, height_m: float | None) -> float:
-    """How high a laser is above the robot's place: as asked for, else amid its body.
+    """The height of a laser above the robot's position: as given, else the middle of its body.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def laser_height_m(robot: Robot, height_m: float | None) -> float:
 
 
 def discs_seen_at(robots: Sequence[Robot], places: Floats, who: int, height_m: float) -> Floats:
-    """The other robots as one of them sees them at a height of the map frame: (k, 3) of x, y, radius.
+    """The other robots as discs at the laser's height in the map frame: (k, 3) of x, y, radius.
 
     Ground robots are upright cylinders, drones balls. In a mission in the plane drones fly above the others.
 

@@ -1,4 +1,4 @@
-"""What a simulated robot does other than it means to, and what it says of itself other than it is."""
+"""Noise of simulated robots: errors of motion, and errors of telemetry."""
 
 from __future__ import annotations
 
@@ -10,27 +10,26 @@ from muster.mission.errors import ParameterError
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Of all robots alike; all 0 by default. Drawn from the world's seed.
+    """The noise of all robots alike; all 0 by default. It is drawn from the world's seed.
 
     Parameters
     ----------
     velocity
-        standard deviation of the share of its velocity that a robot misses in a step. It never gets more than it
-        wanted, so that noise alone brings no robot into contact.
+        standard deviation of the share of its velocity that a robot loses in a step. It never gains velocity, so that
+        noise alone brings no robot into contact.
     slip
-        the most of its way, as a share, that a robot loses in a step though its odometry counts it; evenly from 0.
+        the greatest share of its way that a robot loses in a step although its odometry counts it; uniform from 0.
     odometry
         standard deviation of the share by which odometry errs in a step.
     motors
-        standard deviation of the share by which the force of a motor or rotor differs from what is asked of it in a
+        standard deviation of the share by which the force of a motor or rotor differs from its command in a
         step of the world; in the physics world alone, as robots of the kinematic world have no motors.
     position_m, heading_rad
         standard deviations of each coordinate and of the heading that telemetry gives.
     attitude_rad
-        standard deviation of the roll and of the pitch that a robot takes itself to have.
+        standard deviation of the estimated roll and of the estimated pitch.
     gyro_radps, gyro_bias_radps
-        standard deviations of the yaw rate that the inertial unit gives in a step, and of what each robot's gives too
-        much all the time.
+        standard deviations of the inertial unit's yaw rate in a step, and of its constant bias, drawn for each robot.
     accelerometer_mps2
         standard deviation of each coordinate of the acceleration that the inertial unit gives in a step.
 
@@ -61,13 +60,13 @@ class Noise:
 
     @property
     def of_telemetry(self) -> bool:
-        """Whether robots are not where they say, or their inertial units err."""
+        """Whether telemetry has errors: in poses, or of inertial units."""
         told = self.position_m, self.heading_rad, self.gyro_radps, self.gyro_bias_radps, self.accelerometer_mps2
         return any(told)
 
     @property
     def of_pose(self) -> bool:
-        """Whether robots are not where they say, or not turned so."""
+        """Whether positions or headings in telemetry have errors."""
         return self.position_m > 0 or self.heading_rad > 0
 
 

@@ -17,9 +17,9 @@ from muster.simulation.noise import Noise
 
 
 class SimulatedPort:
-    """One robot of a world; a `RobotPort`.
+    """The port of one robot of a world, a `RobotPort`; `body` is the robot.
 
-    Of a silent robot telemetry stays what it last was; it goes on, and orders still reach it. `body` is whose it is.
+    A muted robot's telemetry stays as it last was; the robot goes on, and still receives way points.
     """
 
     def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
@@ -41,7 +41,7 @@ class SimulatedPort:
         return self.body.id
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
-        """See `RobotPort`. A robot out of order does not take it: the order in its telemetry stays.
+        """See `RobotPort`. A failed robot does not accept it: the order in its telemetry stays.
 
         Raises
         ------
@@ -66,15 +66,15 @@ class SimulatedPort:
         return self._now() if self._last_word is None else self._last_word
 
     def mute(self) -> None:
-        """From now on telemetry stays what it is."""
+        """Freeze telemetry."""
         self._last_word = self.telemetry()
 
     def unmute(self) -> None:
-        """Telemetry goes on."""
+        """Let telemetry change again."""
         self._last_word = None
 
     def label(self, order: int, passed: int) -> str:
-        """Of the way point by which so many of an order were passed."""
+        """The label of the way point with which this number of an order's way points is passed."""
         points = self._sent.get(order, ())
         return points[passed - 1].label if 0 < passed <= len(points) else ""
 
@@ -86,7 +86,7 @@ class SimulatedPort:
         return Inertial(self._crowd.dt, *self._crowd.felt(self._number)) if self._crowd.steps else None
 
     def _disturbed(self, said: Telemetry) -> Telemetry:
-        """The same errors whenever it is asked in a step."""
+        """Telemetry with errors, which are the same within a step."""
         noise, felt = self._noise, said.inertial
         random = np.random.default_rng((*self._seed, self._crowd.steps))
         off = random.normal(0.0, [noise.position_m] * 3 + [noise.heading_rad])

@@ -1,4 +1,4 @@
-"""The map's walls as the faces that stop simulated robots: of polygons their sides, of an image the cells' borders."""
+"""The map's walls as faces that stop simulated robots: sides of polygons, or borders of an image's blocked cells."""
 
 from __future__ import annotations
 

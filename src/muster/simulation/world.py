@@ -1,4 +1,4 @@
-"""What a world is: robots that move and can be told to, whatever moves them, and what is measured of them."""
+"""The interface of simulated worlds: robots that move, commands to them, and what is measured of them."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ Observer = Callable[[float, Floats, Floats, Floats], None]
 
 @dataclass(frozen=True)
 class WaypointPassed:
-    """A labelled way point was passed, hold included, or all of an order were.
+    """A labelled way point, or the last one of an order, was passed, its hold included.
 
     Parameters
     ----------
     time_s
-        when.
+        the time of passing.
     robot, order, passed
-        whose, of which `send`, and how many of its way points are passed.
+        the robot, the number that `send` returned, and how many way points of that order are passed.
     label
-        of the way point.
+        the label of the way point.
     idle
-        whether it was the last, so that the robot has nothing to do.
+        whether it was the last one, so that the robot stands.
     """
 
     time_s: float
@@ -42,7 +42,7 @@ class WaypointPassed:
 
 @dataclass(frozen=True)
 class Contact:
-    """Two robots touched: when first, and the least distance that their centres ever had."""
+    """Two robots touched: the time of first contact, and the least distance of their centres so far."""
 
     time_s: float
     robots: tuple[str, str]
@@ -64,7 +64,7 @@ class SimulatedWorld(Protocol):
 
     @property
     def noise(self) -> Noise:
-        """Of all robots."""
+        """The noise of all robots."""
         ...
 
     @property
@@ -73,48 +73,59 @@ class SimulatedWorld(Protocol):
         ...
 
     def step(self) -> tuple[WaypointPassed, ...]:
-        """Let one step go by."""
+        """Simulate one step."""
         ...
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
-        """Let time go by until `until_s`, at most to the end of the first step in which something was passed."""
+        """Simulate until `until_s`, at most to the end of the first step in which a way point was passed.
+
+        Returns
+        -------
+        what was passed in the last step; nothing when `until_s` is reached. Call it again until it returns nothing.
+        """
         ...
 
     def join(self, robot: Robot) -> SimulatedPort:
-        """A robot comes into the world, where it says; returns its port."""
+        """Add a robot at its position; returns its port.
+
+        Raises
+        ------
+        ParameterError
+            if its id is taken, or its position has not as many coordinates as the mission's.
+        """
         ...
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
-        """It stops as soon as it can and takes no more way points; `silent`: it says nothing more either."""
+        """Let a robot fail: it stops as soon as it can and accepts no way points; `silent`: telemetry freezes too."""
         ...
 
     def recover(self, robot: str) -> None:
-        """It works and speaks again; it stands until it is sent."""
+        """Let a failed robot work again, telemetry included; it stands until it gets way points."""
         ...
 
     def silence(self, robot: str) -> None:
-        """Its telemetry stays what it is; the robot goes on, and orders still reach it."""
+        """Freeze a robot's telemetry; the robot goes on, and still receives way points."""
         ...
 
     def unsilence(self, robot: str) -> None:
-        """Its telemetry goes on."""
+        """Let a silenced robot's telemetry change again."""
         ...
 
     def slow(self, robot: str, factor: float) -> None:
-        """From now on its top speed is its own times `factor`, above 0 to 1."""
+        """Multiply a robot's top speed by `factor`, above 0 to 1, from now on."""
         ...
 
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
-        """What a laser on a robot would measure without error: (n,) metres, inf where a beam meets nothing in reach.
+        """Ranges of a laser on a robot, without errors: (n,) metres, inf where a beam meets nothing within reach.
 
-        It sees the walls that stop this robot, other robots, and cylinders. `lasers.Laser` errs too.
+        It sees the walls that stop this robot, other robots, and cylinders. `lasers.Laser` adds errors.
 
         Parameters
         ----------
         cylinders
-            (m, 3) of x, y, radius in the map frame: what stands there, at least as high as the laser.
+            (m, 3) of x, y, radius in the map frame; they are at least as high as the laser.
         height_m
-            of the laser above the robot's place; None: amid its body.
+            of the laser above the robot's position; None: the middle of its body.
 
         Raises
         ------
@@ -125,37 +136,37 @@ class SimulatedWorld(Protocol):
 
     @property
     def positions(self) -> Floats:
-        """True ones: (n, 3), metres."""
+        """True positions: (n, 3), metres."""
         ...
 
     @property
     def headings(self) -> Floats:
-        """True ones: (n,), radians."""
+        """True headings: (n,), radians."""
         ...
 
     @property
     def frames(self) -> Floats:
-        """Where the bodies' frames truly are: (n, 3), metres, with the height of drones in the plane too."""
+        """True positions of the body frames: (n, 3), metres; drones of a mission in the plane have a height too."""
         ...
 
     @property
     def axes(self) -> Floats:
-        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        """True axes of the bodies (ahead, left, up) as the columns of (n, 3, 3) in the map frame."""
         ...
 
     @property
     def ground_m(self) -> float:
-        """How high the ground is."""
+        """The height of the ground: 0, or the lowest position of a mission in space."""
         ...
 
     @property
     def velocities(self) -> Floats:
-        """Of the last step, true ones: (n, 3), m/s."""
+        """True velocities in the last step: (n, 3), m/s."""
         ...
 
     @property
     def distances_m(self) -> Mapping[str, float]:
-        """What each robot has truly travelled, by id."""
+        """True distance that each robot has travelled, by id."""
         ...
 
     @property
@@ -169,5 +180,5 @@ class SimulatedWorld(Protocol):
         ...
 
     def idle(self, robot: str) -> bool:
-        """Whether it has passed all its way points, or has none."""
+        """Whether a robot has passed all its way points, or has none."""
         ...

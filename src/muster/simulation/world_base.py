@@ -1,7 +1,7 @@
-"""What all worlds share: robots that the core's crowd (`core/crowd_world.hpp`) tells where to go, step by step.
+"""What all simulated worlds share: the core's crowd (`core/crowd_world.hpp`) chooses robots' velocities in each step.
 
-There are way points, collision avoidance, limits of speed, yaw rate and acceleration, and a right of way that leaves
-every robot room to brake. Here is who is told what.
+The crowd has way points, collision avoidance, limits of speed, yaw rate and acceleration, and a right of way that
+leaves every robot room to brake.
 """
 
 from __future__ import annotations
@@ -27,37 +27,38 @@ from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
-from muster.simulation.world import Contact, Observer, WaypointPassed
+from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
 AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
 """How high drones fly in a mission in the plane."""
 MARGIN = 0.05
-"""By which avoidance takes robots that face their way for larger, as a share of the radius: they answer late."""
+"""By this share of its radius avoidance enlarges a robot that faces its way, since such a robot answers late."""
 WALL_HORIZON_S = 0.3
 CORNER_M = 0.02
-"""By how much a way point may be cut where a robot goes on past it."""
+"""By how much a robot may miss a way point past which it goes on."""
 Event = tuple[float, int, int, int, bool]
 """Time, robot, order, way points passed, whether all; as `core.CrowdWorld.advance` gives it."""
 Faces = tuple[Floats, list[Slab]]
 """As `faces_and_slabs` gives them."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
-"""Steps after which Ctrl-C is listened to."""
+"""Steps between checks for Ctrl-C."""
 
 
-class WorldBase(ABC):
-    """Robots of a mission that move; deterministic by seed. What moves them, those that inherit say.
+class WorldBase(SimulatedWorld, ABC):
+    """Robots of a mission that move; deterministic by seed. Subclasses say how bodies follow their velocities.
 
-    Robots start where the mission says and stand until they are sent. Walls are there where travel is by the map.
+    Robots start at their positions in the mission and stand until they get way points. Where travel is by the map its
+    walls are there.
 
     Parameters
     ----------
     mission
         its robots and its map are used.
     seed
-        of noise, and of the ways that robots try when they hold each other up.
+        of noise, and of the detours that robots try when they block each other.
     dt_s
         seconds a step; velocities are constant within one.
     noise
@@ -65,9 +66,9 @@ class WorldBase(ABC):
     avoidance
         `orca`, in the plane `rvo` or `hrvo` too, or `none`: robots drive through each other and through walls.
     horizon_s
-        for which avoidance looks ahead.
+        lookahead of avoidance.
     arrival_m
-        from a way point, where a robot counts as there that cannot get nearer; undisturbed ones go to within 1 mm.
+        the distance from a way point at which a robot that cannot get nearer has arrived; undisturbed ones go to 1 mm.
     observer, observe_s
         called at the beginning and then at each step, or at most this often; costs time.
 
@@ -80,9 +81,9 @@ class WorldBase(ABC):
     """
 
     _turned_rad = 1e-9
-    """From a heading, where a robot counts as turned to it."""
+    """The error of a heading at which a robot has turned to it."""
     _clearance_m = 0.0
-    """What the right of way leaves between robots that move less exactly than they are told."""
+    """The gap that the right of way leaves between robots that follow their velocities less exactly."""
 
     def __init__(
         self,
@@ -134,35 +135,24 @@ class WorldBase(ABC):
 
     @property
     def time_s(self) -> float:
-        """Seconds since the beginning: a whole number of steps."""
         return self._crowd.time
 
     @property
     def dt_s(self) -> float:
-        """Seconds a step."""
         return self._dt_s
 
     @property
     def noise(self) -> Noise:
-        """Of all robots."""
         return self._noise
 
     @property
     def ports(self) -> Mapping[str, SimulatedPort]:
-        """By the robots' ids, in order of the mission; those that joined come last."""
         return MappingProxyType(self._ports)
 
     def step(self) -> tuple[WaypointPassed, ...]:
-        """Let one step go by."""
         return self._advance(self.time_s + self._dt_s)
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
-        """Let time go by until `until_s`, at most to the end of the first step in which something was passed.
-
-        Returns
-        -------
-        what was passed in the last step; nothing if the time is up. Call it again until it returns nothing.
-        """
         stride = self._observed_steps if self._observer is not None else _SLICE
         while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
             target = min(until_s, (self._crowd.steps // stride + 1) * stride * self._dt_s)
@@ -172,13 +162,6 @@ class WorldBase(ABC):
         return ()
 
     def join(self, robot: Robot) -> SimulatedPort:
-        """A robot comes into the world, where it says; returns its port.
-
-        Raises
-        ------
-        ParameterError
-            if its id is taken, or its position has not as many coordinates as the mission's.
-        """
         if robot.id in self._numbers:
             raise ParameterError(f"robot {robot.id}: it is in the world; expected a new id")
         if len(robot.position) != self._dimensions:
@@ -203,86 +186,71 @@ class WorldBase(ABC):
         return self._ports[robot.id]
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
-        """It stops as soon as it can and takes no more way points; `silent`: it says nothing more either."""
         self._crowd.fail(self._number(robot))
         if silent:
             self._ports[robot].mute()
 
     def recover(self, robot: str) -> None:
-        """It works and speaks again; it stands until it is sent."""
         self._crowd.recover(self._number(robot))
         self._ports[robot].unmute()
 
     def silence(self, robot: str) -> None:
-        """Its telemetry stays what it is; the robot goes on, and orders still reach it."""
         self._number(robot)
         self._ports[robot].mute()
 
     def unsilence(self, robot: str) -> None:
-        """Its telemetry goes on."""
         self._number(robot)
         self._ports[robot].unmute()
 
     def slow(self, robot: str, factor: float) -> None:
-        """From now on its top speed is its own times `factor`, above 0 to 1."""
         if not 0 < factor <= 1:
             raise ParameterError(f"factor: {factor}; expected above 0 to 1")
         self._crowd.slow(self._number(robot), factor)
 
     @property
     def positions(self) -> Floats:
-        """True ones: (n, 3), metres."""
         found: Floats = self._crowd.positions()
         return found
 
     @property
     def headings(self) -> Floats:
-        """True ones: (n,), radians."""
         found: Floats = self._crowd.headings()
         return found
 
     @property
     def frames(self) -> Floats:
-        """Where the bodies' frames truly are: (n, 3), metres, with the height of drones in the plane too."""
         above = FLIGHT_M if self._dimensions == 2 else 0.0
         flies = np.array([robot.kind == "air" for robot in self._robots], dtype=np.float64)
         return np.asarray(self.positions + above * flies[:, None] * (0.0, 0.0, 1.0))
 
     @property
     def axes(self) -> Floats:
-        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
         return rotation(0.0, 0.0, self.headings)
 
     @property
     def ground_m(self) -> float:
-        """How high the ground is: 0, or the lowest place of a mission in space."""
         return self._lowest_m if self._dimensions == 3 else 0.0
 
     @property
     def velocities(self) -> Floats:
-        """Of the last step, true ones: (n, 3), m/s."""
         found: Floats = self._crowd.velocities()
         return found
 
     @property
     def distances_m(self) -> Mapping[str, float]:
-        """What each robot has truly travelled, by id."""
         return dict(zip(self._numbers, self._crowd.travelled().tolist(), strict=True))
 
     @property
     def min_distance_m(self) -> float | None:
-        """Least distance so far of the centres of two robots of which one was under way; None if there was none."""
         least = self._crowd.least_distance
         return None if math.isinf(least) else least
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """Pairs whose centres were ever closer than the sum of their radii while one was under way."""
         ids = list(self._numbers)
         return tuple(Contact(time, (ids[a], ids[b]), least) for a, b, time, least in self._crowd.contacts())
 
     def idle(self, robot: str) -> bool:
-        """Whether it has passed all its way points, or has none."""
         return not self._crowd.busy(self._number(robot))
 
     @abstractmethod
@@ -291,7 +259,7 @@ class WorldBase(ABC):
 
     @abstractmethod
     def _go_on(self, until_s: float) -> list[Event]:
-        """Step until a time, or until something happened."""
+        """Step until a time, or until a way point is passed."""
 
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
@@ -317,7 +285,7 @@ class WorldBase(ABC):
         return self._numbers[robot]
 
     def _walls_for(self, body: Body) -> int:
-        """The number of the walls that stop this body; the same body has the same."""
+        """The number of the set of walls that stop this body; equal bodies have the same set."""
         if body not in self._walls:
             faces, slabs = self._faces_for(body)
             ground = self._lowest_m if body.kind == "air" else -math.inf

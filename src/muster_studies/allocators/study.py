@@ -25,7 +25,7 @@ Samples = Mapping[Case, Sample]
 
 
 def _missions(effort: Effort) -> tuple[str, ...]:
-    """Those whose tables are wanted; all where only the summary is."""
+    """The missions whose tables are to be made; all missions for the summary alone."""
     return tuple(name for name in effort.tables if name != SUMMARY) or MISSIONS
 
 
@@ -51,7 +51,7 @@ class MissionTable:
 
 @dataclass(frozen=True)
 class Summary:
-    """How far each allocator is from the best value found, over all missions whose tables are wanted."""
+    """How far each allocator is from the best value found, over all missions whose tables are made."""
 
     number: str = SUMMARY
 

@@ -1,4 +1,4 @@
-"""Speed of planning again while a mission is carried out: part of `muster bench`.
+"""Speed of re-planning during execution: part of `muster bench`.
 
 Twenty robots are under way to a hundred tasks at random places; after a while the one that has most left to do fails.
 The same rest planned by greedy, the work under way kept, is the measure of how good the new plan is.
@@ -13,11 +13,11 @@ from random import Random
 from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
-from muster.execution.remaining_problem import Rest, posed
+from muster.execution.remaining_problem import RemainingMission, remaining_problem
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
 from muster.planning.judging import verify
-from muster.planning.solving import solve
+from muster.planning.solve import solve
 from muster.simulation import KinematicWorld
 from muster_studies.benches.measurement import Measurement
 from muster_studies.uniform import uniform_mission
@@ -37,15 +37,15 @@ def scene(seed: int, stability: int | None) -> Mission:
 
 
 class _Timed:
-    """A re-allocation that keeps what it was asked, what it answered, and for how long it thought, seconds."""
+    """A re-allocation that records its problem, its answer, and its time in seconds."""
 
     def __init__(self, replan: Reallocation) -> None:
         self._replan = replan
-        self.rest: Rest
+        self.rest: RemainingMission
         self.revision: Revision
         self.seconds = 0.0
 
-    def __call__(self, rest: Rest) -> Revision:
+    def __call__(self, rest: RemainingMission) -> Revision:
         begin = time.perf_counter()
         self.rest, self.revision = rest, self._replan(rest)
         self.seconds = time.perf_counter() - begin
@@ -65,7 +65,7 @@ def after_a_failure(seed: int, stability: int | None) -> tuple[float, float, flo
     executor.tick(world.time_s)
     executor.report(Event(at_s=0, robot_fails=max(executor.crew.values(), key=lambda hand: len(hand.route)).robot.id))
     executor.tick(world.time_s)
-    problem = posed(timed.rest, travel).problem.ready()
+    problem = remaining_problem(timed.rest, travel).problem.ready()
     begun = {robot.id: [problem.tasks[j].id for j in problem.beginning(i)] for i, robot in enumerate(problem.robots)}
     routes = tuple(Route(name, (*begun[name], *tasks)) for name, tasks in timed.revision.routes.items())
     plans = Plan(objective=problem.objective, routes=routes), GREEDY.solve(problem, Stop())

@@ -9,7 +9,7 @@ from tests.bridges.ros2 import fake_rclpy
 from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
 from muster.bridges.ros2.message_types import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
-from muster.bridges.ros2.middleware import open_wire
+from muster.bridges.ros2.open_wire import open_wire
 from muster.bridges.ros2.rclpy_middleware import RclpyWire, _class_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task

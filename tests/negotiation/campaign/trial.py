@@ -7,11 +7,11 @@ from muster.running.negotiation_trials.observer import PROMISED_NEVER
 
 
 def trial(seed):
-    """Play the scene of a seed and look whether all that is promised holds."""
+    """Run the trial of a seed and check all guarantees."""
     report = Report(seed)
     with report.trying():
         played = replay(seed)
-        report.story += played.scene.described()
+        report.story += played.scenario.described()
         report.failures, report.figures = played.failures, [(played.took_s, played.share)]
         report.counts.update(dict.fromkeys(PROMISED_NEVER, 0))
         report.counts.update(played.counts)

@@ -151,7 +151,7 @@ class OneFind:
 def test_of_what_cameras_find_one_robot_is_told(tmp_path):
     robot_bodies, log = bodies_of([], tmp_path)
     new = Event(at_s=0.1, new_task=Task(id="found-4", position=(1, 1)))
-    robot_bodies.lookout = OneFind(new)
+    robot_bodies.camera_search = OneFind(new)
     while robot_bodies.time_s < 0.3:
         robot_bodies.step(1.0)
     assert [(robot, word.event) for robot, word in robot_bodies.team.told if isinstance(word, OperatorEvent)] == [
@@ -163,13 +163,13 @@ def test_of_what_cameras_find_one_robot_is_told(tmp_path):
 def test_what_a_robot_sees_that_is_cut_off_or_gone_nobody_hears(tmp_path):
     silent, fails = Event(at_s=0.1, robot_silent="a"), Event(at_s=0.3, robot_fails="b")
     robot_bodies, _ = bodies_of([silent, fails, Event(at_s=0.5, robot_returns="a")], tmp_path)
-    robot_bodies.lookout = OneFind(None)
+    robot_bodies.camera_search = OneFind(None)
     while robot_bodies.time_s < 0.6:
         robot_bodies.step(1.0)
     ways = [
         unheard
-        for k, unheard in enumerate(robot_bodies.lookout.unheard)
-        if robot_bodies.lookout.unheard[k - 1] != unheard
+        for k, unheard in enumerate(robot_bodies.camera_search.unheard)
+        if robot_bodies.camera_search.unheard[k - 1] != unheard
     ]
     assert ways == [set(), {"a"}, {"a", "b"}, {"b"}]
 

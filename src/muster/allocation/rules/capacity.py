@@ -77,10 +77,10 @@ class CapacityChange:
 
 
 def _up(value: float) -> str:
-    """A figure rounded up: what is enough stays enough."""
+    """A figure rounded up, so that a sufficient value stays sufficient."""
     return f"{math.ceil(value * 100 * (1 - 1e-10)) / 100:.2f}"
 
 
 def _down(value: float) -> str:
-    """A figure rounded down: what is needed at least stays needed."""
+    """A figure rounded down, so that a least value stays one."""
     return f"{math.floor(value * 100 * (1 + 1e-10)) / 100:.2f}"

@@ -16,8 +16,9 @@ from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Ros2Newcomers
 from muster.bridges.ros2.message_types import PoseStamped
-from muster.bridges.ros2.middleware import Wire, open_wire
+from muster.bridges.ros2.middleware import Wire
 from muster.bridges.ros2.names import ros_names
+from muster.bridges.ros2.open_wire import open_wire
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError

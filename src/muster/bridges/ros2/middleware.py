@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -124,32 +123,6 @@ class Wire(Protocol):
     def close(self) -> None:
         """Leave; writers and readers end with it."""
         ...
-
-
-def open_wire(by: By | None = None, domain: int | None = None) -> Wire:
-    """Take part in a domain, by rclpy where it can be imported and by DDS elsewhere, or as `by` says.
-
-    Parameters
-    ----------
-    domain
-        None: that of the environment's ROS_DOMAIN_ID.
-
-    Raises
-    ------
-    MissingExtraError
-        if rclpy, or the extra `ros2`, is not there.
-    ParameterError
-        if the domain is no number from 0 to 232.
-    NetworkError
-        if the network cannot be used.
-    """
-    if by == "rclpy" or (by is None and importlib.util.find_spec("rclpy") is not None):
-        from muster.bridges.ros2.rclpy_middleware import RclpyWire
-
-        return RclpyWire(domain)
-    from muster.bridges.ros2.dds import Participant
-
-    return Participant(domain)
 
 
 def domain_or_own(domain: int | None) -> int:

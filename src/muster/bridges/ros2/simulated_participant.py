@@ -28,8 +28,9 @@ from muster.bridges.ros2.message_types import (
     TwistWithCovariance,
     Vector3,
 )
-from muster.bridges.ros2.middleware import Wire, open_wire
+from muster.bridges.ros2.middleware import Wire
 from muster.bridges.ros2.names import ros_name
+from muster.bridges.ros2.open_wire import open_wire
 from muster.bridges.ros2.port import MAP_FRAME, yaw_of
 from muster.bridges.simulated_body import Body
 from muster.bridges.simulated_program import Wanted, robot_options, run, wanted

@@ -18,45 +18,12 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from muster import core
-from muster.motion.avoidance.agents import (
-    NO_OBSTACLES,
-    Agents,
-    Floats,
-    Obstacles,
-    require_counts,
-    require_finite_positive,
-    require_positive,
-)
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles, require_finite_positive
+from muster.motion.avoidance.parameters import CommonParameters
 
 
-@dataclass(frozen=True, kw_only=True)
-class Parameters:
-    """Of HRVO.
-
-    Parameters
-    ----------
-    wall_horizon_s
-        for how long a velocity keeps off walls.
-    most_neighbours, neighbour_distance_m
-        a robot looks at the nearest others, up to this distance between centres.
-    threads
-        of the processor; the result does not depend on them.
-
-    Raises
-    ------
-    ParameterError
-        if one is out of range.
-    """
-
-    wall_horizon_s: float = 2.0
-    most_neighbours: int = 10
-    neighbour_distance_m: float = 15.0
-    threads: int = 1
-
-    def __post_init__(self) -> None:
-        require_finite_positive(wall_horizon_s=self.wall_horizon_s)
-        require_positive(neighbour_distance_m=self.neighbour_distance_m)
-        require_counts(most_neighbours=self.most_neighbours, threads=self.threads)
+class Parameters(CommonParameters):
+    """Of HRVO: those that all methods have."""
 
 
 @dataclass(frozen=True)
@@ -69,14 +36,5 @@ class Hrvo:
     def velocities(self, agents: Agents, obstacles: Obstacles = NO_OBSTACLES, dt: float = 0.25) -> Floats:
         """See `Method`; robots in the plane only."""
         require_finite_positive(dt=dt)
-        p = self.params
-        chosen: Floats = core.hrvo(
-            agents.in_plane(),
-            obstacles.still(2),
-            dt,
-            wall_horizon=p.wall_horizon_s,
-            most=p.most_neighbours,
-            distance=p.neighbour_distance_m,
-            threads=p.threads,
-        )
+        chosen: Floats = core.hrvo(agents.in_plane(), obstacles.still(2), dt, **self.params.for_core())
         return chosen

@@ -16,34 +16,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from muster.motion.avoidance.agents import (
-    NO_OBSTACLES,
-    Agents,
-    Floats,
-    Obstacles,
-    require_counts,
-    require_finite_positive,
-    require_positive,
-)
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles, require_finite_positive
+from muster.motion.avoidance.parameters import CommonParameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameters:
-    """Of ORCA; the defaults are those of the authors' circle of 250 robots.
+class Parameters(CommonParameters):
+    """Of ORCA; the defaults are those of the authors' circle of 250 robots. Further ones are those of all methods.
 
     Parameters
     ----------
     horizon_s
         tau: for how long a velocity keeps robots apart.
-    wall_horizon_s
-        the same for what stands still.
-    most_neighbours, neighbour_distance_m
-        a robot looks at the nearest others, up to this distance between centres.
     keep_apart
         whether no robot may use more than half of the gap to another in one step, whatever else: then robots that do
         not overlap never will.
-    threads
-        of the processor; the result does not depend on them.
 
     Raises
     ------
@@ -53,15 +40,11 @@ class Parameters:
 
     horizon_s: float = 10.0
     wall_horizon_s: float = 10.0
-    most_neighbours: int = 10
-    neighbour_distance_m: float = 15.0
     keep_apart: bool = True
-    threads: int = 1
 
     def __post_init__(self) -> None:
-        require_finite_positive(horizon_s=self.horizon_s, wall_horizon_s=self.wall_horizon_s)
-        require_positive(neighbour_distance_m=self.neighbour_distance_m)
-        require_counts(most_neighbours=self.most_neighbours, threads=self.threads)
+        super().__post_init__()
+        require_finite_positive(horizon_s=self.horizon_s)
 
 
 @dataclass(frozen=True)
@@ -80,10 +63,7 @@ class Orca:
             obstacles.still(agents.dimensions),
             dt,
             horizon=p.horizon_s,
-            wall_horizon=p.wall_horizon_s,
-            most=p.most_neighbours,
-            distance=p.neighbour_distance_m,
             apart=p.keep_apart,
-            threads=p.threads,
+            **p.for_core(),
         )
         return chosen

@@ -34,13 +34,13 @@ from muster.motion.avoidance.agents import (
     Obstacles,
     require_counts,
     require_finite_positive,
-    require_positive,
 )
+from muster.motion.avoidance.parameters import CommonParameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameters:
-    """Of RVO; n is the thesis'.
+class Parameters(CommonParameters):
+    """Of RVO; n is the thesis'. Its robots consider all others. Further parameters are those of all methods.
 
     Parameters
     ----------
@@ -54,12 +54,6 @@ class Parameters:
         w, the weighting factor of (A.17).
     ideal
         whether v_id is tried as well.
-    wall_horizon_s
-        for how long a velocity keeps off walls.
-    most_neighbours, neighbour_distance_m
-        a robot looks at the nearest others, up to this distance between centres; the thesis' robots look at all.
-    threads
-        of the processor; the result does not depend on them.
 
     Raises
     ------
@@ -72,19 +66,17 @@ class Parameters:
     n_rad: float = 0.1
     w_m: float = 1.0
     ideal: bool = True
-    wall_horizon_s: float = 2.0
     most_neighbours: int = 1000
     neighbour_distance_m: float = math.inf
-    threads: int = 1
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not 0 <= self.v_min_mps < math.inf:
             raise ParameterError(f"v_min_mps: {self.v_min_mps}; expected at least 0")
         if not 1e-3 <= self.n_rad <= math.pi:
             raise ParameterError(f"n_rad: {self.n_rad}; expected 0.001 to pi")
-        require_finite_positive(w_m=self.w_m, wall_horizon_s=self.wall_horizon_s)
-        require_positive(neighbour_distance_m=self.neighbour_distance_m)
-        require_counts(magnitudes=self.magnitudes, most_neighbours=self.most_neighbours, threads=self.threads)
+        require_finite_positive(w_m=self.w_m)
+        require_counts(magnitudes=self.magnitudes)
 
 
 @dataclass(frozen=True)
@@ -107,9 +99,6 @@ class Rvo:
             n=p.n_rad,
             w=p.w_m,
             ideal=p.ideal,
-            wall_horizon=p.wall_horizon_s,
-            most=p.most_neighbours,
-            distance=p.neighbour_distance_m,
-            threads=p.threads,
+            **p.for_core(),
         )
         return chosen

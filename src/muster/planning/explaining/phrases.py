@@ -1,4 +1,4 @@
-"""Parts of what is said of a plan: in tables of the command and in sentences."""
+"""Phrases of explanations, for the tables of the command and for sentences."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_SILENT = 10  # robots that could not bid, and are named
 
 
 def place(found: OneTask) -> list[str]:
-    """Who does the task, as number what, and when."""
+    """Which robot does the task, at which position of its route, and when."""
     route = found.route
     if route is None:
         return [f"task {found.task} is left out"]
@@ -46,7 +46,7 @@ def _price(bid: float) -> str:
 
 
 def what_then(found: OneTask, other: Alternative) -> str:
-    """What giving the task to a robot that could do it would do."""
+    """The effect of giving the task to a robot that could do it."""
     if other.objective is None:
         return f"best as number {other.number}; another route has no way"
     more = None if found.robot is None or found.objective is None else other.objective - found.objective
@@ -69,14 +69,14 @@ def ignored(problem: Problem) -> list[str]:
 
 
 def reserve(problem: Problem) -> str:
-    """What capacities are, where that is not plain; else empty."""
+    """How the reserve reduces capacities; empty without a reserve."""
     if problem.mission.rules.capacity_reserve and problem.holds("capacity"):
         return f"capacities are work_capacity, the reserve of {problem.mission.rules.capacity_reserve:g} included"
     return ""
 
 
 def short(problem: Problem, remedy: Remedy) -> str:
-    """The changes in a few words."""
+    """The changes, in short."""
     parts = [change.short for change in remedy.changes.values()]
     if remedy.before:
         parts.append(_first(remedy))

@@ -1,4 +1,4 @@
-"""What is written into a film: the mission's name and clock, the latest events, names of robots and tasks."""
+"""Text in a film: the mission's name and clock, the latest events, names of robots and tasks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LONGEST = 64
 
 
 def caption(told: ExecutionEvent) -> str | None:
-    """An event in a few words, such as `r_0 has done task 7`; None of what one sees."""
+    """An event in a few words, such as `r_0 has done task 7`; None for events that are visible in the film."""
     if told.kind in _NOT_TOLD:
         return None
     task, robot = (told.data.get(key) for key in ("task", "robot"))
@@ -50,7 +50,7 @@ def caption(told: ExecutionEvent) -> str | None:
 
 
 def shortened(text: str, longest: int = _LONGEST) -> str:
-    """Cut what would reach beyond the picture."""
+    """Cut text that would reach beyond the picture."""
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
@@ -97,7 +97,7 @@ def text_width(text: str, size: int, weight: int) -> int:
 
 
 def write_names(picture: Picture, names: Iterable[tuple[str, Rgb]], places: Floats, size: int, weight: int) -> None:
-    """Write names beneath places (n, 2) of the picture; who is not there has NaN."""
+    """Write names beneath places (n, 2) of the picture; places of absent robots are NaN."""
     for (name, color), (x, y) in zip(names, places, strict=True):
         if np.isfinite((x, y)).all():
             write(picture, shortened(name, 24), (x, y), size, color=color, weight=weight, align=0.5, halo=True)
@@ -116,7 +116,7 @@ def write_events(picture: Picture, events: Sequence[tuple[str, Rgb, float]], rig
 
 
 def rgb(color: str) -> Rgb:
-    """Of "#rrggbb"."""
+    """The colour of "#rrggbb"."""
     red, green, blue = (int(color[k : k + 2], 16) for k in (1, 3, 5))
     return red, green, blue
 

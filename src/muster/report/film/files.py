@@ -1,4 +1,4 @@
-"""Films as files: MP4 (VP9, which browsers play) by OpenCV, GIF by Pillow; and single pictures, PNG."""
+"""Film files: MP4 (VP9, which browsers play) by OpenCV, GIF by Pillow; and single pictures, PNG."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COLORS = 128
 
 
 class FilmFile(Protocol):
-    """A film that is being written, picture by picture."""
+    """A film file to which pictures are added one by one."""
 
     size: ClassVar[tuple[int, int]]
     """Width and height of its pictures, in pixels."""
@@ -29,11 +29,11 @@ class FilmFile(Protocol):
     def __init__(self, path: str | Path) -> None: ...
 
     def add(self, picture: Picture) -> None:
-        """One more picture, RGB."""
+        """Add a picture, RGB."""
         ...
 
     def close(self) -> None:
-        """Make it a whole film."""
+        """Complete the file."""
         ...
 
 
@@ -103,12 +103,12 @@ KINDS: dict[str, type[FilmFile]] = {".mp4": Mp4, ".gif": Gif}
 
 
 def film_file(path: str | Path) -> type[FilmFile]:
-    """The kind of file that a path's ending says.
+    """A film file of the kind that its path's suffix states.
 
     Raises
     ------
     InputError
-        if there is none.
+        if there is no such kind.
     """
     check_ending(path, tuple(KINDS))
     return KINDS[Path(path).suffix.lower()]
@@ -159,7 +159,7 @@ def require_pillow() -> None:
 
 
 def _swatches(width: int) -> Picture:
-    """Stripes of all colours that there may be later in a film, full and pale, for its palette."""
+    """Stripes of all colours that may occur later in a film, full and pale, for its palette."""
     colors = np.array([rgb(color) for color in (*PALETTE, ALARM, LEFT_OUT)], dtype=np.float64)
     shades = np.concatenate([colors, 0.7 * colors + 0.3 * 255, 0.4 * colors + 0.6 * 255])
     return np.repeat(np.repeat(shades[:, None, :], width, axis=1), 4, axis=0).astype(np.uint8)

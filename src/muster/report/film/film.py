@@ -1,4 +1,4 @@
-"""A film of a run: obliquely from above, faster than it was, with a clock and the latest events."""
+"""A film of a run: oblique from above, faster than real time, with a clock and the latest events."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _EDGE = 20
 
 @dataclass(frozen=True)
 class FilmSummary:
-    """A film that was written: how many pictures, how long in seconds, how many times as fast as it was."""
+    """A film that was written: the number of pictures, its length in seconds, and its speed-up."""
 
     frames: int
     duration_s: float
@@ -79,7 +79,7 @@ def write_film(path: str | Path, footage: Footage, *, speed: float | None = None
 
 
 def speed_for(duration_s: float) -> float:
-    """The least round speed at which a run takes at most `LONGEST_S`."""
+    """The least round speed-up at which a run takes at most `LONGEST_S`."""
     least = duration_s / LONGEST_S
     return float(next((speed for speed in SPEEDS if speed >= least), -(-least // 100) * 100))
 
@@ -99,7 +99,7 @@ def _pictures(scene: FilmScene, footage: Footage, speed: float, rate_hz: float) 
 def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float, speed: float) -> None:
     moments, width = scene.moments, picture.shape[1]
     wide = write(picture, clock(now), (_EDGE, 40), 28, weight=600)
-    states = list(moments.situation.states.values())
+    states = list(moments.mission_state.states.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done"
     write(picture, shortened(footage.mission.name, 48), (_EDGE + wide + 16, 28), 17, weight=600)
     write(picture, f"{facts}  ·  {speed:g} x", (_EDGE + wide + 16, 48), 14, color=QUIET_INK)
@@ -109,12 +109,12 @@ def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float
 
 
 def _plain(age_s: float) -> float:
-    """How plainly an event is shown that is so old, in seconds of the film."""
+    """The opacity of an event's text, by its age in seconds of the film."""
     return min(1.0, max(0.0, (_SHOWN_S - age_s) / _FADES_S))
 
 
 def _color(told: ExecutionEvent, scene: FilmScene) -> Rgb:
-    robots = list(scene.moments.situation.robots)
+    robots = list(scene.moments.mission_state.robots)
     if told.kind in ALARMING:
         return rgb(ALARM)
     name = told.data.get("robot")

@@ -1,7 +1,7 @@
-"""What happened in a physics world, kept for pictures: where all bodies were at each step, and what was told.
+"""Records a physics world for films: the poses of all bodies at each step, and the events.
 
-A recorder that is given the world, too. Pictures are drawn afterwards: then one knows how long it took, and robots that
-talk in real time need not wait for them.
+Footage is a recorder that also receives the world. Pictures are drawn afterwards: then the length of the run is known,
+and robots that communicate in real time need not wait for them.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from muster.motion.grid import Floats
 
 
 class Footage:
-    """Is a recorder as `_carrying_out` wants it, and wants to be given the world (`on_world`).
+    """A recorder (`execution.Recorder`) that also receives the world (`on_world`).
 
     Parameters
     ----------
     mission
-        that is carried out.
+        the mission that is carried out.
     """
 
     def __init__(self, mission: Mission) -> None:
@@ -55,22 +55,22 @@ class Footage:
         self._keep(world.time_s)
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        """Look where the bodies are; the world's first step comes before it is given, and is kept then."""
+        """Record the poses of the bodies. The first step comes before `on_world`, and is recorded there."""
         if self._world is not None:
             self._keep(now)
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Keep what has happened."""
+        """Record an event."""
         self.events.append(ExecutionEvent(now, kind, data))
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
-        """What robots say of themselves is not to be seen."""
+        """Telemetry is not visible in a film."""
 
     def on_plan(self, now: float, plan: Plan) -> None:
-        """Plans are not to be seen."""
+        """Plans are not visible in a film."""
 
     def on_report(self, report: Mapping[str, Any]) -> None:
-        """Keep how it ended."""
+        """Record the end of the mission."""
         self.report = report
 
     @property
@@ -88,12 +88,12 @@ class Footage:
 
     @property
     def times_s(self) -> Floats:
-        """When the bodies were looked at: (m,) seconds of the mission's clock, growing."""
+        """The times of the recorded poses: (m,) seconds of the mission's clock, growing."""
         return np.array(self._times)
 
     @property
     def poses(self) -> Floats:
-        """Places of the bodies' frames, metres, and quaternions, w first: (m, n, 7); NaN of who was not there."""
+        """Poses of the bodies' frames, metres, and quaternions, w first: (m, n, 7); NaN for absent bodies."""
         count = max(map(len, self._poses))
         poses = np.full((len(self._poses), count, 7), np.nan)
         for moment, rows in zip(poses, self._poses, strict=True):

@@ -1,8 +1,8 @@
-"""What lies on the ground of a film: tasks, trails, what shows where robots are.
+"""Marks on the ground of a film: tasks, trails, and rings around robots.
 
-A task is white with a grey rim while it is open, white with the robot's colour around it while one is at it, and wholly
-in the colour of who has done it; lost ones are red, cancelled ones grey. Around a robot lies a ring as wide as it must
-be kept clear of, red if the robot is out; drones have a pole down to it.
+A task is white with a grey rim while it is open, white with the robot's colour around it while a robot works on it, and
+wholly in the colour of the robot that has done it; lost tasks are red, cancelled ones grey. The ring around a robot is
+as wide as the space that it must keep clear, and red if the robot is out; drones have a pole down to it.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ class GroundMarks:
     Parameters
     ----------
     moments
-        where in the run one is.
+        the interpolated run.
     ground_m
         height of the ground.
     pixel_m
-        metres that a pixel of the film is across.
+        the width of the film's pixel, metres.
     """
 
     def __init__(self, moments: RunInterpolation, ground_m: float, pixel_m: float) -> None:
@@ -63,12 +63,12 @@ class GroundMarks:
         poses
             (n, 7) of the bodies now.
         """
-        situation = self._moments.situation
-        colors = {name: robot_style(k).color for k, name in enumerate(situation.robots)}
-        for name, task in situation.tasks.items():
+        mission_state = self._moments.mission_state
+        colors = {name: robot_style(k).color for k, name in enumerate(mission_state.robots)}
+        for name, task in mission_state.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
-            yield from self._task(task, situation.states[name], who)
-        yield from self._rings(situation.robots, colors, poses)
+            yield from self._task(task, mission_state.states[name], who)
+        yield from self._rings(mission_state.robots, colors, poses)
         for k in range(len(poses)):
             yield from self._trail(k, now, poses[k])
 
@@ -127,7 +127,7 @@ class GroundMarks:
 
 
 def _bends(way: Floats, piece_m: float, most: int) -> list[tuple[int, Floats]]:
-    """Where a way (m, 3) bends, or goes on straight for long: at most so many rows of it, with the places."""
+    """The rows of a path (m, 3) at which it bends, or goes on straight for long, with the places; at most `most`."""
     there = np.flatnonzero(np.isfinite(way).all(axis=1)).tolist()
     if not there:
         return []

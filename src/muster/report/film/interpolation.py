@@ -1,4 +1,4 @@
-"""A run at any moment: where bodies are between two looks at them, and what has become of tasks and robots."""
+"""A run at any moment: interpolated poses of bodies, and the state of tasks and robots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from muster.report.record.mission_state import OUT, MissionState
 
 
 class RunInterpolation:
-    """Goes through a run, forwards only.
+    """Steps through a run, forwards only.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class RunInterpolation:
 
     def __init__(self, footage: Footage) -> None:
         self.times_s, self.poses = footage.times_s, footage.poses
-        self.situation = MissionState(footage.mission)
+        self.mission_state = MissionState(footage.mission)
         self.busy_with: dict[str, str] = {}
         """Tasks that are under way or done, and who does or did them."""
         self.out: set[str] = set()
@@ -34,14 +34,14 @@ class RunInterpolation:
         return float(self.times_s[-1])
 
     def go_on(self, now: float) -> None:
-        """Let everything happen that does until a moment."""
+        """Apply all events until a moment."""
         while self._ahead and self._ahead[0].time_s <= now + 1e-9:
             told = self._ahead.pop(0)
             self._take(told)
             self.told.append(told)
 
     def at(self, now: float) -> Floats:
-        """Poses (n, 7) at a moment, between those that are known: places straight, turns by the shortest way."""
+        """Poses (n, 7) at a moment: positions interpolated linearly, orientations by the shortest rotation."""
         after = int(np.clip(np.searchsorted(self.times_s, now), 1, max(1, len(self.times_s) - 1)))
         if len(self.times_s) == 1:
             only: Floats = self.poses[0]
@@ -57,7 +57,7 @@ class RunInterpolation:
 
     def _take(self, told: ExecutionEvent) -> None:
         task, robot = told.data.get("task"), told.data.get("robot")
-        self.situation.take(told.kind, told.data)
+        self.mission_state.take(told.kind, told.data)
         if told.kind in ("starts", "ends"):
             self.busy_with[str(task)] = str(robot)
         elif told.kind in OUT:

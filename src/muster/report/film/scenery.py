@@ -1,4 +1,4 @@
-"""The set of a film: bodies, walls and marks at any moment of a run, drawn from one of its views."""
+"""The scene of a film: bodies, walls and marks at any moment of a run, drawn from one view."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _FREE = {"left": 28, "right": 28, "top": 74, "bottom": 30}
 
 
 class FilmScene:
-    """Goes through a run and draws it; use it in a `with`.
+    """Steps through a run and draws it; a context manager.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class FilmScene:
         self._renderer.close()
 
     def picture(self, now: float) -> Picture:
-        """What is seen at a moment, not before one that was drawn; without captions."""
+        """The picture of a moment without captions. Moments must not go back."""
         self.moments.go_on(now)
         poses = self.moments.at(now)
         self._tableau.put(poses[:, :3], poses[:, 3:])
@@ -95,14 +95,17 @@ def name_all(
     pixel_m: float,
     ground_m: float,
 ) -> None:
-    """Write tasks' ids beneath them, if they are not too many, and robots' above them.
+    """Write tasks' ids beneath them, if there are not too many, and robots' above them.
 
     Parameters
     ----------
     pixels, pixel_m
-        where places are in the picture, and how many metres a pixel of it is across.
+        the places in the picture, and the width of its pixel in metres.
     """
-    tasks, robots = list(moments.situation.tasks.values()), list(moments.situation.robots.values())[: len(poses)]
+    tasks, robots = (
+        list(moments.mission_state.tasks.values()),
+        list(moments.mission_state.robots.values())[: len(poses)],
+    )
     if len(tasks) <= _MOST_NAMED:
         places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)
         at = pixels(places)
@@ -116,7 +119,7 @@ def name_all(
 
 
 def places_of(mission: Mission, poses: Floats) -> Floats:
-    """What has to be in a picture, (k, 3) metres: tasks, robots wherever they were, the map's boundary and zones."""
+    """The places that a picture has to show, (k, 3) metres: tasks, robots' tracks, the map's boundary and zones."""
     found = [place for task in mission.tasks for place in (task.position, task.entry, task.exit) if place is not None]
     found += [robot.position for robot in mission.robots]
     found += [event.new_task.position for event in mission.events if event.new_task is not None]

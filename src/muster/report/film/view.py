@@ -1,4 +1,4 @@
-"""From where a film is seen: obliquely from above, as near as all that belongs to the mission is in the picture."""
+"""The camera of a film: oblique from above, as near as possible with the whole mission in the picture."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NEARER, _FARTHER = 0.5, 3.0
 
 @dataclass(frozen=True)
 class Frame:
-    """A picture's size in pixels, and what of it is kept free at its edges."""
+    """A picture's size in pixels, and the margins at its edges."""
 
     width: int
     height: int
@@ -31,7 +31,7 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A camera that stands still.
+    """A camera that does not move.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class View:
     focal_px, width, height
         of its picture, in pixels; the axis meets it in the middle.
     pixel_m
-        how many metres a pixel is across, in the middle of what is seen.
+        the width of a pixel, metres, in the middle of the picture.
     """
 
     position: Floats
@@ -52,12 +52,12 @@ class View:
 
     @property
     def depth_m(self) -> tuple[float, float]:
-        """Between which distances along the axis something may be."""
+        """The least and the greatest distance along the axis."""
         distance = self.pixel_m * self.focal_px
         return _NEARER * distance, _FARTHER * distance
 
     def pixels(self, places: Floats) -> Floats:
-        """Where places (n, 3) are in the picture: (n, 2) from its left upper corner."""
+        """The pixels (n, 2), from the picture's upper left corner, of places (n, 3)."""
         seen = (places - self.position) @ self.axes
         middle = np.array([self.width, self.height]) / 2
         found: Floats = middle + self.focal_px * seen[:, :2] / seen[:, 2:]
@@ -101,7 +101,7 @@ def view_of(places: Floats, frame: Frame) -> View:
 
 
 def _axes(ahead: float) -> Floats:
-    """Those of a camera that looks down to where the map's angle is `ahead`."""
+    """The axes of a camera that looks down towards the map's angle `ahead`."""
     c, s = math.cos(ahead), math.sin(ahead)
     right = np.array([s, -c, 0.0])
     forward = np.array([c * math.cos(TILT), s * math.cos(TILT), -math.sin(TILT)])

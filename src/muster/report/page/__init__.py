@@ -1,4 +1,4 @@
-"""Pages to look at a record in a browser."""
+"""Pages that show a record in a browser."""
 
 from muster.report.page.page import page_text, write_page
 

@@ -1,7 +1,7 @@
-"""What the page of a record shows, as compact JSON data: whole millimetres, milliseconds and milliradians.
+"""The data of a record's page, as compact JSON: whole millimetres, milliseconds and milliradians.
 
-Series that change little from one moment to the next are written as differences; `null` is a moment at which a robot
-is not there.
+Series that change little from one moment to the next are written as differences; `null` is a moment at which a robot is
+absent.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _BACK = "robot_returns"
 
 
 def page_data(recording: Recording) -> dict[str, Any]:
-    """All that the page is told."""
+    """All data of the page."""
     tracks = _thinned(recording.tracks)
     order = {robot.id: k for k, robot in enumerate(recording.robots)}
     gone = _gone(recording)
@@ -77,7 +77,7 @@ def _thousandths(value: float) -> int:
 
 
 def _differences(values: Floats) -> list[int | None]:
-    """Values in thousandths, each as the difference from the last one that there was."""
+    """Values in thousandths, each as the difference from the last value present."""
     found: list[int | None] = []
     last = 0
     for value in values.tolist():
@@ -108,7 +108,7 @@ def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]
 
 
 def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
-    """By robot when it goes out, and when it is back: [time, whether it is out from then on]."""
+    """For each robot when it goes out and comes back: [time, whether it is out from then on]."""
     found: dict[str, list[list[Any]]] = {}
     for event in recording.events:
         if event.kind in (*OUT, _BACK):
@@ -117,31 +117,31 @@ def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
 
 
 def _unwrapped(headings: Floats) -> Floats:
-    """The same directions without jumps, so that what lies between two of them can be drawn."""
+    """The same directions without jumps, so that they can be interpolated."""
     there, smooth = np.isfinite(headings), headings.copy()
     smooth[there] = np.unwrap(headings[there])
     return smooth
 
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:
-    """Of each task where it is and in which state, from which moment on."""
-    situation = MissionState(recording.mission)
-    tasks = {name: _task(situation, name, 0.0) for name in situation.tasks}
+    """For each task its place and its state over time."""
+    mission_state = MissionState(recording.mission)
+    tasks = {name: _task(mission_state, name, 0.0) for name in mission_state.tasks}
     for event in recording.events:
-        name = situation.take(event.kind, event.data)
-        if name not in situation.tasks or event.kind == "robot_joins":
+        name = mission_state.take(event.kind, event.data)
+        if name not in mission_state.tasks or event.kind == "robot_joins":
             continue
         if name not in tasks:
-            tasks[name] = _task(situation, name, event.time_s)
+            tasks[name] = _task(mission_state, name, event.time_s)
             continue
         now = _thousandths(event.time_s)
-        tasks[name]["places"].append([now, *_millimetres(situation.tasks[name].position)])
-        tasks[name]["states"].append([now, situation.states[name], event.data.get("robot")])
+        tasks[name]["places"].append([now, *_millimetres(mission_state.tasks[name].position)])
+        tasks[name]["states"].append([now, mission_state.states[name], event.data.get("robot")])
     return list(tasks.values())
 
 
-def _task(situation: MissionState, name: str, since: float) -> dict[str, Any]:
-    task, now = situation.tasks[name], _thousandths(since)
+def _task(mission_state: MissionState, name: str, since: float) -> dict[str, Any]:
+    task, now = mission_state.tasks[name], _thousandths(since)
     return {
         "id": name,
         "type": task.type,
@@ -155,7 +155,7 @@ def _millimetres(place: Sequence[float]) -> list[int]:
 
 
 def _plans(recording: Recording, order: Mapping[str, int]) -> list[dict[str, Any]]:
-    """Of each plan its routes as lines: the number of the robot, and its points one after another."""
+    """For each plan its routes as lines: the number of the robot, and its points one after another."""
     return [
         {
             "at": _thousandths(version.time_s),
@@ -204,7 +204,7 @@ def _zone(zone: Zone) -> dict[str, Any]:
 
 
 def _image(image: Grid) -> dict[str, Any]:
-    """The cells as lengths of runs, free and blocked by turns, from the lowest row on."""
+    """The cells as run lengths, free and blocked alternately, from the lowest row on."""
     cells = image.blocked.ravel()
     ends = np.append(np.flatnonzero(cells[1:] != cells[:-1]) + 1, cells.size)
     runs = np.diff(np.concatenate([[0], ends])).tolist()
@@ -218,7 +218,7 @@ def _image(image: Grid) -> dict[str, Any]:
 
 
 def _figures(recording: Recording) -> list[list[str]]:
-    """The report's figures in words; without a report what can be told of the events."""
+    """The report's figures in words; without a report, what follows from the events."""
     report = recording.report or {}
     done = report.get("tasks_done") or [event for event in recording.events if event.kind == "ends"]
     lost = report.get("tasks_lost") or [event for event in recording.events if event.kind == "lost"]

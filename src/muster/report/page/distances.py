@@ -1,4 +1,4 @@
-"""How near robots came to each other: at each moment the nearest pair, and how far apart it is."""
+"""The distances between robots: the nearest pair at each moment."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def nearest(positions: Floats, radii: Floats) -> Nearest:
     Parameters
     ----------
     positions, radii
-        (m, n, 3) and (n,) metres, n at least 2; a robot that is not there has NaN.
+        (m, n, 3) and (n,) metres, n at least 2; an absent robot has NaN.
     """
     moments, n = positions.shape[:2]
     touch = radii[:, None] + radii[None, :]
@@ -55,7 +55,7 @@ def nearest(positions: Floats, radii: Floats) -> Nearest:
 
 
 def _distances(places: Floats) -> Floats:
-    """Between all places (k, n, 3) of each moment: (k, n, n) metres, by |a - b|^2 = a a + b b - 2 a b."""
+    """Distances between all places (k, n, 3) of each moment: (k, n, n) metres, by |a - b|^2 = a a + b b - 2 a b."""
     squares = np.square(places).sum(axis=2)
     apart = squares[:, :, None] + squares[:, None, :] - 2 * places @ places.transpose(0, 2, 1)
     return np.asarray(np.sqrt(np.maximum(apart, 0.0)))

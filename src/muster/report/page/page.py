@@ -1,4 +1,4 @@
-"""The page of a record: one HTML file that holds all it needs and asks no network for anything."""
+"""The page of a record: one HTML file that contains all it needs and loads nothing from a network."""
 
 from __future__ import annotations
 

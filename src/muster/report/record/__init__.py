@@ -1,4 +1,4 @@
-"""Records: one MCAP file of a mission that is carried out, and the same read back."""
+"""Records: one MCAP file of a mission that is carried out, written and read."""
 
 from muster.execution.record import ExecutionEvent
 from muster.report.record.reader import read_record

@@ -1,4 +1,4 @@
-"""What there is while a mission is carried out: robots, tasks with their places, and what became of them.
+"""The state of a mission that is carried out: robots, tasks with their places, and the state of each task.
 
 Events change it. A change of the mission has the name and the content that it has in a mission file's `events`; the
 work of a robot has the words of the judge's schedule. An event of another kind changes nothing here.
@@ -46,14 +46,14 @@ class MissionState:
 
     @classmethod
     def after(cls, mission: Mission, events: Iterable[tuple[str, Mapping[str, Any]]]) -> Self:
-        """The situation after events, each a kind and its data."""
-        situation = cls(mission)
+        """The state after events, each a kind and its data."""
+        mission_state = cls(mission)
         for kind, data in events:
-            situation.take(kind, data)
-        return situation
+            mission_state.take(kind, data)
+        return mission_state
 
     def take(self, kind: str, data: Mapping[str, Any]) -> str | None:
-        """Let an event change the situation; returns the id of the task or robot that is new or has changed.
+        """Apply an event; return the id of the task or robot that is new or has changed.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class MissionState:
         return str(name)
 
     def _made(self, model: type, data: Any, kind: str) -> Any:
-        """A robot or task from a mapping, or by the id of one that the mission's own events bring."""
+        """A robot or task from a mapping, or by the id of one in the mission's own events."""
         if isinstance(data, str):
             brought = [getattr(event, kind) for event in self.mission.events if getattr(event, kind) is not None]
             there = self.robots if model is Robot else self.tasks

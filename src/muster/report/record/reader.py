@@ -1,4 +1,4 @@
-"""A record read back, also one that ends in the middle because its writer was killed."""
+"""Reads a record, also one that breaks off because its writer was killed."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Recording:
     mission = _mission(file, text)
     events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
-    situation = MissionState.after(mission, ((event.kind, event.data) for event in events))
+    mission_state = MissionState.after(mission, ((event.kind, event.data) for event in events))
     plans = messages.get("/muster/plan", [])
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])
     return Recording(
@@ -110,14 +110,14 @@ def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Rec
         plans=tuple(PlanVersion(m["time_s"], plan_from(m["plan"], str(file)), m["lines"]) for m in plans),
         events=events,
         bids=tuple(messages.get("/muster/bid", [])),
-        tracks=_tracks(tuple(situation.robots), messages.get("/muster/state", [])),
+        tracks=_tracks(tuple(mission_state.robots), messages.get("/muster/state", [])),
         report=reports[-1]["report"] if reports else None,
         complete=complete,
     )
 
 
 def _mission(file: Path, text: str) -> Mission:
-    """The mission in a record, which holds no travel tables: travel that is measured by them is not in it."""
+    """The mission in a record. A record contains no travel tables, so travel by tables is not in it."""
     data, source, faults = parse_data(text, file, "a mission")
     rules = data.get("rules")
     if data.pop("travel", None) is not None and isinstance(rules, dict):

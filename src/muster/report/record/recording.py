@@ -1,4 +1,4 @@
-"""A record that was read: what a mission was, what was planned, and what came of it."""
+"""A record that was read: the mission, its plans, and what happened."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PlanVersion:
-    """A plan, from when on it held, and its routes as lines: where each robot still had to go then.
+    """A plan, the time from which it held, and its routes as lines: where each robot still had to go then.
 
     `lines` has points of two or three coordinates, as the mission has, in metres.
     """
@@ -33,7 +33,7 @@ class PlanVersion:
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """Where the robots were: m moments, n robots. A robot that was not there has NaN.
+    """The robots' tracks: m moments, n robots. An absent robot has NaN.
 
     Parameters
     ----------
@@ -88,14 +88,14 @@ class Recording:
 
     @property
     def duration_s(self) -> float:
-        """The time of the last thing that is told."""
+        """The time of the last entry."""
         told = [event.time_s for event in self.events] + [version.time_s for version in self.plans]
         reported = (self.report or {}).get("mission_time_s") or 0.0
         return float(max([0.0, reported, *told, *self.tracks.times_s[-1:].tolist()]))
 
     @cached_property
     def outcome(self) -> MissionState:
-        """The robots and tasks after the last event, and what became of these; not to be changed."""
+        """The robots and tasks after the last event, with their states; not to be changed."""
         return MissionState.after(self.mission, ((event.kind, event.data) for event in self.events))
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The scene of a mission for 3-D viewers: what foxglove.SceneUpdate shows of map, tasks, robots and planned routes."""
+"""The scene of a mission for 3-D viewers: foxglove.SceneUpdate with map, tasks, robots and planned routes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def map_entities(chart: Map | None) -> list[dict[str, Any]]:
 
 
 def robot_entity(now: float, robot: Robot, index: int) -> dict[str, Any]:
-    """A robot: a drum as wide as its body, with its id, which goes where its frame goes."""
+    """A robot: a cylinder as wide as its body, with its id, attached to its frame."""
     side = 2 * max(robot.radius_m, _LEAST_RADIUS_M)
     drum = {
         "pose": pose((0.0, 0.0, side / 4)),
@@ -44,7 +44,7 @@ def robot_entity(now: float, robot: Robot, index: int) -> dict[str, Any]:
 
 
 def task_entity(now: float, task: Task, state: str) -> dict[str, Any]:
-    """A task: a ball in the colour of its state, with its id."""
+    """A task: a sphere in the colour of its state, with its id."""
     place = _in_space(task.position)
     side = 2 * _TASK_RADIUS_M
     ball = {"pose": pose(place), "size": {"x": side, "y": side, "z": side}, "color": _color(_TASK_COLORS[state])}
@@ -53,7 +53,7 @@ def task_entity(now: float, task: Task, state: str) -> dict[str, Any]:
 
 
 def route_entity(now: float, robot: str, index: int, points: Sequence[Point]) -> dict[str, Any]:
-    """A robot's planned route as a line; it replaces that of the plan before."""
+    """A robot's planned route as a line; it replaces that of the previous plan."""
     line = _line(0, points, robot_style(index).color, 2.0)
     return _entity(f"route/{robot}", now, lines=[line] if len(points) > 1 else [])
 

@@ -1,8 +1,8 @@
-"""The record of one carried-out mission, written while it is carried out: one MCAP file, append-only.
+"""Writes the record of a mission while it is carried out: one MCAP file, append-only.
 
-Messages go to the file in chunks (mcap.dev, "MCAP Format Specification"): at each plan and report, when
-`chunk_bytes` have come together, and when `flush_s` have gone by on the clock. A process that is killed leaves all
-chunks but the one in the making, and `read_record` reads them.
+Messages are written in chunks (mcap.dev, "MCAP Format Specification"): at each plan and report, when `chunk_bytes` are
+reached, and when `flush_s` have passed on the clock. A process that is killed leaves all chunks but the current one,
+and `read_record` reads them.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class RecordWriter(Publisher):
         self.close()
 
     def close(self) -> None:
-        """End the file in order, with its index; may be called again."""
+        """Complete the file with its index; may be called again."""
         if not self._file.closed:
             with self._named_errors(), self._file:
                 self._writer.finish()
@@ -108,7 +108,7 @@ class RecordWriter(Publisher):
 
     @contextmanager
     def _named_errors(self) -> Iterator[None]:
-        """Errors of writing do not say by themselves which file it is."""
+        """Add the file's name to errors of writing."""
         try:
             yield
         except OSError as error:
@@ -124,7 +124,7 @@ def require_mcap() -> None:
 
 
 def _started(file: IO[bytes]) -> tuple[Any, dict[str, int]]:
-    """A writer of a file, with its channels by topic; it ends chunks when it is told to flush, not by itself."""
+    """A writer of a file with its channels by topic; it ends chunks only when told to flush."""
     from mcap.writer import Writer
 
     writer = Writer(file, chunk_size=2**31, enable_data_crcs=True)

@@ -1,4 +1,4 @@
-"""Recordings: a record as files of ROS, and those that others made as reference trajectories."""
+"""Recordings of ROS: a record exported to ROS files, and recordings by others used as reference trajectories."""
 
 from muster.report.recordings.poses import PoseRecording, PoseTrack, is_recording, read_poses
 from muster.report.recordings.reference import Deviation, Reference, deviations

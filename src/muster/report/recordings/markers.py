@@ -1,4 +1,4 @@
-"""The scene of a mission as markers of ROS, for RViz: what `record.scene` says for Foxglove, shape by shape."""
+"""The scene of a mission as ROS markers for RViz, converted from `record.scene`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Entity = Mapping[str, Any]
 
 
 class Markers:
-    """Markers with numbers that stay: what has changed replaces what was there.
+    """Markers with constant numbers: a changed one replaces the old one.
 
     Parameters
     ----------

@@ -21,11 +21,11 @@ _NARROW, _STEPS = 1.2, 6
 
 
 def plot_tracks(name: str, tracks: Sequence[PoseTrack]) -> Axes:
-    """Draw where things were: a dot where each began.
+    """Draw tracks, with a dot where each begins.
 
     Returns
     -------
-    The axes, in metres of the frame in which each is told, equal in scale.
+    The axes, in metres of the tracks' frame, equal in scale.
 
     Raises
     ------

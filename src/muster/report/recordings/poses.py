@@ -40,7 +40,7 @@ _PACKED = (b"\x1f\x8b", b"BZh", b"\x28\xb5\x2f\xfd")
 
 @dataclass(frozen=True, eq=False)
 class PoseTrack:
-    """Where something was.
+    """The track of one topic.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class PoseTrack:
     kind
         of its messages, `package/Type`.
     frame
-        in which it is told.
+        the frame of its poses.
     times_s, positions
         (n,) seconds on the recording's clock, growing; (n, 3) metres.
     """
@@ -63,7 +63,7 @@ class PoseTrack:
 
 @dataclass(frozen=True, eq=False)
 class PoseRecording:
-    """The tracks in a recording, by topic, and whether it is whole: of one that breaks off all until there."""
+    """The tracks in a recording, by topic, and whether it is complete; else they end where it breaks off."""
 
     tracks: Mapping[str, PoseTrack]
     complete: bool
@@ -192,7 +192,7 @@ def _from_mcap(stream: Any, ended: list[bool]) -> Iterator[_Raw]:
 
 
 def _from_bag(path: Path, module: str, decode: Callable[..., Any]) -> Iterator[_Raw]:
-    """By rosbags, which finds the messages in a bag; what they say is read here."""
+    """Messages of a bag, found by rosbags and decoded here."""
     try:
         from rosbags import rosbag1, rosbag2
     except ImportError:

@@ -1,4 +1,4 @@
-"""How far robots were from a reference trajectory that somebody recorded: (7) and (8) of [market-paper]."""
+"""The deviation of robots from a recorded reference trajectory: (7) and (8) of [market-paper]."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _CLOCK_S = 1e-6
 
 @dataclass(frozen=True)
 class Reference:
-    """Where robots should have been.
+    """The reference trajectories of robots.
 
     Parameters
     ----------
     tracks
         by robot, in metres of the map frame.
     begins_s
-        what the mission's clock at 0 is on the tracks' clock.
+        the time on the tracks' clock at which the mission's clock is 0.
     """
 
     tracks: Mapping[str, PoseTrack]
@@ -95,7 +95,7 @@ def _first_s(recording: Recording, chosen: Mapping[str, PoseTrack]) -> float:
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a robot was from its reference.
+    """The deviation of a robot from its reference.
 
     Parameters
     ----------
@@ -104,9 +104,9 @@ class Deviation:
     error
         (7): total, mean, most, in metres.
     risk
-        (8), 1/m, over the same moments, by the distance to what the map has; None in a mission without a map.
+        (8), 1/m, over the same moments, by the distance to the map's obstacles; None in a mission without a map.
     travelled_m, reference_m
-        along both over these moments.
+        the length of both over these moments.
     """
 
     robot: str

@@ -46,7 +46,7 @@ from muster.report.recordings.markers import Markers
 
 @dataclass(frozen=True)
 class TimedMessage:
-    """A message: where, when on the mission's clock, what."""
+    """A message with its topic and its time on the mission's clock."""
 
     topic: str
     time_s: float
@@ -54,12 +54,12 @@ class TimedMessage:
 
 
 def ros_messages(recording: Recording, begins_s: float = 0.0) -> list[TimedMessage]:
-    """All that a record tells, in the order of time.
+    """All messages of a record, in the order of time.
 
     Parameters
     ----------
     begins_s
-        what the mission's clock at 0 is on the clock of the stamps.
+        the time of the stamps' clock at which the mission's clock is 0.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def _turned(heading: float) -> Quaternion:
 
 
 def _plans(recording: Recording, names: dict[str, str], begins_s: float) -> Iterator[TimedMessage]:
-    """The routes of each plan: `<robot>/plan`, the way on which it goes."""
+    """The routes of each plan: `<robot>/plan`."""
     for version in recording.plans:
         header = Header(stamp=Time.of(begins_s + version.time_s), frame_id=MAP_FRAME)
         for robot, line in version.lines.items():
@@ -120,22 +120,22 @@ def _in_space(point: Sequence[float]) -> Sequence[float]:
 
 def _events(recording: Recording, begins_s: float) -> Iterator[TimedMessage]:
     """Each event as JSON, and the markers that it changes; first those of the beginning."""
-    mission, situation = recording.mission, MissionState(recording.mission)
+    mission, mission_state = recording.mission, MissionState(recording.mission)
     markers = Markers(ros_names(recording.tracks.robots))
-    tasks = [scenes.task_entity(0.0, task, situation.states[task.id]) for task in mission.tasks]
+    tasks = [scenes.task_entity(0.0, task, mission_state.states[task.id]) for task in mission.tasks]
     robots = [scenes.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
     first = markers.of([*scenes.map_entities(mission.map), *tasks, *robots], begins_s)
     yield TimedMessage("/markers", 0.0, MarkerArray(first))
     for event in recording.events:
         text = json.dumps({"time_s": event.time_s, "kind": event.kind, "data": json.loads(json_bytes(event.data))})
         yield TimedMessage("/muster/event", event.time_s, String(text))
-        changed = situation.take(event.kind, event.data)
+        changed = mission_state.take(event.kind, event.data)
         if changed is not None:
-            entity = _entity(situation, event.kind, changed)
+            entity = _entity(mission_state, event.kind, changed)
             yield TimedMessage("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
 
 
-def _entity(situation: MissionState, kind: str, name: str) -> dict[str, Any]:
+def _entity(mission_state: MissionState, kind: str, name: str) -> dict[str, Any]:
     if kind == "robot_joins":
-        return scenes.robot_entity(0.0, situation.robots[name], list(situation.robots).index(name))
-    return scenes.task_entity(0.0, situation.tasks[name], situation.states[name])
+        return scenes.robot_entity(0.0, mission_state.robots[name], list(mission_state.robots).index(name))
+    return scenes.task_entity(0.0, mission_state.tasks[name], mission_state.states[name])

@@ -15,10 +15,10 @@ from muster.negotiation.messages import Stage
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team
-from muster.running.camera_search import Lookout
+from muster.running.camera_search import CameraSearch
 from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster.running.negotiated.team_log import TeamLog
-from muster.running.state_estimation import heard
+from muster.running.state_estimation import with_state_estimation
 from muster.simulation import SimulatedWorld
 
 _STEP_S = 0.05
@@ -35,11 +35,11 @@ class RobotBodies:
     """The bodies of the robots and the mission's events, between the world and the robots' processes."""
 
     team: Team
-    lookout: Lookout | None = None
+    camera_search: CameraSearch | None = None
 
     def __init__(self, mission: Mission, world: SimulatedWorld, setup: TeamSetup, log: TeamLog) -> None:
         self._world, self._setup, self._log = world, setup, log
-        self._telemetry_source = heard(world)
+        self._telemetry_source = with_state_estimation(world)
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
         self._work_reports: dict[str, WorkReport] = {}
@@ -118,10 +118,10 @@ class RobotBodies:
 
     def _check_cameras(self) -> None:
         """Evaluate the cameras. One robot is told of tasks that follow from what they find, and tells the others."""
-        if self.lookout is None:
+        if self.camera_search is None:
             return
         unheard = self._world.ports.keys() - self._connected
-        for found, event in self.lookout.look(self.time_s, unheard):
+        for found, event in self.camera_search.look(self.time_s, unheard):
             self._log.tell(self.time_s, "found", found)
             if event is not None:
                 self._take_event(event)
@@ -165,8 +165,8 @@ class RobotBodies:
             self._return(event)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
-            if self.lookout is not None:
-                self.lookout.join(event.robot_joins)
+            if self.camera_search is not None:
+                self.camera_search.join(event.robot_joins)
             self.team.start(event.robot_joins.id)
         elif event.delay_task is not None:
             for robot in self.team.living:  # who is at work notices by itself

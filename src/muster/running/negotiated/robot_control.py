@@ -9,7 +9,7 @@ from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
 from muster.execution.reallocation import usage_ahead
-from muster.execution.remaining_problem import Rest
+from muster.execution.remaining_problem import RemainingMission
 from muster.execution.task_ledger import moved
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, MovedTask, Task
@@ -157,7 +157,7 @@ class RobotControl:
             elif fact.kind == "added" and fact.task not in tasks:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
 
-    def _owned(self, rest: Rest) -> Revision:
+    def _owned(self, rest: RemainingMission) -> Revision:
         """The plan of the rest is what the robot owns. It gives back what it cannot do."""
         robot = self._negotiator.robot
         begun = {claim.task for claim in self._negotiator.route if claim.begun}

@@ -19,7 +19,7 @@ from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
-from muster.running.camera_search import OnLook, lookout_for, with_found
+from muster.running.camera_search import OnLook, camera_search_for, with_found
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
@@ -97,10 +97,12 @@ def negotiate_and_carry_out(
         setup = setup_of(problem, negotiation, memory)
         log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
         robot_bodies = RobotBodies(problem.mission, bodies, setup, log)
-        lookout = lookout_for(problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look)
-        if lookout is not None:
-            stack.callback(lookout.close)
-            robot_bodies.lookout = lookout
+        camera_search = camera_search_for(
+            problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look
+        )
+        if camera_search is not None:
+            stack.callback(camera_search.close)
+            robot_bodies.camera_search = camera_search
         robot_bodies.team = stack.enter_context(Team(setup, robot_bodies.take_report))
         halt = halt or threading.Event()
         robot_bodies.await_agreement(negotiation.limit_s, halt)
@@ -109,7 +111,7 @@ def negotiate_and_carry_out(
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
-        report = with_found(report, lookout)
+        report = with_found(report, camera_search)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report

@@ -7,7 +7,7 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Observer
-from muster.execution.reallocation import told
+from muster.execution.reallocation import reasons_in_one_line
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
 from muster.mission.model import Event
@@ -137,7 +137,9 @@ class TeamLog:
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why."""
-        reasons = {item.task: told(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
+        reasons = (
+            {item.task: reasons_in_one_line(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
+        )
         return self.ledger.lost(lambda task: reasons.get(task) or "not done", self._out)
 
     @property

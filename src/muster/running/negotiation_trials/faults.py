@@ -1,4 +1,4 @@
-"""What happens to a team while it agrees and works: starts, crashes, restarts, cuts, orders, at random times."""
+"""Incidents at random times: starts, crashes, restarts, partitions and orders."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from muster.mission.model import Mission, Task
 from muster.running.negotiation_trials.random_missions import random_task
 
 Links = frozenset[tuple[str, str]]
-"""Who hears whom directly: (speaker, listener)."""
+"""The direct links: (sender, receiver)."""
 
 
 @dataclass(frozen=True)
 class Incident:
-    """Something that happens to the team at a time, seconds.
+    """An incident at a time, seconds.
 
     Parameters
     ----------
@@ -23,11 +23,11 @@ class Incident:
         "start", "crash", "restart", "forget" (restart without memory), "cut", "block", "heal", "announce", "cancel",
         "release", "withdraw".
     robot
-        to which robot, or by which; "" to none.
+        the robot concerned; "" for none.
     groups
-        of "cut": who still hears each other.
+        of "cut": the groups within which robots still hear each other.
     links
-        of "block": on which nothing is heard.
+        of "block": the links on which all messages are lost.
     task
         of "announce": the task; of "cancel" its id.
     """
@@ -52,7 +52,7 @@ def incidents(mission: Mission, names: Sequence[str], until_s: float, random: Ra
 
 
 def _crashes(robot: str, until_s: float, random: Random) -> Iterator[Incident]:
-    """A robot is gone; perhaps it starts again, with or without memory, and perhaps is gone again."""
+    """Crashes of a robot; after one it may restart, with or without memory, and crash again."""
     now = random.uniform(0, until_s)
     yield Incident(now, "crash", robot)
     while random.random() < 0.6:
@@ -75,7 +75,7 @@ def _cuts(names: Sequence[str], until_s: float, random: Random) -> Iterator[Inci
 
 
 def orders(mission: Mission, names: Sequence[str], until_s: float, random: Random) -> Iterator[Incident]:
-    """Tasks that are added and cancelled, and robots that give tasks back."""
+    """Tasks that are announced and cancelled, and robots that release tasks."""
     for k in range(random.choice((0, 0, 1, 3))):
         task = random_task(random, f"n{k}", before=[], skilled=False, once=random.random() < 0.2)
         yield Incident(random.uniform(0, until_s), "announce", random.choice(names), task=task)

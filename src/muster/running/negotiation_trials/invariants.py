@@ -1,4 +1,4 @@
-"""What must hold of robots that agree: one owner a task, none that could be owned and is not, one view, a plan."""
+"""Invariants of robots that agree: one owner per task, no ownable task without one, equal views, a valid plan."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import task_of
 from muster.negotiation.participation import rules_of
 from muster.running.negotiation_trials.observer import Observer
-from muster.running.negotiation_trials.scenario import Scene
+from muster.running.negotiation_trials.scenario import Scenario
 from muster.verification import verify
 
 
 class Invariants:
-    """Of the robots of one scene, in which the observer has seen who has begun what."""
+    """Checks the invariants for the robots of one scenario; the observer knows which robot has begun which task."""
 
-    def __init__(self, scene: Scene, problem: Problem, observer: Observer) -> None:
-        self._scene, self._problem, self._observer = scene, problem, observer
+    def __init__(self, scenario: Scenario, problem: Problem, observer: Observer) -> None:
+        self._scenario, self._problem, self._observer = scenario, problem, observer
         self._rules = rules_of(problem)
 
     def wrong(self, nodes: Sequence[Negotiator]) -> Iterator[str]:
-        """What is wrong with robots that agree."""
+        """Violations by robots that agree."""
         owners: dict[str, list[str]] = {}
         for node in nodes:
             for claim in node.route:
@@ -47,21 +47,20 @@ class Invariants:
         yield from self._judged(nodes[0], routes[0])
 
     def _could_add(self, node: Negotiator, nodes: Sequence[Negotiator]) -> tuple[Bid, ...]:
-        """What a robot would bid if the auction began again, with all for sale that has to be."""
+        """The bids of a robot if the auction began again with all tasks that must be for sale."""
         base = node.epoch.base
         assert base is not None
         begun = opening_of(base)
         past = {task for tasks in begun.past.values() for task in tasks}
         ahead = {robot: [t for t in node.valuer.route(robot) if t not in past] for robot in self._rules.robots}
-        asked = (
-            METHODS[self._scene.method].negotiator(self._problem, self._scene.terms, node.robot, incarnation=1).valuer
-        )
+        method, terms = METHODS[self._scenario.method], self._scenario.terms
+        asked = method.negotiator(self._problem, terms, node.robot, incarnation=1).valuer
         closed = self._closed(node, nodes).intersection(self._rules.with_added(base.added).tasks)
         asked.begin(replace(begun, ahead=ahead, closed=closed))
         return asked.bids(node.epoch.refused)
 
     def _closed(self, node: Negotiator, nodes: Sequence[Negotiator]) -> set[str]:
-        """Tasks that nobody need own: done, cancelled, perhaps begun for good, or once and too few here that know."""
+        """Tasks that need no owner: done, cancelled, perhaps begun, or at-most-once where too few remember."""
         facts = node.facts
         over = {fact.task for fact in facts if fact.kind in ("done", "cancelled")}
         begun = {fact.task for fact in _begun_for_good(facts)}
@@ -69,9 +68,9 @@ class Invariants:
         return over | begun | (self._observer.once if few else set())
 
     def _judged(self, node: Negotiator, routes: dict[str, list[str]]) -> Iterator[str]:
-        """What the judge says of the plan; what has happened may be: robots that forgot, or were alone, did it."""
+        """Violations that the judge finds in the plan; work already done is accepted."""
         past = {fact.task for fact in node.facts if fact.done} | set(self._observer.begun)
-        mission = _as_it_is(self._scene.mission, node, past)
+        mission = _as_it_is(self._scenario.mission, node, past)
         before = Plan(routes=tuple(Route(r, tuple(t for t in tasks if t in past)) for r, tasks in routes.items()))
         spent = {v.robot for v in verify(mission, before).violations if v.kind == "capacity"}
         plan = Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes.items()))
@@ -81,19 +80,19 @@ class Invariants:
 
 
 def _as_it_is(mission: Mission, node: Negotiator, past: Collection[str]) -> Mission:
-    """The mission with the tasks that were added, in which what was begun waits for nothing."""
+    """The mission with announced tasks; tasks already begun have no prerequisites."""
     added = [task_of(fact.content) for fact in in_order(node.facts) if fact.kind == "added"]
     tasks = (*mission.tasks, *added)
     return replace(mission, tasks=tuple(replace(t, prerequisites=()) if t.id in past else t for t in tasks))
 
 
 def _begun_for_good(facts: Collection[Fact]) -> Iterator[Fact]:
-    """What tells that tasks may have been begun, unless that was waived."""
+    """Facts that say that a task may have been begun, unless they were waived."""
     waived = {(fact.task, fact.robot, fact.content) for fact in facts if fact.kind == "waived"}
     return (f for f in facts if f.kind == "begun" and (f.task, f.robot, f.content) not in waived)
 
 
 def _reserved(node: Negotiator) -> set[str]:
-    """Tasks not done that a robot has said, since it started, that it is going to begin for good."""
+    """Unfinished tasks that a robot has declared to begin permanently since it started."""
     done, said = {fact.task for fact in node.facts if fact.done}, (node.robot, str(node.incarnation).encode())
     return {fact.task for fact in _begun_for_good(node.facts) if (fact.robot, fact.content) == said} - done

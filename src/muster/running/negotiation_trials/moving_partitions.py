@@ -21,7 +21,7 @@ _MIXED = ("next majority", "any cut", "block", "block", "heal", "ambush")
 def moving_partitions(
     mission: Mission, names: Sequence[str], until_s: float, suspect_s: float, random: Random
 ) -> Iterator[Incident]:
-    """What happens to a team whose robots take for lost of whom they have heard nothing for `suspect_s`."""
+    """The incidents of a team whose robots suspect a robot after `suspect_s` without a message from it."""
     late_s = random.choice((0.0, 0.0, until_s))
     starts = [Incident(random.choice((0.0, 0.0, random.uniform(0, late_s))), "start", robot) for robot in names]
     usual = orders(mission, names, until_s, random) if random.random() < 0.3 else ()
@@ -30,7 +30,7 @@ def moving_partitions(
 
 
 class _Waves:
-    """Cuts, one after the other."""
+    """Partitions, one after the other."""
 
     def __init__(self, names: Sequence[str], suspect_s: float, random: Random) -> None:
         self._names, self._suspect_s, self._random = names, suspect_s, random
@@ -60,7 +60,7 @@ class _Waves:
             self._now += self._suspect_s * random.choice((random.uniform(0, 0.5), *[random.uniform(1.2, 4)] * 3))
 
     def _ambush(self) -> Iterator[Incident]:
-        """All own something; some are cut off, and the others begin it; who comes over from them has forgotten that."""
+        """Some robots are cut off; the others begin tasks; a robot that changes sides has lost its memory."""
         yield Incident(self._now, "heal")
         yield from (self._task() for _ in range(len(self._names) + 1))
         self._now += self._suspect_s * self._random.uniform(0.3, 1)
@@ -79,14 +79,14 @@ class _Waves:
             yield from _struck(bridge, self._now, self._random)
 
     def _task(self) -> Incident:
-        """A new one."""
+        """Announce a new task."""
         self._tasks += 1
         task = random_task(self._random, f"w{self._tasks}", before=[], skilled=False, once=True)
         return Incident(self._now, "announce", self._random.choice(self._names), task=task)
 
 
 def _majority_with(bridge: str, before: Sequence[str], names: Sequence[str], random: Random) -> list[str]:
-    """A majority, or half of them, that has few robots but this one in common with the one before."""
+    """A majority, or half of one, that has few robots besides this one in common with the previous one."""
     fresh = [robot for robot in names if robot not in before]
     others = [robot for robot in before if robot != bridge]
     random.shuffle(fresh)
@@ -95,7 +95,7 @@ def _majority_with(bridge: str, before: Sequence[str], names: Sequence[str], ran
 
 
 def _struck(robot: str, now: float, random: Random) -> Iterator[Incident]:
-    """The robot in common crashes, mostly before it comes to the others, and starts again there; or not at all."""
+    """The common robot crashes, mostly before it joins the others, and restarts there, or not at all."""
     crash_s = now + random.choice((random.uniform(-1, 0), random.uniform(-1, 0), random.uniform(0, 4)))
     yield Incident(max(0.0, crash_s), "crash", robot)
     if random.random() < 0.9:
@@ -104,7 +104,7 @@ def _struck(robot: str, now: float, random: Random) -> Iterator[Incident]:
 
 
 def _apart(names: Sequence[str], random: Random) -> tuple[tuple[str, ...], ...]:
-    """Some groups of all of them, at random."""
+    """A random partition of all robots into groups."""
     sides: list[list[str]] = [[] for _ in range(random.choice((1, 2, 3)))]
     for robot in names:
         random.choice(sides).append(robot)
@@ -112,7 +112,7 @@ def _apart(names: Sequence[str], random: Random) -> tuple[tuple[str, ...], ...]:
 
 
 def _one_way(names: Sequence[str], random: Random) -> Links:
-    """Links on which nothing is heard: some robots hear nobody, some nobody hears, some other links at random."""
+    """Links without messages: all links to some robots, all links from some robots, and other links at random."""
     deaf, dumb = ({robot for robot in names if random.random() < 0.25} for _ in range(2))
     odd = random.choice((0.0, 0.2))
     links = ((a, b) for a in names for b in names if a != b)

@@ -1,8 +1,8 @@
-"""Somebody who sees all robots at every moment, and says when a promise is broken.
+"""An observer of all robots at every moment, which reports violated guarantees.
 
-Two robots have lost each other from when one of them goes into an epoch without the other, or starts anew, until both
-have found the base of one epoch with both. What they own and begin meanwhile may clash; at any other moment it must
-not. A task that nobody may begin twice is never begun twice, whoever has lost whom.
+Two robots are separated from the time at which one of them enters an epoch without the other, or restarts, until both
+have the base of one epoch that contains both. Tasks that they own and begin meanwhile may clash; at any other time they
+must not. An at-most-once task is never begun twice, whether robots are separated or not.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ PROMISED_NEVER = (OWNED_TWICE, BEGUN_TWICE, ONCE_TWICE)
 
 @dataclass
 class Observer:
-    """Watches the robots of one run.
+    """Observes the robots of one trial.
 
     Parameters
     ----------
     nodes
-        the robots that live, by name.
+        the running robots, by name.
     once
-        tasks that nobody may begin twice.
+        at-most-once tasks.
     """
 
     nodes: Mapping[str, Negotiator]
@@ -36,8 +36,8 @@ class Observer:
     broken: list[str] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     begun: dict[str, list[str]] = field(default_factory=dict)
-    """By task those that have begun it, each as often as it began it anew."""
-    _lives: set[tuple[str, str]] = field(default_factory=set)  # who has begun what since it started
+    """By task the robots that have begun it, each as often as it began it anew."""
+    _lives: set[tuple[str, str]] = field(default_factory=set)  # (robot, task) begun since the robot started
     _lost: set[frozenset[str]] = field(default_factory=set)
     _entered: dict[str, int] = field(default_factory=dict)
     _based: dict[str, bytes] = field(default_factory=dict)
@@ -45,7 +45,7 @@ class Observer:
     _owned: dict[str, frozenset[str]] = field(default_factory=dict)
 
     def started(self, robot: str) -> None:
-        """A robot starts, or starts anew."""
+        """A robot starts or restarts."""
         self._lost |= {frozenset((robot, other)) for other in self._entered if other != robot}
         self._entered.pop(robot, None)
         self._based.pop(robot, None)
@@ -56,7 +56,7 @@ class Observer:
         self._seen.pop(robot, None)
 
     def look(self, robot: str) -> None:
-        """A robot did something: look what has changed."""
+        """Check what has changed after an action of a robot."""
         node = self.nodes[robot]
         self.counts["moments"] += 1
         now = node.epoch.own.epoch, node.incarnation, node.stage, node.known, node.epoch.refused
@@ -74,7 +74,7 @@ class Observer:
         self._owned[robot] = owned
 
     def begins(self, robot: str, task: str, *, again: bool) -> None:
-        """A robot begins a task; `again`: it goes on with it after a restart."""
+        """A robot begins a task; `again`: it continues it after a restart."""
         before = self.begun.setdefault(task, [])
         self._lives.add((robot, task))
         if again and robot in before:
@@ -105,7 +105,7 @@ class Observer:
                 self._lost.discard(frozenset((robot, other)))
 
     def _check_sale(self, node: Negotiator, task: str) -> None:
-        """Of a task that nobody may begin twice: it is sold where more than half of the team is, and remembers."""
+        """Check that an at-most-once task is sold only where more than half of the team is present and remembers."""
         said = [node.epoch.declaration_of(member) for member in node.epoch.own.members]
         know = sum(declared is not None and declared.knows for declared in said)
         if any(sold.task == task for sold in node.epoch.sales) and 2 * know <= len(node.rules.robots):

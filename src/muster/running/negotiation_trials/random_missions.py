@@ -11,9 +11,9 @@ SKILLS = ("camera", "gripper")
 
 
 def random_mission(random: Random, *, robots: int, tasks: int, once: float, free: bool = False) -> Mission:
-    """Robots r_0, r_1 ... and tasks 0, 1 ... in a square; tasks wait for some with lower numbers.
+    """Robots r_0, r_1 ... and tasks 0, 1 ... in a square; prerequisites have lower numbers.
 
-    `once` is the share of tasks that nobody may begin twice. Where robots are `free` any of them can do any task.
+    `once` is the share of at-most-once tasks. If `free`, any robot can do any task.
     """
     linked, skilled, limited = (random.random() < share and not free for share in (0.5, 0.3, 0.5))
     return Mission(

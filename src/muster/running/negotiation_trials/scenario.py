@@ -1,4 +1,4 @@
-"""Everything that happens in one run, by a seed: mission, terms, conditions, links, and faults with their times."""
+"""Random scenarios of trials, by a seed: mission, terms, conditions, links, and incidents with their times."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from muster.running.negotiation_trials.moving_partitions import moving_partition
 from muster.running.negotiation_trials.random_missions import random_mission
 
 MOVING_PARTITIONS = 0.3
-"""Which share of the scenes are sieges."""
+"""The share of scenarios with moving partitions."""
 
 BUNDLES = 0.25
-"""In which share robots agree by consensus-bundle."""
+"""The share of scenarios in which robots agree by consensus-bundle."""
 
 
 @dataclass(frozen=True)
-class Scene:
-    """One run.
+class Scenario:
+    """The scenario of one trial.
 
     Parameters
     ----------
     method, terms
         a name of METHODS, and its parameters.
     links
-        None: everybody hears everybody.
+        the direct links; None: between all robots.
     work_s
-        how long robots take for a task; None: they only agree.
-    take_up_rate
-        the chance that who has nothing to do tries one of its tasks in the next tenth of a second.
+        the time that a robot needs for a task; None: robots agree only.
+    begin_probability
+        the probability with which an idle robot begins one of its tasks in the next tenth of a second.
     timeouts
         of the robots.
     incidents
         in no order.
     quiet_s
-        from when on nothing happens any more except for what `conditions` do.
+        the time of the last incident; after it there are network errors only.
     """
 
     seed: int
@@ -56,7 +56,7 @@ class Scene:
     work_s: float | None
     incidents: tuple[Incident, ...]
     quiet_s: float
-    take_up_rate: float = 1.0
+    begin_probability: float = 1.0
     timeouts: Timeouts = field(default_factory=Timeouts)
 
     def described(self) -> Iterator[str]:
@@ -66,7 +66,7 @@ class Scene:
         mission = self.mission
         yield f"seed {self.seed}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; {self.method}, {terms}"
         yield f"loss {conditions.loss:.0%}, delay {conditions.delay_s:.3f} s and up to {conditions.jitter_s:g} s"
-        yield f"taken for lost after {self.timeouts.suspect_s:g} s; taken up at {self.take_up_rate:g}"
+        yield f"suspected after {self.timeouts.suspect_s:g} s; begin probability {self.begin_probability:g}"
         yield f"duplication {conditions.duplication:.0%}; work {self.work_s or 0:g} s; quiet at {self.quiet_s:.2f} s"
         if self.links is not None:
             yield "links " + ", ".join(f"{a} > {b}" for a, b in sorted(self.links))
@@ -77,20 +77,21 @@ class Scene:
             yield f"{what.at_s:8.3f} s {what.kind} {what.robot}{groups}{links} {task}".rstrip()
 
 
-def scene(seed: int) -> Scene:
-    """The scene of a seed."""
+def scenario_of(seed: int) -> Scenario:
+    """The scenario of a seed."""
     random = Random(f"negotiation {seed}")
-    return _partitioned(seed, random) if random.random() < MOVING_PARTITIONS else _troubled(seed, random)
+    make = _with_moving_partitions if random.random() < MOVING_PARTITIONS else _with_random_faults
+    return make(seed, random)
 
 
-def _troubled(seed: int, random: Random) -> Scene:
-    """A team that has all kinds of bad luck while it agrees."""
+def _with_random_faults(seed: int, random: Random) -> Scenario:
+    """A team with faults of all kinds while it agrees."""
     robots = random.choice((2, 3, 4, 5, 6, 7, random.randint(8, 12)))
     once = random.choice((0.0, 0.0, 0.2, 0.5))
     mission = random_mission(random, robots=robots, tasks=random.randint(1, 14), once=once)
     names = [robot.id for robot in mission.robots]
     quiet_s = random.uniform(5, 30) if random.random() < 0.2 else random.uniform(1, 8)
-    return Scene(
+    return Scenario(
         seed,
         mission,
         *_terms(random),
@@ -102,8 +103,8 @@ def _troubled(seed: int, random: Random) -> Scene:
     )
 
 
-def _partitioned(seed: int, random: Random) -> Scene:
-    """A small team that carries out tasks, most of which nobody may begin twice, while cuts move."""
+def _with_moving_partitions(seed: int, random: Random) -> Scenario:
+    """A small team that carries out tasks, most of them at-most-once, under moving partitions."""
     robots, tasks = random.choice((2, 3, 3, 3, 4, 5)), random.randint(1, 9)
     once, free = random.choice((0.6, 1.0, 1.0)), random.random() < 0.8
     mission = random_mission(random, robots=robots, tasks=tasks, once=once, free=free)
@@ -114,7 +115,7 @@ def _partitioned(seed: int, random: Random) -> Scene:
             loss=0.3 * conditions.loss, delay_s=0.3 * conditions.delay_s, jitter_s=0.1 * conditions.jitter_s
         )
     quiet_s = timeouts.suspect_s * random.uniform(5, 20)
-    return Scene(
+    return Scenario(
         seed,
         mission,
         *_terms(random),
@@ -123,13 +124,13 @@ def _partitioned(seed: int, random: Random) -> Scene:
         work_s=timeouts.suspect_s * random.choice((random.uniform(0.1, 0.4), random.uniform(0.4, 1.5))),
         incidents=tuple(moving_partitions(mission, names, quiet_s, timeouts.suspect_s, random)),
         quiet_s=quiet_s,
-        take_up_rate=random.choice((0.1, 0.3, 0.6)),
+        begin_probability=random.choice((0.1, 0.3, 0.6)),
         timeouts=timeouts,
     )
 
 
 def _terms(random: Random) -> tuple[str, Any]:
-    """How robots agree, by name, and on which terms."""
+    """The name and the parameters of the method by which robots agree."""
     if random.random() < BUNDLES:
         return "consensus-bundle", consensus_bundle.Parameters()
     terms = Parameters(bid=random.choice(BIDS), placement=random.choice(PLACEMENTS), winner=random.choice(WINNERS))
@@ -146,7 +147,7 @@ def _conditions(random: Random) -> LinkConditions:
 
 
 def _links(names: Sequence[str], random: Random) -> Links:
-    """A random tree with some more links; sometimes these go one way, and sometimes some of the tree do, too."""
+    """A random tree with additional links; sometimes these, and some of the tree, are one-way."""
     links, one_way, broken = set[tuple[str, str]](), random.random() < 0.3, random.choice((0.0, 0.2))
     for k in range(1, len(names)):
         a, b = names[k], names[random.randrange(k)]

@@ -1,4 +1,4 @@
-"""One scene played, and what must hold when it is quiet again."""
+"""One trial: a scenario in a simulated network, and the invariants after its last incident."""
 
 from __future__ import annotations
 
@@ -19,43 +19,43 @@ from muster.running.negotiation_trials.deadline import deadline_s, someone_is_le
 from muster.running.negotiation_trials.faults import Incident
 from muster.running.negotiation_trials.invariants import Invariants
 from muster.running.negotiation_trials.observer import Observer
-from muster.running.negotiation_trials.scenario import Scene, scene
+from muster.running.negotiation_trials.scenario import Scenario, scenario_of
 
 LONGEST_S = 120.0
-"""So long after the last incident agreement is waited for, seconds of virtual time; for its `deadline` see there."""
+"""The time limit of agreement after the last incident, seconds of virtual time; `deadline` has the stricter one."""
 
 LOOK_S = 0.1
-"""So often robots that have nothing to do look whether they may begin something."""
+"""The interval at which idle robots try to begin a task."""
 
 
 @dataclass
 class Report:
-    """What was wrong, how long agreement took, which share of what it may take, and how often what was seen."""
+    """The result of a trial: violations, the time to agreement, its share of the deadline, and counts of events."""
 
-    scene: Scene
+    scenario: Scenario
     failures: list[str] = field(default_factory=list)
     took_s: float = 0.0
     share: float = 0.0
     counts: Counter[str] = field(default_factory=Counter)
 
     def lines(self) -> Iterator[str]:
-        """For people."""
-        yield from self.scene.described()
+        """The report as text."""
+        yield from self.scenario.described()
         yield f"agreed {self.took_s:.2f} s after it was quiet, {self.share:.0%} of what that may take"
         yield from (f"  {name}: {count}" for name, count in sorted(self.counts.items()))
         yield from self.failures or ["nothing failed"]
 
 
 def replay(seed: int) -> Report:
-    """The run of a seed, the same each time."""
-    return Play(scene(seed)).run()
+    """Run the trial of a seed; it is deterministic."""
+    return Trial(scenario_of(seed)).run()
 
 
-class Play:
-    """A scene in a simulated network."""
+class Trial:
+    """A scenario in a simulated network."""
 
-    def __init__(self, given: Scene) -> None:
-        self.scene = given
+    def __init__(self, given: Scenario) -> None:
+        self.scenario = given
         self.problem = Problem.compile(given.mission).ready()
         self.rules = rules_of(self.problem)
         self.method = METHODS[given.method]
@@ -79,11 +79,11 @@ class Play:
         self.invariants = Invariants(given, self.problem, self.observer)
 
     def run(self) -> Report:
-        for incident in self.scene.incidents:
+        for incident in self.scenario.incidents:
             self.network.at(incident.at_s, lambda incident=incident: self._happen(incident))  # type: ignore[misc]
-        if self.scene.work_s is not None:
+        if self.scenario.work_s is not None:
             self.network.at(LOOK_S, self._work)
-        self.network.run(self.scene.quiet_s)
+        self.network.run(self.scenario.quiet_s)
         self.network.heal()
         self._await_agreement()
         self.report.failures += self.observer.broken
@@ -94,9 +94,9 @@ class Play:
         return self.report
 
     def _await_agreement(self) -> None:
-        """Let time go by until each group has agreed; what is wrong then.
+        """Run until each group has agreed, and check the invariants then.
 
-        A group that hears robots that do not hear it waits for them again and again, in vain: it need not agree.
+        A group that hears robots that do not hear it waits for them in vain: it need not agree.
         """
         nodes, left, began_s = self.network.nodes, self._groups(), self.network.now
         left_out = someone_is_left_out(nodes.values(), began_s)
@@ -122,7 +122,7 @@ class Play:
 
     def _note_time(self, group: Sequence[str], took_s: float, *, left_out: bool) -> None:
         rounds = self.network.nodes[group[0]].stage.round
-        deadline = deadline_s(self.scene, group, rounds, left_out=left_out)
+        deadline = deadline_s(self.scenario, group, rounds, left_out=left_out)
         self.report.took_s = max(self.report.took_s, took_s)
         self.report.share = max(self.report.share, took_s / deadline)
         if took_s > deadline:
@@ -132,10 +132,10 @@ class Play:
         self.observer.started(robot)
         return self.method.negotiator(
             self.problem,
-            self.scene.terms,
+            self.scenario.terms,
             robot,
             incarnation=incarnation,
-            timeouts=self.scene.timeouts,
+            timeouts=self.scenario.timeouts,
             remembered=self._memory.pop(robot, None),
             forgot=robot in self._forgot,
         )
@@ -188,28 +188,28 @@ class Play:
             self.report.failures.append(f"{incident.kind}: {error}")
 
     def _work(self) -> None:
-        """Robots do their tasks, one at a time; what they have not begun they try in any order."""
-        assert self.scene.work_s is not None
+        """Robots do their tasks, one at a time; they try those not begun in random order."""
+        assert self.scenario.work_s is not None
         for robot, node in self.network.nodes.items():
             task, ends_s = self._doing.get(robot, ("", 0.0))
             if task and self.network.now >= ends_s:
                 node.finish(task)
                 del self._doing[robot]
-            if robot not in self._doing and node.route and self._dice.random() < self.scene.take_up_rate:
+            if robot not in self._doing and node.route and self._dice.random() < self.scenario.begin_probability:
                 self._take_up(node, next((c for c in node.route if c.begun), self._dice.choice(node.route)))
             self.observer.look(robot)
-        if self.network.now + LOOK_S < self.scene.quiet_s:
+        if self.network.now + LOOK_S < self.scenario.quiet_s:
             self.network.at(self.network.now + LOOK_S, self._work)
 
     def _take_up(self, node: Negotiator, claim: Claim) -> None:
-        assert self.scene.work_s is not None
+        assert self.scenario.work_s is not None
         if node.begin(claim.task):
             self.observer.begins(node.robot, claim.task, again=claim.begun)
-            self._doing[node.robot] = claim.task, self.network.now + self.scene.work_s
+            self._doing[node.robot] = claim.task, self.network.now + self.scenario.work_s
 
     def _groups(self) -> list[list[str]]:
-        """Robots that live and can speak with each other, if need be through others; each hears whom it speaks to."""
-        links, groups, left = self.scene.links, [], set(self.network.nodes)
+        """Groups of running robots that can exchange messages in both directions, if need be through others."""
+        links, groups, left = self.scenario.links, [], set(self.network.nodes)
         while left:
             group = [left.pop()]
             for a in group:
@@ -221,7 +221,7 @@ class Play:
 
     def _hears_others(self, group: Sequence[str]) -> bool:
         """Whether a group hears robots that do not belong to it."""
-        links, others = self.scene.links or frozenset(), self.network.nodes.keys() - set(group)
+        links, others = self.scenario.links or frozenset(), self.network.nodes.keys() - set(group)
         return any((a, b) in links for a in others for b in group)
 
     def _agrees(self, group: Sequence[str]) -> bool:
@@ -235,6 +235,6 @@ class Play:
         )
 
     def _could_be_told(self, node: Negotiator, nodes: Sequence[Negotiator]) -> bool:
-        """Whether a robot that has forgotten what it said could know it again from a majority of others."""
+        """Whether a robot that has lost its memory could restore it from a majority of the others."""
         others = sum(other.knows for other in nodes if other is not node)
         return not node.knows and others > len(self.rules.robots) // 2

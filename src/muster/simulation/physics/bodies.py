@@ -41,7 +41,7 @@ ACCELERATION_MPS2 = {BodyKind.WHEELS: 2.0, BodyKind.SLIDER: 3.0, BodyKind.ROTORS
 
 @dataclass(frozen=True)
 class RobotBody:
-    """How a robot is built, and how many times as large as the nominal one."""
+    """The kind of a robot's body, and its size as a multiple of the nominal one."""
 
     kind: BodyKind
     scale: float
@@ -90,5 +90,5 @@ def robot_body(robot: Robot) -> RobotBody:
 
 
 def quaternion(heading: float) -> tuple[float, float, float, float]:
-    """Of a turn about the upright axis, w first."""
+    """The quaternion of a turn about the upright axis, w first."""
     return math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)

@@ -1,11 +1,12 @@
-"""From velocities that robots are to have to what their motors do: closed loops over what is measured.
+"""Closed-loop controllers: from commanded velocities to the forces of motors.
 
-Motors answer late. A body that lags goes on for a while after it is told to stand; where it would then stand is its
-position and its lag together, and that place moves at just the velocity that is asked for. So the crowd decides by that
-place as if robots answered at once, and nobody overshoots (a predictor as in [smith1957]). Each law knows its own lag.
+Motors answer late: a body moves on for a while after a command to stand. The position at which it would come to rest,
+its position plus its lag, moves at exactly the commanded velocity. The crowd therefore decides by that predicted
+position, as if robots answered at once, and no robot overshoots (a predictor as in [smith1957]). Each controller
+computes its own lag.
 
-Within a step of the world a reference goes on at the velocity that the crowd chose, and the loops follow it. Whoever is
-to stand keeps the place where it was to come to a stand.
+Within a step of the world a reference moves at the velocity that the crowd chose, and the loops follow it. A robot that
+is to stand keeps the position at which it was to come to rest.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ MOST_TILT = math.radians(35)
 
 @dataclass(frozen=True)
 class Commands:
-    """What some robots are to do.
+    """The commands to some robots.
 
     Parameters
     ----------
     rates
         (n, 4): velocities in the map frame, m/s, and yaw rates, rad/s.
     ahead
-        (n,) speeds of those that face their way, m/s.
+        (n,) speeds ahead of robots that face their way, m/s.
     """
 
     rates: Floats
@@ -46,14 +47,14 @@ class Commands:
 
 @dataclass(frozen=True)
 class StepResult:
-    """What became of commands, at the end of a step of the world.
+    """The result of commands, at the end of a step of the world.
 
     Parameters
     ----------
     poses, lags
-        (n, 4): where robots are, and by how much they would go on and turn on, were they told to stand.
+        (n, 4): x, y, z and heading, and by how much each would still change after a command to stand.
     counted
-        (n,) metres that the encoders of their wheels counted; NaN of those without.
+        (n,) metres that wheel encoders counted; NaN for robots without wheels.
     """
 
     poses: Floats
@@ -62,29 +63,29 @@ class StepResult:
 
 
 class Controller(Protocol):
-    """Drives the robots of a group, all built in one way.
+    """Drives the robots of a group, which have the same kind of body.
 
-    `following`, in 1/s: how much faster they go for each metre that they are behind their references, and turn for each
-    radian.
+    `following`, in 1/s, is the gain from the distance (and angle) behind the reference to additional speed (and yaw
+    rate).
     """
 
     group: Group
     following: float
 
     def lags(self, motion: Motion) -> Floats:
-        """By how much they would go on and turn on, were they told to stand: (n, 4), metres and radians."""
+        """By how much poses would still change after a command to stand: (n, 4), metres and radians."""
         ...
 
     def drive(self, commands: Commands, motion: Motion) -> None:
-        """Set their motors for a step of physics."""
+        """Set the motors for a step of physics."""
         ...
 
     def set_force_shares(self, shares: Floats) -> None:
-        """Shares (n, 2) of the force asked for that motors give from now on: of both wheels; of push and of turn."""
+        """Set the shares (n, 2) of commanded force that motors give from now on: left, right wheel; force, torque."""
         ...
 
     def odometers(self) -> Floats:
-        """Metres ahead that their wheels have rolled so far (n,); NaN of those without wheels."""
+        """Metres ahead that wheels have rolled so far (n,); NaN for robots without wheels."""
         ...
 
 
@@ -123,7 +124,7 @@ class ForceController:
 
     following = 10.0
     GAIN = 40.0
-    """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
+    """1/s: from the error of a velocity, or of a yaw rate, to acceleration."""
 
     def __init__(self, simulated: SimulatedModel) -> None:
         self.group = simulated.group(BodyKind.SLIDER)
@@ -151,16 +152,16 @@ class ForceController:
 class RotorController:
     """Quadcopters at the level of forces: four rotors give a thrust along the body's axis and torques.
 
-    The velocity loop asks for an acceleration; thrust and tilt follow from it; the attitude loop tilts the body, and
-    turns it meanwhile. With velocity v, acceleration a and jerk j the way until it stands is (v + D/A a + j/A) / V, the
+    The velocity loop commands an acceleration; thrust and tilt follow from it; the attitude loop tilts and turns the
+    body. With velocity v, acceleration a and jerk j the way until it stands is (v + D/A a + j/A) / V, the
     integral of the loops' equations, where V, A, D are the gains below.
     """
 
     following = 4.0
     VELOCITY, YAW_RATE = 6.0, 20.0
-    """1/s: acceleration for what is missing of a velocity, and of a yaw rate."""
+    """1/s: from the error of a velocity, or of a yaw rate, to acceleration."""
     ATTITUDE, DAMPING = 900.0, 55.0
-    """1/s^2 and 1/s: angular acceleration for each radian off, and against each radian a second."""
+    """1/s^2 and 1/s: from the angular error, and from the angular velocity, to angular acceleration."""
 
     def __init__(self, simulated: SimulatedModel) -> None:
         self.group = simulated.group(BodyKind.ROTORS)
@@ -212,38 +213,38 @@ def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float)
 
 
 class CommandFollower:
-    """The robots of one law, and where they should be at this moment.
+    """The robots of one controller, and their references.
 
     Parameters
     ----------
     keeps_height
-        in the plane nobody climbs.
+        whether robots keep their height, as in a mission in the plane.
     """
 
-    def __init__(self, law: Controller, *, keeps_height: bool) -> None:
-        self.law = law
-        self._motion = law.group.motion()
+    def __init__(self, controller: Controller, *, keeps_height: bool) -> None:
+        self.controller = controller
+        self._motion = controller.group.motion()
         self._reference = self._motion.poses
         self._free = np.array([True, True, not keeps_height, True])
-        self._odometers = law.odometers()
+        self._odometers = controller.odometers()
 
     @property
     def poses(self) -> Floats:
-        """Where they are (n, 4)."""
+        """The poses now, (n, 4)."""
         return self._motion.poses
 
     @property
     def lags(self) -> Floats:
         """See `Controller.lags`."""
-        return self.law.lags(self._motion)
+        return self.controller.lags(self._motion)
 
     def counted(self) -> Floats:
-        """Metres (n,) since this was asked last; NaN of those without wheels."""
-        before, self._odometers = self._odometers, self.law.odometers()
+        """Metres (n,) that wheel encoders counted since the last call; NaN for robots without wheels."""
+        before, self._odometers = self._odometers, self.controller.odometers()
         return np.abs(self._odometers - before)
 
     def begin(self, commands: Commands) -> None:
-        """A step of the world begins: those that move go from where they are."""
+        """Begin a step of the world: the references of robots that move start at their predicted poses."""
         self._commands = commands
         anew = (commands.rates != 0).any(axis=1)[:, None] & self._free
         self._reference = np.where(anew, self.poses + self.lags, self._reference)
@@ -253,14 +254,14 @@ class CommandFollower:
         commands, poses = self._commands, self.poses
         behind = self._reference - poses - self.lags
         behind[:, 3] = np.remainder(behind[:, 3] + math.pi, 2 * math.pi) - math.pi
-        more = self.law.following * behind
+        more = self.controller.following * behind
         along = more[:, 0] * np.cos(poses[:, 3]) + more[:, 1] * np.sin(poses[:, 3])
-        self.law.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
+        self.controller.drive(Commands(commands.rates + more, commands.ahead + along), self._motion)
 
-    def look(self, step_s: float) -> None:
-        """See where a step of physics has brought them."""
+    def measure(self, step_s: float) -> None:
+        """Move the references on, and measure the robots, after a step of physics."""
         self._reference += step_s * self._commands.rates
-        self._motion = self.law.group.motion()
+        self._motion = self.controller.group.motion()
 
 
 class Control:
@@ -268,29 +269,30 @@ class Control:
 
     def __init__(self, simulated: SimulatedModel, *, keeps_height: bool) -> None:
         self._simulated = simulated
-        laws: tuple[Controller, ...] = (
+        controllers: tuple[Controller, ...] = (
             WheelController(simulated),
             ForceController(simulated),
             RotorController(simulated),
         )
-        self._followers = [CommandFollower(law, keeps_height=keeps_height) for law in laws if len(law.group.who)]
+        used = [controller for controller in controllers if len(controller.group.who)]
+        self._followers = [CommandFollower(controller, keeps_height=keeps_height) for controller in used]
 
     def carry_out(self, commands: Commands, count: int, force_shares: Floats | None = None) -> StepResult:
         """Take `count` steps of physics; `force_shares` (n, 2) as `Controller.set_force_shares` has it; None: all 1."""
         for follower in self._followers:
-            who = follower.law.group.who
+            who = follower.controller.group.who
             follower.begin(commands.of(who))
             if force_shares is not None:
-                follower.law.set_force_shares(force_shares[who])
+                follower.controller.set_force_shares(force_shares[who])
         for _ in range(count):
             for follower in self._followers:
                 follower.drive()
             self._simulated.go_on()
             for follower in self._followers:
-                follower.look(self._simulated.step_s)
+                follower.measure(self._simulated.step_s)
         robots = len(self._simulated.robots)
         done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
         for follower in self._followers:
-            who = follower.law.group.who
+            who = follower.controller.group.who
             done.poses[who], done.lags[who], done.counted[who] = follower.poses, follower.lags, follower.counted()
         return done

@@ -39,7 +39,7 @@ def require_physics_extra() -> None:
 
 
 def choose_backend() -> str | None:
-    """Say to MuJoCo how to draw, if nobody did; None where neither library is there.
+    """Choose how MuJoCo renders, unless `MUJOCO_GL` says it; None where neither library is installed.
 
     MuJoCo reads `MUJOCO_GL` when it is imported: after that the choice is made.
 

@@ -1,7 +1,7 @@
-"""The physics world: the crowd decides, as in the kinematic world, from where robots truly are; forces carry it out.
+"""The physics world: the crowd chooses velocities, as in the kinematic world; forces move the robots.
 
-Each step the core's crowd is told where the robots are, and says what velocity each is to have: way points, avoidance,
-right of way. `control` turns that into torques and forces, MuJoCo into motion.
+In each step the core's crowd gets the robots' true poses and chooses a velocity for each, by way points, avoidance and
+right of way. `control` turns velocities into torques and forces, MuJoCo turns these into motion.
 
 The ground is flat. A ground robot's height in the mission is that of its way, as in the kinematic world. In a mission
 in the plane drones fly at `FLIGHT_M`.
@@ -39,7 +39,7 @@ STILL_MPS = 0.002
 
 
 class PhysicsWorld(WorldBase):
-    """Robots with masses, wheels and rotors; see `WorldBase`, and `bodies` for what they are.
+    """Robots with masses, wheels and rotors; see `WorldBase`, and `bodies` for their sizes.
 
     Robots without a radius, and all with `avoidance="none"`, touch nothing but the ground. No robot accelerates harder
     than `ACCELERATION_MPS2`, whatever its mission allows. When a robot joins, the model is made anew, and all others go
@@ -65,7 +65,7 @@ class PhysicsWorld(WorldBase):
 
     @property
     def simulated(self) -> SimulatedModel:
-        """MuJoCo's model and data, for pictures: of the robots that are in the world now."""
+        """MuJoCo's model and data of the robots that are in the world now."""
         self._update_model()
         assert self._simulated is not None
         return self._simulated
@@ -79,20 +79,20 @@ class PhysicsWorld(WorldBase):
 
     @property
     def frames(self) -> Floats:
-        """Where the bodies' frames truly are: (n, 3), metres, also in height; of a drone its centre of mass."""
+        """See `SimulatedWorld`; the frame of a drone is at its centre of mass."""
         simulated = self.simulated
         found: Floats = simulated.data.xpos[simulated.bodies].copy()
         return found
 
     @property
     def axes(self) -> Floats:
-        """True axes of the bodies, ahead, left and up, as the columns of (n, 3, 3) in the map frame."""
+        """See `SimulatedWorld`."""
         simulated = self.simulated
         found: Floats = simulated.data.xmat[simulated.bodies].reshape(-1, 3, 3)
         return found
 
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
-        """See `SimulatedWorld`. Rays meet bodies as they are drawn, and walls; the laser tilts with the robot."""
+        """See `SimulatedWorld`. Rays meet walls and the visible shapes of bodies; the laser tilts with the robot."""
         number, frames, axes = self._number(robot), self.frames, self.axes
         place = frames[number] + laser_height_m(self._robots[number], height_m) * axes[number, :, 2]
         bearings = scanner.bearings
@@ -127,7 +127,7 @@ class PhysicsWorld(WorldBase):
         return self._crowd.carried_out(after, lags, done.counted, STILL_MPS)
 
     def _force_shares(self, count: int) -> Floats | None:
-        """Shares of the force asked for that the motors of so many robots give in this step; None: all of it."""
+        """Shares of commanded force that the motors of `count` robots give in this step; None: all of it."""
         if self._noise.motors == 0:
             return None
         random = np.random.default_rng(np.random.SeedSequence((self._seed, self._crowd.steps), spawn_key=(2,)))
@@ -162,7 +162,7 @@ class PhysicsWorld(WorldBase):
         return PlacedRobot(body, position, float(heading), walls if collides else None)
 
     def _walls_of(self, robot: Robot) -> int:
-        """The number of the set of walls that stops it."""
+        """The number of the set of walls that stops a robot."""
         faces = self._faces_for(body_of(robot))[0]
         for number, known in enumerate(self._wall_sets):
             if np.array_equal(known, faces):

@@ -16,24 +16,24 @@ from muster.simulation.physics.simulated_model import SimulatedModel
 
 GROUND_RGBA: Rgba = (0.97, 0.975, 0.98, 1.0)
 _LIGHT = 0.55
-"""From everywhere: what lies level is as bright as its colour."""
+"""Ambient light: a level surface is as bright as its colour."""
 _SLICES = 40
 _AWAY_M = -1000.0
-"""The height of a robot that is not there."""
+"""The height of a robot that is not shown."""
 _SAMPLES = 4
 
 
 class PosedScene:
-    """Takes the place of a world for a `Renderer`.
+    """A model with settable poses that a `Renderer` draws in place of a world.
 
     Parameters
     ----------
     simulated
-        its own: see `PhysicsWorld.replica`.
+        a model of its own: see `PhysicsWorld.replica`.
     colors
         of the robots, in order.
     smooth
-        whether edges are, which takes four times as long.
+        whether edges are smoothed, which takes four times as long.
     """
 
     def __init__(self, simulated: SimulatedModel, colors: Sequence[Rgba], *, smooth: bool = False) -> None:
@@ -55,12 +55,12 @@ class PosedScene:
         return self
 
     def put(self, frames: Floats, turns: Floats) -> None:
-        """Put the bodies somewhere.
+        """Set the poses of the bodies.
 
         Parameters
         ----------
         frames, turns
-            (n, 3) metres, and (n, 4) quaternions, w first, in the map frame; who has NaN is not there.
+            (n, 3) metres, and (n, 4) quaternions, w first, in the map frame; a robot with NaN is not shown.
         """
         there = np.isfinite(frames).all(axis=1, keepdims=True)
         places = self._robots.places
@@ -70,7 +70,7 @@ class PosedScene:
         mujoco.mj_camlight(self.model, self.data)
 
     def _paint(self, robot: int, color: Rgba) -> None:
-        """Its rotors, or what of it is broadest."""
+        """Colour the rotors of a robot, or its hull."""
         model, body = self.model, self._robots.bodies[robot]
         seen = np.flatnonzero((model.geom_bodyid == body) & (model.geom_group != UNSEEN))
         if self._robots.robots[robot].body.kind is BodyKind.WHEELS:

@@ -19,7 +19,7 @@ _GROUPS = np.array([group != UNSEEN for group in range(6)], dtype=np.uint8)
 class Rays:
     """Laser rays from the robots of a model.
 
-    A robot looks through itself, through walls that do not stop it, and through what is there for pictures alone.
+    A robot's rays pass through itself, through walls that do not stop it, and through scenery.
 
     Parameters
     ----------

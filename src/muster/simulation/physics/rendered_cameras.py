@@ -1,4 +1,4 @@
-"""Cameras of the physics world: the picture is drawn, and tags are looked for in it."""
+"""Cameras of the physics world: pictures are rendered, and tags detected in them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from muster.simulation.physics.rendering import Lens, Renderer
 
 
 class RenderedCameras:
-    """Draws what a camera sees, one renderer for each size of picture.
+    """Renders what cameras see, with one renderer for each size of picture.
 
     Raises
     ------
     RenderingError
-        when looking, if nothing draws here.
+        when looking, if there is no graphics library.
     """
 
     def __init__(self, world: PhysicsWorld) -> None:
@@ -31,7 +31,7 @@ class RenderedCameras:
         return Look(observer.robot, now, image, observer.look(image, body, now))
 
     def close(self) -> None:
-        """Give back what the renderers hold of the graphics library."""
+        """Release the renderers' graphics resources."""
         for renderer in self._renderers.values():
             renderer.close()
         self._renderers.clear()

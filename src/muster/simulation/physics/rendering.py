@@ -83,7 +83,7 @@ class Lens:
 
 
 class Renderer:
-    """Draws a physics world as it is when it is asked, robots that joined included.
+    """Draws a physics world at the time of the call, with the robots that have joined.
 
     Use it in a `with`, or call `close`. There may be several at a time.
 
@@ -106,7 +106,7 @@ class Renderer:
         self.close()
 
     def close(self) -> None:
-        """Give back what it holds of the graphics library."""
+        """Release graphics resources."""
         self._renderer.close()
 
     def seen_from(
@@ -118,7 +118,7 @@ class Renderer:
         marks: Iterable[Mark] = (),
         depth_m: tuple[float, float] = (NEAR_M, FAR_M),
     ) -> Picture:
-        """What a camera sees.
+        """The picture of a camera.
 
         Parameters
         ----------

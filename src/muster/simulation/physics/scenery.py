@@ -1,4 +1,4 @@
-"""What in the physics world is only to be seen: what the map has, and tags that lie about."""
+"""Visible objects of the physics world that touch nothing: buildings of the map, and tags on the ground."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from muster.simulation.physics.tag_plates import add_plates, picture_files
 
 @dataclass(frozen=True)
 class Scenery:
-    """Of one mission: its map, its tags, the height of the ground in metres, and how high walls are drawn."""
+    """The scenery of a mission: its map, its tags, the height of the ground in metres, and the heights of walls."""
 
     map: World | None
     tags: tuple[Tag, ...]
@@ -21,12 +21,12 @@ class Scenery:
     heights: Heights = Heights()
 
     def add(self, root: ET.Element, place: ET.Element) -> None:
-        """Put it into a model, of which these are the root and the body of the world."""
+        """Add the scenery to a model with this root element and this world body."""
         if self.map is not None:
             add_buildings(root, place, self.map, self.ground_m, self.heights)
         add_plates(root, place, self.tags)
 
     @property
     def files(self) -> dict[str, bytes]:
-        """To which the model refers, by name."""
+        """The files to which the model refers, by name."""
         return picture_files(self.tags)

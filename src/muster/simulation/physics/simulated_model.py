@@ -1,4 +1,4 @@
-"""A compiled model with its state: where robots are and how they move, and what drives them."""
+"""A compiled MuJoCo model with its state: poses and velocities of robots, and their actuators."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Indices = npt.NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Motion:
-    """How some robots are and move at one moment, in the map frame.
+    """Poses and velocities of some robots at one moment, in the map frame.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Group:
         self._freedoms = simulated.freedoms[who]
 
     def motion(self) -> Motion:
-        """As it is now."""
+        """The motion at this moment."""
         axes = self.data.xmat[self.bodies].reshape(-1, 3, 3)
         speeds = self.data.qvel[self._freedoms]
         return Motion(self.data.qpos[self._places], axes, speeds[:, :3], (axes @ speeds[:, 3:, None])[:, :, 0])
@@ -70,7 +70,7 @@ class SimulatedModel:
     robots, walls, step_s
         as `mjcf` takes them.
     scenery
-        what is only to be seen, and how high the ground is.
+        visible objects, and the height of the ground.
     """
 
     def __init__(
@@ -115,17 +115,17 @@ class SimulatedModel:
         return Group(self, np.array([k for k, one in enumerate(self.robots) if one.body.kind is kind], dtype=np.intp))
 
     def motors(self, who: Indices) -> Indices:
-        """Of robots on wheels, left and right: (k, 2) numbers in `data.ctrl`."""
+        """Indices (k, 2) in `data.ctrl` of the left and right motors of robots on wheels."""
         motors = [[self.model.actuator(f"{side}{k}").id for side in ("left", "right")] for k in who]
         return np.array(motors, dtype=np.intp).reshape(-1, 2)
 
     def wheels(self, who: Indices) -> Indices:
-        """Of robots on wheels, left and right: (k, 2) numbers of their angles in `data.qpos`."""
+        """Indices (k, 2) in `data.qpos` of the left and right wheel angles of robots on wheels."""
         places = [[place for place, _ in self._wheels[k]] for k in who]
         return np.array(places, dtype=np.intp).reshape(-1, 2)
 
 
 def _wheels(model: Any, robot: int) -> list[tuple[int, int]]:
-    """Where the angles and the speeds of its wheels are."""
+    """Indices of the angle and of the speed of each wheel of a robot."""
     joints = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"{side}{robot}") for side in ("left", "right")]
     return [(model.jnt_qposadr[joint], model.jnt_dofadr[joint]) for joint in joints if joint >= 0]

@@ -1,4 +1,4 @@
-"""What is put into a picture that is no body: flat marks on the ground, trails, poles. Nothing touches them."""
+"""Shapes in a picture that are no bodies: flat marks on the ground, trails, poles. Nothing touches them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from muster.simulation.physics.buildings import Rgba
 
 _UPRIGHT = np.eye(3)
 _GLOW = 0.1
-"""Of its colour a mark shines by itself, beside the light that falls on it."""
+"""The share of its colour that a mark emits, beside the light that falls on it."""
 
 
 @dataclass(frozen=True, eq=False)

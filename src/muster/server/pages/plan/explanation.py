@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nicegui import ui
 
 from muster.server.pages.notices import told
+from muster.server.pages.plan.shown_plan import ShownPlan
 from muster.server.pages.visitor import the_services
-
-if TYPE_CHECKING:
-    from muster.server.pages.plan.plan_panel import PlanPanel
 
 
 class Explanation:
     """A button for the chosen task, and the answer."""
 
-    def __init__(self, answer: PlanPanel) -> None:
+    def __init__(self, answer: ShownPlan) -> None:
         self._answer = answer
         self._task: str | None = None
         self._button = ui.button("Explanation?", icon="help_outline", on_click=self._pressed).props(

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
 from nicegui import events, ui
 
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
 from muster.server.pages.notices import say, told
+from muster.server.pages.plan.shown_plan import ShownPlan
 from muster.server.pages.plan.start_run import open_start
 from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
 from muster.server.services.archives import archive_of
-
-if TYPE_CHECKING:
-    from muster.server.pages.plan.plan_panel import PlanPanel
 
 _FORMATS = {
     "": "Plan file (JSON)",
@@ -34,7 +31,7 @@ _MOST_BYTES = 16 * 2**20
 class PlanActions:
     """Buttons below a plan."""
 
-    def __init__(self, answer: PlanPanel) -> None:
+    def __init__(self, answer: ShownPlan) -> None:
         self._answer = answer
         self._commands = may_command() and not on_the_wall()
         self._bar = ui.element("div").classes("bar control")

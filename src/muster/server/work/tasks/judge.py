@@ -1,4 +1,4 @@
-"""What the judge says of a plan, when robots are where, and their ways over the ground."""
+"""The task that judges a plan, with the times and paths of all robots."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.report.route_lines import Places, Trace, traces
+from muster.report.route_lines import Places, RobotLines, robot_lines
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification import Verdict, verify
 
@@ -30,11 +30,11 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 def lines(mission: Mission, verdict: Verdict) -> dict[str, dict[str, list[list[list[float]]]]]:
     """The ways of all robots, by id: what is travelled, what is worked along, and the leg to where a route ends."""
-    return {trace.robot.id: _lines(trace) for trace in traces(mission, verdict, mission.dimensions)}
+    return {lines.robot.id: _lines(lines) for lines in robot_lines(mission, verdict, mission.dimensions)}
 
 
-def _lines(trace: Trace) -> dict[str, list[list[list[float]]]]:
-    parts = {"travel": trace.travel, "work": trace.work, "end": trace.end}
+def _lines(lines: RobotLines) -> dict[str, list[list[list[float]]]]:
+    parts = {"travel": lines.travel, "work": lines.work, "end": lines.end}
     return {name: list(_polylines(places)) for name, places in parts.items()}
 
 
