@@ -1,4 +1,4 @@
-"""Travel over the mission's map: by class of robots a table of the paths that will be driven (DESIGN section 4)."""
+"""Travel over the mission's map: for each class of robots a table of path lengths (docs/design.md, Meaning)."""
 
 from __future__ import annotations
 

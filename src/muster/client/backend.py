@@ -43,7 +43,7 @@ class ServerBackend:
     Parameters
     ----------
     say, note
-        get lines for a person: those that matter always, and those for -v.
+        receive messages for the user: important ones, and those of -v.
     """
 
     def __init__(self, client: Client, say: Say, note: Say) -> None:
@@ -129,11 +129,11 @@ class ServerBackend:
 
     def _kept(self, mission: Mission) -> MissionText:
         found = self._client.missions.keep(mission, "sent by the command")
-        self._note(f"the server has it as mission {found.mission}, version {found.version}")
+        self._note(f"the server has it as mission {found.id}, version {found.version}")
         return found
 
     def _kept_plan(self, mission: Mission, plan: Plan) -> ServerPlan:
-        entry = self._client.plans.upload(self._kept(mission).mission, plan)
+        entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
 
@@ -144,7 +144,7 @@ def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, int
     Raises
     ------
     KeyboardInterrupt
-        if the job is cancelled, after that was said.
+        if the job is cancelled; a message says so.
     """
     stopped = False
 
@@ -161,7 +161,7 @@ def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, int
 
 
 def _translated(on_progress: Callable[[Progress], None]) -> Callable[[Mapping[str, Any]], None]:
-    """What takes the progress of a job, which is plain data."""
+    """A function that takes the progress of a job, plain data, and reports it as `Progress`."""
     from muster.allocation.stop import Progress
 
     def report(seen: Mapping[str, Any]) -> None:
@@ -208,7 +208,7 @@ def followed(run: RunningRun, on_line: Callable[[float, str], None] | None, inte
 
 
 def unpacked(name: str, data: bytes) -> Files:
-    """The files that a server sends for a plan, and what a person has to know of them.
+    """The exported files that a server sends, and the messages that come with them.
 
     Raises
     ------

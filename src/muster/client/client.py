@@ -17,28 +17,28 @@ from muster.mission.plan import Plan
 from muster.planning.options import options_from
 
 API = 1
-"""What this client speaks."""
+"""The version of the API that this client speaks."""
 _TIMEOUT_S = 150.0  # explanations may take two minutes
 
 
 class Client:
-    """A server.
+    """A server of mission control.
 
     Parameters
     ----------
     url
         `http://HOST:PORT`.
     token
-        of the server's tokens; None: none is sent, which is right on loopback.
+        one of the server's tokens; None: none is sent, as on loopback.
     timeout_s
-        how long one answer may take.
+        timeout of one answer, seconds.
 
     Raises
     ------
     NetworkError
         by every method, if the server cannot be reached.
     NotFoundError, ConflictError, ForbiddenError, BusyError, StoreError, InputError, ParameterError, MusterError
-        by every method: what the server raised.
+        by every method: the error of the server.
     """
 
     def __init__(self, url: str, token: str | None = None, timeout_s: float = _TIMEOUT_S) -> None:
@@ -59,7 +59,7 @@ class Client:
         self._connection.close()
 
     def about(self) -> dict[str, Any]:
-        """What the server is: versions, worlds, limits.
+        """Versions, worlds and limits of the server.
 
         Raises
         ------
@@ -73,12 +73,12 @@ class Client:
         return found
 
     def me(self) -> dict[str, Any]:
-        """Who asks, as the server sees it: name, role, address."""
+        """The user as the server sees it: name, role, address."""
         found: dict[str, Any] = self._connection.get("/me")
         return found
 
     def allocators(self) -> list[dict[str, Any]]:
-        """Algorithms that plan, with their parameters."""
+        """The allocators of the server, with their parameters."""
         found: list[dict[str, Any]] = self._connection.get("/allocators")
         return found
 
@@ -113,7 +113,7 @@ class Client:
         if not isinstance(options_from(plain).allocator, str):
             raise ParameterError("allocator: a function; expected the name of an allocator of the server")
         there = self._mission(mission)
-        address = there.mission if isinstance(there, MissionText) else there
+        address = there.id if isinstance(there, MissionText) else there
         if isinstance(there, MissionText) and there.version:
             plain["version"] = there.version
         for name, plan in (("start", start), ("fixed", fixed)):
@@ -135,11 +135,11 @@ class Client:
         return plan.id if isinstance(plan, ServerPlan) else self.plans.upload(mission, plan).id
 
     def job(self, job: int) -> RunningJob:
-        """A job that was asked for before."""
+        """A job by its number."""
         return RunningJob(self._connection, read(Job, self._connection.get(f"/jobs/{job}")))
 
     def jobs(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
-        """Of one state and one mission or of all, newest first."""
+        """The newest jobs first: all, or those of one state or mission."""
         found = self._connection.get("/jobs", state=state, mission=mission, limit=limit)
         return [read(Job, job) for job in found]
 
@@ -161,13 +161,13 @@ class Client:
         return RunningRun(self._connection, read(Run, self._connection.post_once("/runs", body)))
 
     def run(self, run: int) -> RunningRun:
-        """A run that was started before."""
+        """A run by its number."""
         return RunningRun(self._connection, read(Run, self._connection.get(f"/runs/{run}")))
 
     def runs(self) -> list[Run]:
-        """Newest first."""
+        """All runs, the newest first."""
         return [read(Run, run) for run in self._connection.get("/runs")]
 
     def actions(self, run: int | None = None) -> list[Action]:
-        """Who commanded what; newest first."""
+        """The audit log, or the actions of one run; the newest first."""
         return [read(Action, action) for action in self._connection.get("/actions", run=run)]

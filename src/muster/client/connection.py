@@ -36,7 +36,7 @@ _TRIES, _PAUSE_S = 3, 0.3
 
 
 class BrokenConnectionError(NetworkError):
-    """The connection broke; whether the server has got the request is not known."""
+    """The connection broke; the server may or may not have received the request."""
 
 
 class Connection:
@@ -47,9 +47,9 @@ class Connection:
     url
         `http://HOST:PORT`, without the path of the API.
     token
-        sent as a bearer's; None: none.
+        sent as a bearer token; None: none is sent.
     timeout_s
-        how long one answer may take.
+        timeout of one answer, seconds.
     """
 
     def __init__(self, url: str, token: str | None, timeout_s: float) -> None:
@@ -71,14 +71,14 @@ class Connection:
         self._http.close()
 
     def get(self, path: str, **query: Any) -> Any:
-        """What is there, as plain data."""
+        """The resource as plain data."""
         return self._json("GET", path, params=_without_none(query))
 
     def post(self, path: str, body: Mapping[str, Any]) -> Any:
         return self._json("POST", path, json=body)
 
     def post_once(self, path: str, body: Mapping[str, Any]) -> Any:
-        """Have something made once: where the connection breaks, the request is sent again with the same key."""
+        """Post exactly once: after a broken connection the request is sent again with the same idempotency key."""
         headers = {"Idempotency-Key": uuid4().hex}
         for _ in range(_TRIES - 1):
             try:
@@ -130,7 +130,7 @@ class Connection:
             raise NetworkError(f"{self._url}: the stream broke off: {_line(error)}; {_goes_on(path)}") from None
 
     def _no_way(self, error: Exception) -> NetworkError:
-        """What the environment says of proxies and certificates cannot be followed."""
+        """The error for proxies or certificates of the environment that cannot be used."""
         expected = "expected other proxies or certificates in the environment (ALL_PROXY, SSL_CERT_FILE)"
         return NetworkError(f"{self._url}: cannot be reached: {_line(error)}; {expected}")
 
@@ -179,7 +179,7 @@ def _checked(url: str) -> str:
 
 
 def _error(status: int, content: bytes) -> MusterError:
-    """What the server says, as the exception that Muster would raise here."""
+    """The error of a server as the exception that Muster raises locally."""
     try:
         said = json.loads(content)
         text, found = str(said["error"]), [Finding(**finding) for finding in said.get("findings", ())]
@@ -201,7 +201,7 @@ def _without_none(query: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _goes_on(path: str) -> str:
-    """What becomes of whatever was followed."""
+    """Whether the followed job or run goes on at the server."""
     match = _UNDER_WAY.match(path)
     if match is None:
         return "it can be asked for again"

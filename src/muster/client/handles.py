@@ -1,4 +1,4 @@
-"""A job and a run at a server, which can be followed and acted upon."""
+"""Handles of a job and of a run at a server."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AT_ONCE = 1000
 
 
 class RunningJob:
-    """Long work at a server; `seen` is how it was when last looked at."""
+    """A job at a server; `seen` is its last known state."""
 
     def __init__(self, connection: Connection, seen: Job) -> None:
         self._connection = connection
@@ -32,11 +32,11 @@ class RunningJob:
 
     @property
     def over(self) -> bool:
-        """Whether nothing more happens in it."""
+        """Whether it has ended."""
         return self.seen.state in JOB_OVER
 
     def look(self) -> Job:
-        """See how far it is."""
+        """Ask the server for its state."""
         self.seen = read(Job, self._connection.get(f"/jobs/{self.id}"))
         return self.seen
 
@@ -45,7 +45,7 @@ class RunningJob:
         on_progress: Callable[[Mapping[str, Any]], None] | None = None,
         on_look: Callable[[], None] | None = None,
     ) -> ServerPlan:
-        """The plan, when it is made.
+        """Wait for the plan.
 
         Parameters
         ----------
@@ -74,24 +74,24 @@ class RunningJob:
         return ServerPlan.of(self._connection.get(f"/plans/{self.seen.result['plan']}"))
 
     def stream(self) -> Iterator[Job]:
-        """Each change, until it is over."""
+        """Yield each change of state until it has ended."""
         for message in self._connection.stream(f"/jobs/{self.id}/stream"):
             self.seen = read(Job, message)
             yield self.seen
 
     def stop(self) -> Job:
-        """Ask for the best plan so far, which ends it soon; one that waits for its turn is cancelled."""
+        """End planning with the best plan so far; a job that has not begun is cancelled."""
         self.seen = read(Job, self._connection.post(f"/jobs/{self.id}/stop", {}))
         return self.seen
 
     def cancel(self) -> Job:
-        """End it at once, without a plan."""
+        """Cancel it; there is no plan then."""
         self.seen = read(Job, self._connection.delete(f"/jobs/{self.id}"))
         return self.seen
 
 
 class RunningRun:
-    """A plan that is carried out at a server; `seen` is how it was when last looked at."""
+    """A run at a server; `seen` is its last known state."""
 
     def __init__(self, connection: Connection, seen: Run) -> None:
         self._connection = connection
@@ -103,16 +103,16 @@ class RunningRun:
 
     @property
     def over(self) -> bool:
-        """Whether nothing more happens in it."""
+        """Whether it has ended."""
         return self.seen.state in OVER
 
     def look(self) -> Run:
-        """See how it is."""
+        """Ask the server for its state."""
         self.seen = read(Run, self._connection.get(f"/runs/{self.id}"))
         return self.seen
 
     def wait(self) -> Run:
-        """How it was when it was over."""
+        """Wait for its end; returns its last state."""
         pause_s = _FIRST_LOOK_S
         while self.look().state not in OVER:
             time.sleep(pause_s)
@@ -120,11 +120,11 @@ class RunningRun:
         return self.seen
 
     def stream(self, after: int = 0) -> Iterator[dict[str, Any]]:
-        """What happens, as it happens (docs/mission-control-api.md); of the log what has a greater `seq`."""
+        """Yield its messages (docs/mission-control-api.md); of the log those with a greater `seq` than `after`."""
         yield from self._connection.stream(f"/runs/{self.id}/stream", after=after)
 
     def events(self, after: int = 0) -> Iterator[Entry]:
-        """The log as it is now."""
+        """Yield the entries of its log so far."""
         while True:
             found = self._connection.get(f"/runs/{self.id}/events", after=after, limit=_AT_ONCE)
             yield from (read(Entry, entry) for entry in found)
@@ -133,7 +133,7 @@ class RunningRun:
             after = found[-1]["seq"]
 
     def act(self, verb: str, **data: Any) -> Action:
-        """Let something be done: pause, resume, speed, cancel, event."""
+        """Send a command: pause, resume, speed, cancel, event."""
         return read(Action, self._connection.post(f"/runs/{self.id}/actions", {"verb": verb, "data": data}))
 
     def pause(self) -> Action:
@@ -146,12 +146,12 @@ class RunningRun:
         return self.act("cancel")
 
     def report(self) -> Report:
-        """What it took; its `as_dict()` is what `muster simulate --format json` prints.
+        """The report of the run; `as_dict()` is what `muster simulate --format json` prints.
 
         Raises
         ------
         ConflictError
-            as long as it goes on.
+            if the run has not ended.
         """
         return report_from(self._connection.get(f"/runs/{self.id}/report"))
 

@@ -1,4 +1,4 @@
-"""Answers of a server as dataclasses; keys that are not known here, of newer servers, are ignored."""
+"""Answers of a server as dataclasses; unknown keys, of newer servers, are ignored."""
 
 from __future__ import annotations
 

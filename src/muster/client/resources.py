@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class MissionText:
     """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
 
-    mission: str
+    id: str
     version: int
     text: str
     author: str
@@ -36,33 +36,33 @@ class MissionText:
 
 
 class Missions:
-    """The missions of a server. Files are those that a mission names, by their names."""
+    """The missions of a server. `files` are the files that a mission names, by name."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def list(self) -> Sequence[MissionEntry]:
-        """Those that ship with Muster, and those made there."""
+        """The shipped missions, and those created on the server."""
         return [read(MissionEntry, entry) for entry in self._connection.get("/missions")]
 
     def get(self, mission: str, version: int | None = None) -> MissionText:
-        """The newest version, or another."""
+        """A version of a mission, by default the newest."""
         return read(MissionText, self._connection.get(f"/missions/{path_part(mission)}", version=version))
 
     def file(self, mission: str, name: str) -> bytes:
-        """A file that it names."""
+        """A file that a mission names."""
         return self._connection.file(f"/missions/{path_part(mission)}/files/{path_part(name)}")[1]
 
     def create(self, text: str, files: Mapping[str, bytes] | None = None, name: str | None = None) -> MissionText:
-        """Have a mission (YAML) kept."""
+        """Store a new mission (YAML)."""
         body = {"text": text, "files": _packed(files or {})} | ({} if name is None else {"name": name})
         return read(MissionText, self._connection.post("/missions", body))
 
     def keep(self, mission: Mission, note: str = "") -> MissionText:
-        """Have a mission kept with the files that it names, and return the version that the server has of it.
+        """Store a mission with the files that it names; returns the version on the server.
 
-        A mission that is there already is used. A mission of that name that this user saved last gets a new version.
-        Otherwise it is a new mission: those of other users stay as they are.
+        A mission that the server has already is used. A mission of that name that this user saved last gets a new
+        version. Otherwise it is a new mission: those of other users are not changed.
         """
         text, files = packed_mission(mission)
         same_name = [entry.id for entry in self.list() if mission.name in (entry.id, entry.name)]
@@ -72,22 +72,22 @@ class Missions:
             return found
         me = self._connection.get("/me")["name"]
         ours = next((old for old in there if old.author == me), None)
-        return self.create(text, files) if ours is None else self.save(ours.mission, text, ours.version, files, note)
+        return self.create(text, files) if ours is None else self.save(ours.id, text, ours.version, files, note)
 
     def _has_files(self, old: MissionText, files: Mapping[str, bytes]) -> bool:
         if dict(old.files) != {name: len(data) for name, data in files.items()}:
             return False
-        return all(self.file(old.mission, name) == data for name, data in files.items())
+        return all(self.file(old.id, name) == data for name, data in files.items())
 
     def save(
         self, mission: str, text: str, base_version: int, files: Mapping[str, bytes] | None = None, note: str = ""
     ) -> MissionText:
-        """Have a new version kept, made from `base_version`; without `files` they stay.
+        """Store a new version, made from `base_version`; without `files` the files stay.
 
         Raises
         ------
         ConflictError
-            if another has saved one since.
+            if another version was saved since.
         """
         body = {"text": text, "base_version": base_version, "note": note}
         body |= {} if files is None else {"files": _packed(files)}
@@ -101,7 +101,7 @@ class Missions:
         ignore: Sequence[str] = (),
         time_limit: float | None = None,
     ) -> dict[str, Any]:
-        """What is wrong with a mission, and which tasks can never be done; nothing is kept.
+        """What is wrong with a mission, and which tasks can never be done; nothing is stored.
 
         With a `time_limit`, in seconds, also whether one plan can do all of them.
         """
@@ -110,18 +110,18 @@ class Missions:
         return found
 
     def delete(self, mission: str) -> None:
-        """List it no more."""
+        """Remove a mission from the list."""
         self._connection.delete(f"/missions/{path_part(mission)}")
 
 
 class Plans:
-    """The plans of a server; a plan is meant by its number, or by what a method here returned."""
+    """The plans of a server; each is named by its number or a `ServerPlan`."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> Sequence[PlanEntry]:
-        """Without their routes; of one mission, or of all; newest first, with ids below `before`, if given."""
+        """Plans without routes, the newest first: of one mission or of all, with ids below `before`, if given."""
         found = self._connection.get("/plans", mission=mission, limit=limit, before=before)
         return [read(PlanEntry, entry) for entry in found]
 
@@ -129,7 +129,7 @@ class Plans:
         return ServerPlan.of(self._connection.get(f"/plans/{plan}"))
 
     def upload(self, mission: str, plan: Plan | str | Path | Mapping[str, Any]) -> ServerPlan:
-        """Have a plan of a mission kept: a plan, a plan file, or what it holds."""
+        """Store a plan of a mission: a plan, a plan file, or its content."""
         if isinstance(plan, str | Path):
             plan = read_plan(plan)
         data = plan.as_dict() if isinstance(plan, Plan) else plan
@@ -138,7 +138,7 @@ class Plans:
     def verdict(
         self, plan: int | ServerPlan, ignore: Sequence[str] | None = None, objective: str | None = None
     ) -> Verdict:
-        """What the judge says, some rules ignored; by default those without which the server made the plan."""
+        """The verdict with some rules ignored; by default those that were ignored when the server made the plan."""
         from muster.verification import Verdict
 
         path = f"/plans/{number_of(plan)}/verdict"
@@ -158,22 +158,22 @@ class Plans:
         return self._connection.file(f"/plans/{number_of(plan)}/export", to=to, ignore=ignore, **options)
 
     def picture(self, plan: int | ServerPlan, what: str = "routes", form: str = "svg") -> bytes:
-        """Routes on the map, or the time chart (`gantt`); png or svg."""
+        """The routes on the map, or the time chart (`gantt`), as png or svg."""
         return self._connection.file(f"/plans/{number_of(plan)}/picture", what=what, format=form)[1]
 
 
 class Records:
-    """What happened in the runs of a server that are over."""
+    """The records of the runs of a server that have ended."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def list(self) -> Sequence[Run]:
-        """Newest first."""
+        """The runs that have ended, the newest first."""
         return [read(Run, run) for run in self._connection.get("/records")]
 
     def page(self, run: int) -> str:
-        """A page to look at in a browser, offline."""
+        """A page for a browser, which needs no network."""
         return self._connection.file(f"/records/{run}/page.html")[1].decode()
 
     def mcap(self, run: int) -> bytes:
@@ -181,7 +181,7 @@ class Records:
         return self._connection.file(f"/records/{run}/record.mcap")[1]
 
     def flown(self, run: int) -> dict[str, Any]:
-        """What was flown beside what was planned."""
+        """The planned and the measured figures."""
         found: dict[str, Any] = self._connection.get(f"/records/{run}/flown")
         return found
 

@@ -13,7 +13,7 @@ from muster.mission.plan import Plan, plan_from
 
 @dataclass(frozen=True, kw_only=True)
 class ServerPlan(Plan):
-    """A plan with its number at the server; `entry` is what the server knows of it: mission, version, author, time."""
+    """A plan with its number at the server; `entry` has its mission, version, author and time."""
 
     id: int
     entry: PlanEntry

@@ -14,7 +14,7 @@ from muster.mission.yaml_writer import yaml_text
 def packed_mission(mission: Mission) -> tuple[str, dict[str, bytes]]:
     """A mission's text, and the files that it names by their names, without folders.
 
-    The text is that of its file; it is written anew where the file is no YAML, or names what is not beside it.
+    The text is that of the mission's file, or written anew if the file is no YAML or names files of other folders.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def packed_mission(mission: Mission) -> tuple[str, dict[str, bytes]]:
 
 
 def _moved(mission: Mission, names: Mapping[str, str]) -> Mission:
-    """The mission with its files called otherwise."""
+    """The mission with its files renamed."""
     chart, travel = mission.map, mission.travel
     if chart is not None:
         image, ros_yaml = (name and names[name] for name in (chart.image, chart.ros_yaml))
@@ -44,7 +44,7 @@ def _moved(mission: Mission, names: Mapping[str, str]) -> Mission:
 
 
 def _names(mission: Mission) -> dict[str, str]:
-    """What each file that a mission names is called at a server, which has no folders."""
+    """The name on the server, which has no folders, of each file that a mission names."""
     chart = mission.map
     named = [] if chart is None else [name for name in (chart.image, chart.ros_yaml) if name is not None]
     names: dict[str, str] = {}

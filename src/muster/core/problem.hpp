@@ -47,7 +47,7 @@ struct ProblemData {
   std::vector<int> travel_class;
 };
 
-// Usage of a route, and the sum over its tasks of the usage on arrival (DESIGN: objective `average`).
+// Usage of a route, and the sum over its tasks of the usage on arrival (docs/design.md, Meaning: objective `average`).
 struct RouteFigures {
   double usage = 0.0;
   double arrivals = 0.0;

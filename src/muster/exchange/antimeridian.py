@@ -1,7 +1,7 @@
-"""Ways and areas that cross the meridian of 180 degrees, cut there (RFC 7946, section 3.1.9).
+"""Lines and areas cut at the meridian of 180 degrees (RFC 7946, section 3.1.9).
 
-Without a cut a program that knows nothing of a sphere draws them around the Earth the other way. What is cut is less
-than half of a turn wide; areas about a pole are not.
+Without a cut, programs with flat maps draw them around the Earth the other way. Lines and areas must be less than
+180 degrees wide; areas around a pole are not supported.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _TURN = 360.0
 
 
 def crosses(spots: Sequence[Spot]) -> bool:
-    """Whether the shorter way from one of these spots to the next crosses the meridian."""
+    """Whether the shorter line from one of these points to the next crosses the meridian."""
     return any(abs(b.lon - a.lon) > _TURN / 2 for a, b in pairwise(spots))
 
 
@@ -34,7 +34,7 @@ def cut_line(spots: Sequence[Spot]) -> list[list[Spot]]:
 
 
 def cut_ring(corners: Sequence[Spot]) -> list[list[Spot]]:
-    """The parts of an area, by their corners, in the order of the whole; heights are not looked at."""
+    """The parts of an area, by their corners, in the order of the whole; heights are ignored."""
     if not crosses([*corners, corners[0]]):
         return [list(corners)]
     import shapely
@@ -52,7 +52,7 @@ def cut_ring(corners: Sequence[Spot]) -> list[list[Spot]]:
 
 
 def _near(lon: float, other: float) -> float:
-    """The same longitude, at most half of a turn from another, be it beyond 180 degrees."""
+    """The same longitude within 180 degrees of another one; it may lie beyond 180 degrees."""
     return lon + _TURN * round((other - lon) / _TURN)
 
 

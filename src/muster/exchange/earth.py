@@ -36,7 +36,7 @@ class Earth:
         Raises
         ------
         MissionError
-            if the mission does not say; `purpose` is what it is needed for.
+            if the mission has no origin_wgs84; `purpose` names what needs it.
         """
         if mission.origin_wgs84 is None:
             form = "origin_wgs84: {lat_deg: 35.53, lon_deg: 24.06}"

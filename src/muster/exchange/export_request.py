@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Files:
-    """Texts by the names of their files, and what a person has to know of them."""
+    """Texts by the names of their files, and messages for the user."""
 
     texts: Mapping[str, str]
     messages: tuple[str, ...] = ()
@@ -29,7 +29,7 @@ class QgcOptions:
     Parameters
     ----------
     altitude
-        fly no lower than so many metres above the start; needed for drones of a mission in the plane.
+        least height above the start, metres; needed for drones of a mission in the plane.
     clearance
         metres; a warning where bodies come nearer to each other.
     tolerance

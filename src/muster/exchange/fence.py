@@ -1,6 +1,6 @@
-"""What a geofence keeps a robot from, and how its own way agrees with that.
+"""The geofence of a robot, and whether its path keeps to it.
 
-A fence has no heights. So a zone over or under which the way leads is left out of it: it would stop the plan itself.
+A fence has no heights. A zone that the path crosses above or below is left out, since it would stop the plan.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ class Fence:
     Parameters
     ----------
     boundary
-        in which it is to stay, if there is one.
+        that the robot must not leave, if there is one.
     zones
-        in which it is not to be, by their index in the map.
+        that the robot must not enter, by index in the map.
     passed
-        zones that are left out: its way leads over or under them.
+        zones left out because the path crosses above or below them.
     broken
-        what its way does not keep to: `the boundary`, `zone 2`.
+        what the path violates: `the boundary`, `zone 2`.
     """
 
     boundary: tuple[Point, ...] | None

@@ -1,4 +1,4 @@
-"""A plan as files of other tools: what each format needs, and what a person has to know before anything flies."""
+"""A plan as files of other programs, and messages for the user before anything flies."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = 
 
 
 def _adapted(itinerary: Itinerary, robot_paths: RobotPaths | None, options: QgcOptions) -> Itinerary:
-    """With fewer bends around corners, and a drone no lower than it may fly."""
+    """An itinerary with fewer bends around corners, and with the least height of drones."""
     if robot_paths is not None and options.tolerance:
         clear = partial(robot_paths.clear, body_of(itinerary.robot))
         itinerary = thinned(itinerary, options.tolerance, clear)
@@ -111,7 +111,7 @@ def _adapted(itinerary: Itinerary, robot_paths: RobotPaths | None, options: QgcO
 
 
 def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
-    """What a person has to know of one robot's file."""
+    """Messages about one robot's file."""
     name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
     for k in fence.passed:
         yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
@@ -134,7 +134,7 @@ def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: fl
 
 
 def _file_names(ids: list[str]) -> list[str]:
-    """A name for each robot's file: its id, where files can be called so; no two differ by case alone."""
+    """A name for each robot's file: its id without characters that files cannot have. No two differ by case alone."""
     names: list[str] = []
     for robot in ids:
         stem = "".join(c if c.isalnum() or c in "_-." else "_" for c in robot).lstrip(".") or "robot"

@@ -1,4 +1,4 @@
-"""What geographic files show of a plan: places, routes and areas, where they are on Earth, and what is said of each."""
+"""The features of a plan in geographic files: places, routes and areas on Earth, with their properties."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ AREAS = ("boundary", "zone")
 
 @dataclass(frozen=True)
 class Feature:
-    """Something on the map: one spot of a place, several of a way, corners in anticlockwise order of an area.
+    """A place (one point), a path (several points) or an area (corners, anticlockwise).
 
-    `heights_m` has for each spot its height in the map frame; None in a mission in the plane.
+    `heights_m` has for each point its height in the map frame; None in a mission in the plane.
     """
 
     kind: str
@@ -33,7 +33,7 @@ class Feature:
 
 @dataclass(frozen=True)
 class Survey:
-    """Where robots start, where tasks are, the ways of robots with tasks, and the boundary and zones of the map."""
+    """The starts of robots, the tasks, the paths of robots with tasks, and the boundary and zones of the map."""
 
     mission: str
     robots: tuple[Feature, ...]
@@ -47,7 +47,7 @@ class Survey:
 
 
 def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth: Earth) -> Survey:
-    """What there is to show of a plan."""
+    """The features of a plan."""
     spatial = mission.dimensions == 3
 
     def feature(kind: str, name: str, points: Sequence[tuple[float, ...]], properties: Properties) -> Feature:

@@ -34,7 +34,7 @@ def gpx_text(survey: Survey) -> str:
 
 
 def _point(parent: Tree.Element, tag: str, spot: Spot, feature: Feature) -> Tree.Element:
-    """A point; GPX has longitudes from -180 on, and below 180."""
+    """A point; longitudes of GPX lie in [-180, 180)."""
     lon = -180.0 if spot.lon >= 180 else spot.lon
     point = add(parent, tag, lat=decimal(spot.lat), lon=decimal(lon))
     if feature.heights_m is not None:
@@ -43,7 +43,7 @@ def _point(parent: Tree.Element, tag: str, spot: Spot, feature: Feature) -> Tree
 
 
 def _told(feature: Feature) -> str:
-    """What a person wants to know of a place."""
+    """The description of a place."""
     own = feature.properties
     if feature.kind == "robot":
         return f"start of robot {feature.name}"

@@ -1,4 +1,4 @@
-"""Where each robot is at which time, if a plan goes as the judge's schedule says: what every format is made from."""
+"""The places and times of each robot by the judge's schedule; every format is made from them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Passage:
     place
         metres in the map frame.
     arrives_s, leaves_s
-        seconds of the schedule; between them it stays: it works, or waits for another robot's work.
+        seconds of the schedule; between them the robot works, or waits for another robot.
     task
-        what it does there; None on the way.
+        the task done there; None between tasks.
     heading
-        radians from east, anticlockwise, to which it turns there; None: as it arrives.
+        radians from east, anticlockwise, to which the robot turns there; None: unchanged.
     """
 
     place: Place
@@ -58,11 +58,11 @@ class Itinerary:
 
     @property
     def under_way(self) -> tuple[Passage, ...]:
-        """Those between the start and where the route has to end."""
+        """The passages between the start and the end of the route."""
         return self.passages[1:-1] if self.has_end else self.passages[1:]
 
     def at_least(self, height_m: float) -> Itinerary:
-        """With no passage under way lower than so many metres above the start."""
+        """The itinerary with every passage under way at least so many metres above the start."""
         floor = self.start.place[2] + height_m
         raised = [replace(p, place=(*p.place[:2], max(p.place[2], floor))) for p in self.under_way]
         return replace(self, passages=(self.start, *raised, *(self.passages[-1:] if self.has_end else ())))
@@ -81,7 +81,7 @@ def itineraries(mission: Mission, verdict: Verdict, robot_paths: RobotPaths | No
     Raises
     ------
     PlanError
-        if there is no way over the map where the plan has a leg.
+        if the map has no path for a leg of the plan.
     MissionError, MissingExtraError
         for travel over a map, as `RobotPaths.of`.
     """
@@ -118,7 +118,7 @@ def _travel(mission: Mission, robot: Robot, here: Passage, goal: Place, arrives_
 
 
 def _work(work: Work, visit: Visit) -> list[Passage]:
-    """The passages of a task, in the time that the judge gives the work; in the first the robot may have to wait."""
+    """The passages of a task, in the time that the judge gives the work; at the first the robot may wait."""
     scale = (visit.ends_s - visit.starts_s) / work.lasts_s if work.lasts_s else 0.0
     found = [
         Passage(point, visit.starts_s + scale * arrives, visit.starts_s + scale * leaves, visit.task, heading)

@@ -1,8 +1,8 @@
 """A plan as KML 2.2 (OGC 07-147r2): longitude first; a folder each of areas, routes, tasks and robots.
 
 Heights are those of the mission, over the ground (`relativeToGround`): KML's own zero is the mean sea level, which a
-height above the ellipsoid does not tell. What crosses the meridian of 180 degrees is cut there. The order of elements
-is that of the schema.
+height above the ellipsoid does not tell. Lines and areas are cut at the meridian of 180 degrees.
+The order of elements is that of the schema.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _placemark(folder: Tree.Element, feature: Feature) -> None:
 
 
 def _parent(mark: Tree.Element, pieces: Sequence[Sequence[Spot]]) -> Tree.Element:
-    """What holds a shape: the mark, or where it has several one element that holds them all."""
+    """The parent element of a shape: the placemark, or a MultiGeometry in it for several shapes."""
     if len(pieces) == 1:
         return mark
     found = mark.find("MultiGeometry")

@@ -1,7 +1,6 @@
-"""What is passed between the parts of mission control: plain frozen data, with the words of the API.
+"""The data that the parts of mission control exchange, under the names of the API.
 
-Times are aware datetimes in UTC where they are of the wall clock, and seconds (`..._s`) where they are of a mission's
-clock.
+Times of the wall clock are aware datetimes in UTC; times of a mission's clock are seconds (`..._s`).
 """
 
 from __future__ import annotations
@@ -30,19 +29,19 @@ class NotFoundError(MusterError):
 
 
 class ConflictError(MusterError):
-    """It cannot be done as things are now; the message says why: a run that is over, a mission changed by another."""
+    """The request conflicts with the present state: a run that has ended, a mission changed by another user."""
 
 
 class ForbiddenError(MusterError):
-    """Whoever asked may only watch."""
+    """The user may only watch."""
 
 
 class BusyError(MusterError):
-    """A limit is reached; the message names it. The same may be asked again later."""
+    """A limit, which the message names, is reached. The request may be repeated later."""
 
 
 class StoreError(MusterError):
-    """The database cannot be read or written: full, read-only, gone; the message says which, and what to do."""
+    """The database cannot be read or written: full, read-only, missing; the message says which, and what to do."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class User:
     address: str = ""
 
     def require_command(self) -> None:
-        """Raise ForbiddenError where they may only watch."""
+        """Raise ForbiddenError for a user who may only watch."""
         if self.role != "command":
             raise ForbiddenError(f"{self.name} may only watch; expected the role command")
 
@@ -112,7 +111,7 @@ class PlanEntry:
 
     @property
     def ignored(self) -> tuple[str, ...]:
-        """The rules that were ignored when the server made it; none of an uploaded plan, whatever it says."""
+        """The rules that were ignored when the server made it; none for an uploaded plan, whatever it states."""
         return tuple(self.plan.get("ignored", ())) if self.origin == "planned" else ()
 
     @property
@@ -123,21 +122,21 @@ class PlanEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """Long work: asked for, under way, over.
+    """A job: queued, running, ended.
 
     Parameters
     ----------
     kind
         `plan` (others may come).
     arguments
-        what was asked for, plain.
+        of the request, plain data.
     progress
         the newest: for a plan `elapsed_s`, `share` (0 to 1, or null), `weight`, `objective`, `bound`, and `history`,
         which has [seconds, objective] of each improvement.
     result
         for a plan `{"plan": its id}`.
     error
-        one line for a person.
+        one line for the user.
     """
 
     id: int
@@ -164,15 +163,15 @@ class Run:
     settings
         `seed`, `dt_s`, `avoidance`, `noise` of a simulated world; of a bridge what it needs (docs/mission-control.md).
     speed
-        times real time; null: as fast as it goes. Of real robots always 1.
+        times real time; null: as fast as possible. Of real robots always 1.
     time_s
-        up to where the log reaches on the mission's clock.
+        the mission time up to which the log reaches.
     resumed
-        how often it went on after a crash.
+        how often the run was resumed after a crash.
     remark
-        one line for a person: why it failed, that it is not being kept.
+        one line for the user: why the run failed, or that it is not recorded.
     report
-        as `muster simulate --format json` prints it, when it is over.
+        as `muster simulate --format json` prints it, after the end.
     """
 
     id: int
@@ -210,7 +209,7 @@ class Entry:
 
 @dataclass(frozen=True, kw_only=True)
 class Stretch:
-    """Where robots were for a while: one piece of a run's tracks, packed (see `runs.tracks`). `seq` counts from 1."""
+    """The positions of robots over some time: a packed piece of a run's tracks (`runs.tracks`). `seq` counts from 1."""
 
     run: int
     seq: int
@@ -229,7 +228,7 @@ class Action:
         `mission.save`, `mission.delete`, `plan.ask`, `plan.upload`, `job.cancel`, `job.stop`, `run.start`, `run.pause`,
         `run.resume`, `run.speed`, `run.cancel`, `run.event`, `login`, `refused`, ...
     outcome
-        empty as long as it is not known; `done`, or why it was refused.
+        empty until it is known; `done`, or why the action was refused.
     """
 
     id: int

@@ -1,6 +1,6 @@
-"""The fences of plan files as the map of one mission: what all stay in is its boundary, what any stays out of a zone.
+"""The fences of plan files as the map of one mission: inclusions are its boundary, exclusions its zones.
 
-A mission has one boundary for all robots, so all fences have to have the same. The heights of zones are not in a fence.
+A mission has one boundary for all robots, so all fences must have the same. Fences have no heights.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _SAME_M = 0.01
 
 @dataclass(frozen=True)
 class Fences:
-    """The polygons of one file, in degrees: where its vehicle stays inside, and where it stays out."""
+    """The polygons of one file, in degrees: inclusions and exclusions."""
 
     inside: tuple[tuple[Corner, ...], ...]
     outside: tuple[tuple[Corner, ...], ...]
@@ -39,7 +39,7 @@ def map_of(
     metres
         degrees in the map frame.
     refused
-        what is raised for a file, by its index, whose fence has not the one boundary.
+        makes the error for a file, by its index, whose fence has another boundary.
     """
     if not any(fence.inside or fence.outside for fence in fences):
         return None

@@ -1,4 +1,4 @@
-"""The words of QGroundControl's plan files that Muster writes and reads.
+"""The keys and numbers of QGroundControl's plan files.
 
 Source: QGroundControl developer guide, "Plan File Format"; numbers are MAVLink's MAV_CMD, MAV_FRAME, MAV_AUTOPILOT and
 MAV_TYPE.

@@ -1,7 +1,7 @@
 """QGroundControl plan files as a mission: one robot a file, every way point a task, the first home the origin.
 
-A way point's hold is the task's duration. The order of way points is not kept: what is to be planned anew is who goes
-where, and when. Way points of take-off, landing and return to launch say where the robot ends. Fences are the map.
+A way point's hold is the task's duration. The order of way points is not kept, since Muster plans it
+anew. Way points of take-off, landing and return to launch give the end position. Fences become the map.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _SAME_PLACE_M = 0.01
 
 @dataclass(frozen=True)
 class _Vehicle:
-    """What one file says."""
+    """The content of one file."""
 
     name: str
     home: Degrees
@@ -61,7 +61,7 @@ def read_plan_files(path: str | Path) -> Mission:
     Raises
     ------
     MissionError
-        with what is wrong with the first file that is wrong, or has another boundary than those before.
+        with the errors of the first wrong file, or of the first with another boundary.
     MissingExtraError
         if pymap3d is not installed.
     """
@@ -128,7 +128,7 @@ def _over(a: Degrees, b: Degrees) -> bool:
 
 
 class _Reading:
-    """One file; what is wrong is refused where it is met."""
+    """Reads one file; the first error is raised."""
 
     def __init__(self, file: Path) -> None:
         self._file = file
@@ -160,7 +160,7 @@ class _Reading:
         )
 
     def without_boundary(self) -> MissionError:
-        """What is wrong if its fence has another boundary than those of the other files, none, or several."""
+        """The error for a fence with no boundary, several, or another than the other files have."""
         expected = "one polygon with inclusion, the same in all files"
         return MissionError(
             [Finding(str(self._file), None, "geoFence.polygons", "not the mission's boundary", expected)]
@@ -199,7 +199,7 @@ class _Reading:
         return data
 
     def _commands(self, items: Sequence[Any]) -> Iterator[tuple[int, dict[str, Any], str]]:
-        """The items that say where to go: index, item, and where it is in the file."""
+        """The items with a position: index, item, and place in the file."""
         for k, item in enumerate(items):
             at = f"mission.items[{k}]"
             if not isinstance(item, dict) or item.get("type") != "SimpleItem":

@@ -1,7 +1,7 @@
 """QGroundControl plan files, one a robot: way points, fence and rally points.
 
-Latitude comes first. Heights are metres above home, which is the robot's start. A robot that ends anywhere lands where
-its route ends; one that goes back to its start returns to launch.
+Latitude comes first. Heights are metres above home, which is the robot's start. A robot without an end position
+lands at the end of its route; one that returns to its start returns to launch.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class PlanFiles:
     mission, earth
         the mission, and where it lies.
     team
-        the itineraries of all robots: where they start is where drones may rally.
+        the itineraries of all robots; their starts are rally points of drones.
     firmware
         a key of `qgc_format.FIRMWARE`. PX4 turns to the heading of a way point, ArduPilot by an item of its own.
     """
@@ -99,7 +99,7 @@ class PlanFiles:
         return [[spot.lat, spot.lon] for spot in self.earth.spots(anticlockwise(polygon)[::-1])]
 
     def _rally_points(self, itinerary: Itinerary, home: Spot) -> list[list[float]]:
-        """Where drones start, at the height at which this one flies first; a rover has none."""
+        """The starts of drones, at this drone's first height of flight; a rover has no rally points."""
         if itinerary.robot.kind != "air":
             return []
         starts = dict.fromkeys(other.start.place for other in self.team if other.robot.kind == "air")

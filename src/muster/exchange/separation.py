@@ -1,7 +1,7 @@
-"""Whether routes keep their distance from each other in time, exactly: robots move straight between passages.
+"""Distances between routes in time, computed exactly: robots move straight between passages.
 
-Between two times at which neither of a pair changes its motion their relative motion is straight, so that the least
-distance has a closed form, and no meeting falls between samples.
+While neither robot of a pair changes its motion, the relative motion is straight. So the least distance has a closed
+form, and no meeting is missed between samples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _ROUNDING_M = 1e-9
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two robots nearer to each other than they may be: when they are nearest, how near, and what was asked for."""
+    """Two robots that come too close: when, the least distance, and the distance required."""
 
     robots: tuple[str, str]
     time_s: float
@@ -58,14 +58,14 @@ def _times(itinerary: Itinerary) -> Floats:
 
 
 def _positions(itinerary: Itinerary, times: Floats) -> Floats:
-    """(n, 3) metres: where the robot is at each time; before its first passage and after its last it stands there."""
+    """(n, 3) metres: where the robot is at each time; before its first passage and after its last it stands still."""
     points = np.repeat(np.array([p.place for p in itinerary.passages]), 2, axis=0)
     known = _times(itinerary)
     return np.stack([np.interp(times, known, points[:, axis]) for axis in range(3)], axis=1)
 
 
 def _closest(apart: Floats) -> tuple[Floats, Floats]:
-    """For each piece between rows of (n, 3) relative positions: at which share of it they are nearest, and how near."""
+    """For each piece between rows of (n, 3) relative positions: the share of the least distance, and that distance."""
     start, motion = apart[:-1], np.diff(apart, axis=0)
     square = (motion**2).sum(axis=1)
     share = np.clip(-(start * motion).sum(axis=1) / np.where(square == 0, 1.0, square), 0.0, 1.0)

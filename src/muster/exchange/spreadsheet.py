@@ -1,7 +1,7 @@
 """A plan as CSV for spreadsheets: a line for each visit in the order of routes, then one for each task left out.
 
-Spreadsheets take a cell that begins with =, +, - or @ for a formula and run it, in quotes too: an id that does gets an
-apostrophe before it, which marks text (OWASP, "CSV Injection").
+Spreadsheets run a cell that begins with =, +, - or @ as a formula, even in quotes. Such an id gets a leading
+apostrophe, which marks text (OWASP, "CSV Injection").
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _BEGIN_FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 
 
 def csv_text(mission: Mission, verdict: Verdict, earth: Earth | None) -> str:
-    """Lines of visits; `usage` is what the robot has used when it arrives. Without `earth` no degrees."""
+    """Lines of visits; `usage` is the robot's usage at the arrival. Without `earth` no degrees."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     times = ("arrives_s", "starts_s", "ends_s", f"usage_{verdict.usage_unit}")
@@ -41,12 +41,12 @@ def _rows(mission: Mission, verdict: Verdict, earth: Earth | None) -> Iterator[t
 
 
 def cell(name: str) -> str:
-    """An id that no spreadsheet takes for a formula."""
+    """An id as a cell that no spreadsheet runs as a formula."""
     return f"'{name}" if name.startswith(_BEGIN_FORMULAS) else name
 
 
 def _places(mission: Mission, earth: Earth | None) -> dict[str, tuple[object, ...]]:
-    """For each task x, y, z, latitude and longitude; empty is what is not known."""
+    """For each task x, y, z, latitude and longitude; unknown ones are empty."""
     spots = [] if earth is None else earth.spots(task.position for task in mission.tasks)
     degrees: list[tuple[object, object]] = [(spot.lat, spot.lon) for spot in spots] or [("", "")] * len(mission.tasks)
     return {task.id: (*_metres(task), *pair) for task, pair in zip(mission.tasks, degrees, strict=True)}

@@ -1,8 +1,8 @@
 """Fewer way points around corners: bends that lie close together become one, on their outer side.
 
-The shortest way of a body around a corner has a bend every few centimetres. An autopilot that slows down at each goes
-badly, and to leave some out would cut the corner. So the pieces before and after are drawn out to where they meet: that
-is farther from what they go around, and whether it is free of all else is looked at.
+The shortest path around a corner has a bend every few centimetres. An autopilot slows down at each of them, and leaving
+some out would cut the corner. So the segments before and after are extended to their intersection, which is farther
+from the corner, and the new segments are checked for collisions.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ Clear = Callable[[Sequence[Place]], bool]
 
 
 def thinned(itinerary: Itinerary, tolerance_m: float, clear: Clear) -> Itinerary:
-    """With fewer bends: none of them, old or new, lies farther than `tolerance_m` from the other way.
+    """The itinerary with fewer bends; old and new paths are nowhere farther apart than `tolerance_m`.
 
-    What a robot does where, and when, does not change; at bends it does nothing.
+    Tasks and times do not change; a robot does nothing at bends.
     """
     given = itinerary.passages
     kept, k = [given[0]], 1
@@ -42,7 +42,7 @@ def thinned(itinerary: Itinerary, tolerance_m: float, clear: Clear) -> Itinerary
 
 
 def _bends_from(passages: Sequence[Passage], first: int) -> int:
-    """How many passages from one on are nothing but bends."""
+    """The number of consecutive passages that are bends."""
     k = first
     while k < len(passages) - 1 and _is_bend(*passages[k - 1 : k + 2]):
         k += 1
@@ -50,13 +50,13 @@ def _bends_from(passages: Sequence[Passage], first: int) -> int:
 
 
 def _is_bend(before: Passage, here: Passage, after: Passage) -> bool:
-    """Whether a robot does nothing here: it neither stays, turns, nor begins or ends a task."""
+    """Whether a robot neither stays, turns, nor begins or ends a task at a passage."""
     amid = here.task is None or before.task == here.task == after.task
     return amid and here.stays_s == 0 and here.heading is None
 
 
 def _corner(before: Place, bends: Sequence[Passage], after: Place, tolerance_m: float) -> Passage | None:
-    """One bend for several, where the pieces before and after them meet; None if they do not, or too far away."""
+    """One bend for several, at the intersection of the segments before and after; None without one nearby."""
     first, last = bends[0], bends[-1]
     meeting = _meeting(before, first.place, last.place, after)
     if meeting is None:
@@ -73,7 +73,7 @@ def _corner(before: Place, bends: Sequence[Passage], after: Place, tolerance_m: 
 
 
 def _meeting(a: Place, b: Place, c: Place, d: Place) -> tuple[float, float] | None:
-    """Where, seen from above, what goes on from a by b meets what goes on from d by c."""
+    """The intersection, seen from above, of the line from a through b and the line from d through c."""
     (ux, uy), (wx, wy) = (b[0] - a[0], b[1] - a[1]), (c[0] - d[0], c[1] - d[1])
     turn = ux * wy - uy * wx
     if turn == 0:
@@ -84,14 +84,14 @@ def _meeting(a: Place, b: Place, c: Place, d: Place) -> tuple[float, float] | No
 
 
 def _beyond(b: Place, c: Place, meeting: tuple[float, float]) -> tuple[float, float]:
-    """A hair farther from the piece between b and c than a point."""
+    """A point moved slightly away from the segment between b and c."""
     x, y = meeting[0] - (b[0] + c[0]) / 2, meeting[1] - (b[1] + c[1]) / 2
     length = math.hypot(x, y)
     return (meeting[0] + _HAIR_M * x / length, meeting[1] + _HAIR_M * y / length) if length else meeting
 
 
 def _away(point: Place, line: Sequence[Place]) -> float:
-    """Metres from a point to a line through places."""
+    """The distance, metres, from a point to a line through places."""
     return min(_from_piece(point, a, b) for a, b in pairwise(line))
 
 

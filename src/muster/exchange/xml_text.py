@@ -11,7 +11,7 @@ _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def add(parent: Tree.Element, tag: str, text: object = None, **attributes: Any) -> Tree.Element:
-    """A new last child; `text` is what it holds."""
+    """Add a last child with this text."""
     child = Tree.SubElement(parent, tag, {name: str(value) for name, value in attributes.items()})
     if text is not None:
         child.text = _NOT_XML.sub("\ufffd", decimal(text) if isinstance(text, float) else str(text))

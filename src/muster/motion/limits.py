@@ -1,4 +1,4 @@
-"""What a robot can do at most: for timing its way, and for the laws that drive it."""
+"""A robot's limits of speed, acceleration and turning, for motion profiles and for controllers."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from muster.mission.errors import ParameterError
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """The most of each rate; `inf` where nothing limits it.
+    """The largest value of each rate; `inf` where there is no limit.
 
     Parameters
     ----------
     acceleration_mps2
-        of the velocity as a vector: along the way and across it together.
+        of the velocity as a vector: along the path and across it together.
     climb_mps
-        up and down, for those that fly; without it `speed_mps`.
+        up and down, for robots that fly; without it `speed_mps`.
     track_m
         distance between the wheels of a differential drive; above 0 no rim goes faster than `speed_mps`.
 

@@ -1,4 +1,4 @@
-"""The mission's map, ready for use: what it leaves free for a body, and how far its obstacles are.
+"""The mission's map, ready for use: the free space of a body, and the distance to obstacles.
 
 The boundary holds for all robots, a zone for the kinds it is `forbidden_to`. Heights count in a 3-D mission:
 
@@ -37,20 +37,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Body:
-    """What a map knows of a robot: `radius_m` and `kind` (`ground` or `air`)."""
+    """The properties of a robot that matter for a map: `radius_m` and `kind` (`ground` or `air`)."""
 
     radius_m: float
     kind: str
 
 
 def body_of(robot: Robot) -> Body:
-    """What a map knows of a robot."""
+    """The body of a robot."""
     return Body(robot.radius_m, robot.kind)
 
 
 @dataclass(frozen=True, eq=False)
 class Area:
-    """A zone of the map: its number, from 0, what the mission says of it, and its polygon."""
+    """A zone of the map: its number, from 0, its entry in the mission, and its polygon."""
 
     number: int
     zone: Zone

@@ -1,4 +1,4 @@
-"""Reads a mission from whatever file or name a user gives."""
+"""Reading of missions from files and by the names of shipped missions."""
 
 from __future__ import annotations
 

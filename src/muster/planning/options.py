@@ -1,7 +1,7 @@
-"""How a mission is planned: the options of a planning request, checked without an allocator and without a mission.
+"""The options of a planning request, checked without an allocator and without a mission.
 
 Python, the command, the client and the server all make these options, so that all refuse the same values with the same
-words. Nothing heavy is imported here.
+texts. No heavy module is imported.
 """
 
 from __future__ import annotations

@@ -95,7 +95,7 @@ def solve(
 
 
 def _require_no_misspelt_argument(parameters: Mapping[str, Any]) -> None:
-    """Refuse what looks like an argument of `solve`; what the allocator does not have is refused by the allocator."""
+    """Refuse a misspelt argument of `solve`; the allocator refuses parameters that it does not have."""
     for name in parameters:
         if name not in AllocatorParameters.__annotations__ and did_you_mean(name, _ARGUMENTS):
             require_known([name], _ARGUMENTS)

@@ -1,4 +1,4 @@
-"""The one way from a planning request to a judged plan. Heavy parts are imported where they are used."""
+"""Answers planning requests with judged plans. Heavy modules are imported where they are used."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tup
 
 
 def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> OnProgress:
-    """What adds the bound that was asked for to progress, and lets its share include the time of an exact proof."""
+    """A function that adds the bound to progress, and the time of an exact proof to its share."""
     from muster.allocation.bounds import lower_bound
     from muster.allocation.proofs import EXACT_TIME_LIMIT_S
 

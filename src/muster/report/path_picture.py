@@ -1,4 +1,4 @@
-"""One path over a mission's map."""
+"""A picture of one path over a mission's map."""
 
 from __future__ import annotations
 

@@ -91,15 +91,15 @@ def _draw_tracks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any,
 
 
 def _draw_tasks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any, str]]:
-    situation = recording.outcome
+    mission_state = recording.outcome
     colors = {DONE: TEXT, OPEN: LEFT_OUT}
     entries = {}
-    for name, task in situation.tasks.items():
-        place, state = places([task.position], recording.mission.dimensions), situation.states[name]
+    for name, task in mission_state.tasks.items():
+        place, state = places([task.position], recording.mission.dimensions), mission_state.states[name]
         look = {"color": colors.get(state, ALARM), "markerfacecolor": TEXT if state == DONE else "white"}
         (mark,) = ax.plot(*place.T, linestyle="none", marker="o", markersize=4.5, zorder=5, gid=f"task-{name}", **look)
         entries[f"task {state}"] = mark
-        if len(situation.tasks) <= _MOST_NAMED:
+        if len(mission_state.tasks) <= _MOST_NAMED:
             write(ax, place[0], shortened(names.task(name)), (0, 8), halo=True, color=QUIET_TEXT, fontsize=7, zorder=6)
     return [(mark, label) for label, mark in entries.items()]
 

@@ -1,4 +1,4 @@
-"""When each task is done, and whether all can be: DESIGN section 4, prerequisites.
+"""When each task is done, and whether all can be: docs/design.md, Meaning: prerequisites.
 
 [tcf-thesis] (3.25) compares the order within one route only. Here the graph of all routes and all prerequisites
 is judged, which also finds robots that wait for each other for ever.

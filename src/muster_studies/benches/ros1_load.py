@@ -1,4 +1,4 @@
-"""What the bench of ROS 1 runs in processes of their own: many small robots, and the bridge that is measured.
+"""Processes of the ROS 1 bench: many small robots, and the bridge that is measured.
 
 `robots COUNT HZ` forks a process a robot, which knows nothing of Muster; `bridge COUNT WINDOWS SECONDS` steers them
 around squares and prints, for each window of time, what it heard as a line of JSON.
@@ -53,7 +53,7 @@ def robots(count: int, rate_hz: float) -> None:
 def _drive(
     rospy: Any, odometry: Any, name: str, place: tuple[float, float], interval_s: float, phase: float
 ) -> NoReturn:
-    """A robot on two wheels that does exactly as it is told, and speaks in a part of the interval of its own."""
+    """A differential drive that follows commands exactly; its messages are staggered within the interval."""
     from geometry_msgs.msg import Twist
 
     rospy.init_node(f"load_{name}", disable_signals=True)

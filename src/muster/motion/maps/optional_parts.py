@@ -1,4 +1,4 @@
-"""The optional part of the installation that reads maps: GEOS, beneath Shapely, is no part of the core."""
+"""The check that the extra `map` is installed: Pillow, SciPy and Shapely."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be done of a mission, and why a plan is as it is: found once, for the command and for mission control."""
+"""Explanations: which tasks can never be done, why tasks are left out, why a robot does a task."""
 
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
 from muster.planning.explaining.impossible import Possible, possible

@@ -42,18 +42,18 @@ class LeftOut:
 
 @dataclass(frozen=True, kw_only=True)
 class OneTask:
-    """What there is to say of one task of a plan.
+    """The explanation of one task of a plan.
 
     Parameters
     ----------
     robot
-        who does it; None: it is left out.
+        the robot that does it; None: it is left out.
     alternatives
-        for each robot what giving it the task would do.
+        for each robot the effect of giving it the task.
     remedies
-        for each robot what it would need.
+        for each robot the changes that it would need.
     award
-        how it was won, of an auction's plan.
+        the award of the task in a plan of an auction.
     """
 
     problem: Problem
@@ -71,7 +71,7 @@ class OneTask:
 
     @property
     def route(self) -> RouteFigures | None:
-        """The route in which it is done."""
+        """The route that has the task."""
         return next((route for route in self.verdict.routes if route.robot == self.robot), None)
 
     def as_dict(self) -> dict[str, Any]:
@@ -88,12 +88,12 @@ class OneTask:
 
 
 def require_fit(mission: Mission, plan: Plan, file: str, ignore: Collection[str] = ()) -> None:
-    """Explanations need a plan of this mission without knots; anything else is for `verify` to say.
+    """Refuse a plan that does not fit the mission, or whose tasks wait for each other: `verify` says more.
 
     Raises
     ------
     PlanError
-        if it is none; `file` names it.
+        if the plan does not fit; `file` names it.
     """
     wrong = [v for v in verify(mission, plan, ignore).violations if v.kind in _IN_KNOTS]
     if wrong:
@@ -107,7 +107,7 @@ def require_fit(mission: Mission, plan: Plan, file: str, ignore: Collection[str]
 
 
 def left_out(mission: Mission, plan: Plan, ignore: Collection[str] = ()) -> LeftOut:
-    """Find out why tasks are left out of a plan that fits."""
+    """Explain why tasks are left out of a plan that fits the mission."""
     problem = Problem.compile(mission, plan.objective, ignore)
     routes = routes_of(problem, plan)
     missing = unassigned(problem, routes)
@@ -119,7 +119,7 @@ def left_out(mission: Mission, plan: Plan, ignore: Collection[str] = ()) -> Left
 
 
 def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str] = ()) -> OneTask:
-    """Find out why a task is done by this robot and not by another, or left out, of a plan that fits.
+    """Explain why a task is done by this robot and not by another, or left out, in a plan that fits the mission.
 
     Raises
     ------

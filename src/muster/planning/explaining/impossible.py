@@ -1,4 +1,4 @@
-"""Which tasks of a mission can never be done, alone or together: as data, and back from it."""
+"""The tasks of a mission that can never be done, alone or together; as data and back."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from muster.planning.explaining.explanations import admits
 
 @dataclass(frozen=True)
 class Possible:
-    """What can be done of a mission.
+    """Which tasks can never be done.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Possible:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Possible:
-        """Read what `as_dict` has written, also after it was JSON."""
+        """Read the result of `as_dict`, also from JSON."""
         lost = (
             Unassigned(item["task"], tuple(Reason(**reason) for reason in item["reasons"]))
             for item in data["impossible"]

@@ -1,4 +1,4 @@
-"""Parts of what is said of a plan: in tables of the command and in sentences."""
+"""Phrases of explanations, for the tables of the command and for sentences."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST_SILENT = 10  # robots that could not bid, and are named
 
 
 def place(found: OneTask) -> list[str]:
-    """Who does the task, as number what, and when."""
+    """Which robot does the task, at which position of its route, and when."""
     route = found.route
     if route is None:
         return [f"task {found.task} is left out"]
@@ -47,7 +47,7 @@ def _price(bid: float) -> str:
 
 
 def what_then(found: OneTask, other: Alternative) -> str:
-    """What giving the task to a robot that could do it would do."""
+    """The effect of giving the task to a robot that could do it."""
     if other.objective is None:
         return f"best as number {other.number}; another route has no way"
     more = None if found.robot is None or found.objective is None else other.objective - found.objective
@@ -70,14 +70,14 @@ def ignored(problem: Problem) -> list[str]:
 
 
 def reserve(problem: Problem) -> str:
-    """What capacities are, where that is not plain; else empty."""
+    """How the reserve reduces capacities; empty without a reserve."""
     if problem.mission.rules.capacity_reserve and problem.holds("capacity"):
         return f"capacities are work_capacity, the reserve of {problem.mission.rules.capacity_reserve:g} included"
     return ""
 
 
 def short(problem: Problem, remedy: Remedy) -> str:
-    """The changes in a few words."""
+    """The changes, in short."""
     parts = [f"skill {', '.join(remedy.skills)}"] if remedy.skills else []
     if remedy.suitability is not None:
         low = remedy.suitability
@@ -143,10 +143,10 @@ def _capacity_lines(capacity: Capacity, unit: str) -> list[str]:
 
 
 def _up(value: float) -> str:
-    """A figure rounded up: what is enough stays enough."""
+    """A figure rounded up, so that a sufficient value stays sufficient."""
     return f"{math.ceil(value * 100 * (1 - 1e-10)) / 100:.2f}"
 
 
 def _down(value: float) -> str:
-    """A figure rounded down: what is needed at least stays needed."""
+    """A figure rounded down, so that a least value stays one."""
     return f"{math.floor(value * 100 * (1 + 1e-10)) / 100:.2f}"

@@ -1,4 +1,4 @@
-"""An explanation in a few sentences, for a person who reads no tables."""
+"""Explanations in a few sentences."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def words_on_left_out(found: LeftOut) -> list[str]:
 
 
 def words_on_task(found: OneTask) -> list[str]:
-    """Why this robot: what the others would cost; why left out: what stands in the way, and the smallest change."""
+    """For a task that is done the cost with other robots; for one left out the reasons and the smallest change."""
     said = [_sentence(line) for line in (*place(found), *ignored(found.problem))]
     if found.plan.book is not None and found.award is not None:
         said.append(_sentence(award_text(found.problem, found.plan.book, found.award)))
@@ -41,7 +41,7 @@ def words_on_task(found: OneTask) -> list[str]:
 
 
 def _those_who_could(found: OneTask, others: list[Alternative]) -> list[str]:
-    """What the objective would be with other robots, the best first."""
+    """The objective with other robots, the best first."""
     if found.robot is not None and not others:
         return ["No other robot could do it, the rest of the plan as it is."]
     known = sorted((other.objective, other.robot) for other in others if other.objective is not None)

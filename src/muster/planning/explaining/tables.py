@@ -1,4 +1,4 @@
-"""An explanation as lines and tables, for a terminal: as `muster explain` prints it, here or of a server."""
+"""Explanations as lines and tables, as `muster explain` prints them."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
 
 
 def tables_on_task(found: OneTask) -> list[Part]:
-    """Who does the task, what it would be with others, and what each of them would need."""
+    """Which robot does the task, the effect of giving it to others, and the changes that each would need."""
     parts: list[Part] = [*place(found), *ignored(found.problem)]
     if found.plan.book is not None and found.award is not None:
         parts.append(award_text(found.problem, found.plan.book, found.award))

@@ -99,7 +99,7 @@ def _pictures(scene: FilmScene, footage: Footage, speed: float, rate_hz: float) 
 def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float, speed: float) -> None:
     moments, width = scene.moments, picture.shape[1]
     wide = write(picture, clock(now), (_EDGE, 40), 28, weight=600)
-    states = list(moments.situation.states.values())
+    states = list(moments.mission_state.states.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done"
     write(picture, shortened(footage.mission.name, 48), (_EDGE + wide + 16, 28), 17, weight=600)
     write(picture, f"{facts}  ·  {speed:g} x", (_EDGE + wide + 16, 48), 14, color=QUIET_INK)
@@ -114,7 +114,7 @@ def _plain(age_s: float) -> float:
 
 
 def _color(told: ExecutionEvent, scene: FilmScene) -> Rgb:
-    robots = list(scene.moments.situation.robots)
+    robots = list(scene.moments.mission_state.robots)
     if told.kind in ALARMING:
         return rgb(ALARM)
     name = told.data.get("robot")

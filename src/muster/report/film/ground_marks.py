@@ -63,12 +63,12 @@ class GroundMarks:
         poses
             (n, 7) of the bodies now.
         """
-        situation = self._moments.situation
-        colors = {name: robot_style(k).color for k, name in enumerate(situation.robots)}
-        for name, task in situation.tasks.items():
+        mission_state = self._moments.mission_state
+        colors = {name: robot_style(k).color for k, name in enumerate(mission_state.robots)}
+        for name, task in mission_state.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
-            yield from self._task(task, situation.states[name], who)
-        yield from self._rings(situation.robots, colors, poses)
+            yield from self._task(task, mission_state.states[name], who)
+        yield from self._rings(mission_state.robots, colors, poses)
         for k in range(len(poses)):
             yield from self._trail(k, now, poses[k])
 

@@ -102,7 +102,10 @@ def name_all(
     pixels, pixel_m
         the places in the picture, and the width of its pixel in metres.
     """
-    tasks, robots = list(moments.situation.tasks.values()), list(moments.situation.robots.values())[: len(poses)]
+    tasks, robots = (
+        list(moments.mission_state.tasks.values()),
+        list(moments.mission_state.robots.values())[: len(poses)],
+    )
     if len(tasks) <= _MOST_NAMED:
         places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)
         at = pixels(places)

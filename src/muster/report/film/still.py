@@ -52,7 +52,7 @@ def write_still(path: str | Path, footage: Footage) -> None:
     with Renderer(tableau, width, height) as renderer:
         picture = renderer.seen_from_above((float(centre[0]), float(centre[1])), height * pixel_m, marks=marks).copy()
     name_all(picture, moments, poses, pixels, pixel_m, tableau.ground_m)
-    states = list(moments.situation.states.values())
+    states = list(moments.mission_state.states.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done  ·  {clock(moments.end_s)}"
     wide = write(picture, footage.mission.name, (_EDGE, 28), 18, weight=600)
     write(picture, facts, (_EDGE + wide + 14, 28), 15, color=QUIET_INK)

@@ -125,23 +125,23 @@ def _unwrapped(headings: Floats) -> Floats:
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:
     """For each task its place and its state over time."""
-    situation = MissionState(recording.mission)
-    tasks = {name: _task(situation, name, 0.0) for name in situation.tasks}
+    mission_state = MissionState(recording.mission)
+    tasks = {name: _task(mission_state, name, 0.0) for name in mission_state.tasks}
     for event in recording.events:
-        name = situation.take(event.kind, event.data)
-        if name not in situation.tasks or event.kind == "robot_joins":
+        name = mission_state.take(event.kind, event.data)
+        if name not in mission_state.tasks or event.kind == "robot_joins":
             continue
         if name not in tasks:
-            tasks[name] = _task(situation, name, event.time_s)
+            tasks[name] = _task(mission_state, name, event.time_s)
             continue
         now = _thousandths(event.time_s)
-        tasks[name]["places"].append([now, *_millimetres(situation.tasks[name].position)])
-        tasks[name]["states"].append([now, situation.states[name], event.data.get("robot")])
+        tasks[name]["places"].append([now, *_millimetres(mission_state.tasks[name].position)])
+        tasks[name]["states"].append([now, mission_state.states[name], event.data.get("robot")])
     return list(tasks.values())
 
 
-def _task(situation: MissionState, name: str, since: float) -> dict[str, Any]:
-    task, now = situation.tasks[name], _thousandths(since)
+def _task(mission_state: MissionState, name: str, since: float) -> dict[str, Any]:
+    task, now = mission_state.tasks[name], _thousandths(since)
     return {
         "id": name,
         "type": task.type,

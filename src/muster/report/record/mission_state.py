@@ -1,4 +1,4 @@
-"""What there is while a mission is carried out: robots, tasks with their places, and what became of them.
+"""The state of a mission that is carried out: robots, tasks with their places, and the state of each task.
 
 Events change it. A change of the mission has the name and the content that it has in a mission file's `events`; the
 work of a robot has the words of the judge's schedule. An event of another kind changes nothing here.
@@ -47,10 +47,10 @@ class MissionState:
     @classmethod
     def after(cls, mission: Mission, events: Iterable[tuple[str, Mapping[str, Any]]]) -> Self:
         """The state after events, each a kind and its data."""
-        situation = cls(mission)
+        mission_state = cls(mission)
         for kind, data in events:
-            situation.take(kind, data)
-        return situation
+            mission_state.take(kind, data)
+        return mission_state
 
     def take(self, kind: str, data: Mapping[str, Any]) -> str | None:
         """Apply an event; return the id of the task or robot that is new or has changed.

@@ -36,7 +36,7 @@ class Publisher(ABC):
     def __init__(self, mission: Mission, rate_hz: float) -> None:
         if not rate_hz > 0:
             raise ParameterError(f"rate_hz: {rate_hz}; expected a number above 0")
-        self._situation = MissionState(mission)
+        self._mission_state = MissionState(mission)
         self._routes = RouteLines(mission)
         self._places: dict[str, Point] = {}
         self._period_s, self._next_s = 1.0 / rate_hz, 0.0
@@ -63,7 +63,7 @@ class Publisher(ABC):
             (n, 3) metres, (n,) radians, (n, 3) m/s in the map frame; a row for each robot: those of the mission, then
             those that joined. An absent robot has NaN.
         """
-        names = list(self._situation.robots)
+        names = list(self._mission_state.robots)
         if len(positions) != len(names):
             raise ParameterError(f"positions: {len(positions)} rows; expected one for each of {len(names)} robots")
         if now < self._next_s - 1e-9:
@@ -86,7 +86,7 @@ class Publisher(ABC):
         self._add("/muster/event", now, json_messages.json_bytes({"time_s": now, "kind": kind, "data": data}))
         level = json_messages.WARNING if kind in ALARMING else json_messages.INFO
         self._write("/log", now, json_messages.log(now, level, event_line(kind, data)))
-        changed = self._situation.take(kind, data)
+        changed = self._mission_state.take(kind, data)
         if changed is not None:
             self._write("/scene", now, scene.update([self._entity(now, kind, changed)]))
 
@@ -95,11 +95,11 @@ class Publisher(ABC):
 
     def on_plan(self, now: float, plan: Plan) -> None:
         """Publish a plan, with the bids that led to it where they are known, and the routes as lines."""
-        lines = self._routes.of(plan, self._situation, self._places)
+        lines = self._routes.of(plan, self._mission_state, self._places)
         self._write("/muster/plan", now, {"time_s": now, "plan": plan.as_dict(), "lines": lines})
         for award in plan.book.awards if plan.book is not None else ():
             self._write("/muster/bid", now, {"time_s": now, **award.as_dict()})
-        order = list(self._situation.robots)
+        order = list(self._mission_state.robots)
         routes = [scene.route_entity(now, robot, order.index(robot), line) for robot, line in lines.items()]
         self._write("/scene", now, scene.update(routes))
         self._flush()
@@ -112,13 +112,13 @@ class Publisher(ABC):
 
     def _entity(self, now: float, kind: str, name: str) -> dict[str, Any]:
         if kind == "robot_joins":
-            robots = self._situation.robots
+            robots = self._mission_state.robots
             return scene.robot_entity(now, robots[name], list(robots).index(name))
-        return scene.task_entity(now, self._situation.tasks[name], self._situation.states[name])
+        return scene.task_entity(now, self._mission_state.tasks[name], self._mission_state.states[name])
 
     def _tell_mission(self) -> None:
         """The map, if it is an image, and the scene as it is in the beginning."""
-        mission = self._situation.mission
+        mission = self._mission_state.mission
         if mission.map is not None and mission.map.boundary is None:
             from muster.motion.map_world import World
 
@@ -126,6 +126,6 @@ class Publisher(ABC):
             if image is not None:
                 self._write("/map", 0.0, json_messages.grid_message(image))
         robots = [scene.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
-        tasks = [scene.task_entity(0.0, task, self._situation.states[task.id]) for task in mission.tasks]
+        tasks = [scene.task_entity(0.0, task, self._mission_state.states[task.id]) for task in mission.tasks]
         self._write("/scene", 0.0, scene.update([*scene.map_entities(mission.map), *tasks, *robots]))
         self._flush()

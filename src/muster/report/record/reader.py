@@ -99,7 +99,7 @@ def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Recording:
     mission = _mission(file, text)
     events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
-    situation = MissionState.after(mission, ((event.kind, event.data) for event in events))
+    mission_state = MissionState.after(mission, ((event.kind, event.data) for event in events))
     plans = messages.get("/muster/plan", [])
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])
     return Recording(
@@ -110,7 +110,7 @@ def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Rec
         plans=tuple(PlanVersion(m["time_s"], plan_from(m["plan"], str(file)), m["lines"]) for m in plans),
         events=events,
         bids=tuple(messages.get("/muster/bid", [])),
-        tracks=_tracks(tuple(situation.robots), messages.get("/muster/state", [])),
+        tracks=_tracks(tuple(mission_state.robots), messages.get("/muster/state", [])),
         report=reports[-1]["report"] if reports else None,
         complete=complete,
     )

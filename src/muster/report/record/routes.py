@@ -20,7 +20,7 @@ class RouteLines:
         self._dimensions = mission.dimensions
         self._found: dict[tuple[str, Point, Point], tuple[Point, ...]] = {}
 
-    def of(self, plan: Plan, situation: MissionState, places: Mapping[str, Point]) -> dict[str, list[Point]]:
+    def of(self, plan: Plan, mission_state: MissionState, places: Mapping[str, Point]) -> dict[str, list[Point]]:
         """The points of each robot's remaining route when the plan is made.
 
         Parameters
@@ -29,29 +29,29 @@ class RouteLines:
             the robots' positions; an absent robot is at its start.
         """
         return {
-            route.robot: self._line(route.robot, route.tasks, situation, places)
+            route.robot: self._line(route.robot, route.tasks, mission_state, places)
             for route in plan.routes
-            if route.robot in situation.robots
+            if route.robot in mission_state.robots
         }
 
     def _line(
-        self, name: str, tasks: tuple[str, ...], situation: MissionState, places: Mapping[str, Point]
+        self, name: str, tasks: tuple[str, ...], mission_state: MissionState, places: Mapping[str, Point]
     ) -> list[Point]:
-        robot = situation.robots[name]
+        robot = mission_state.robots[name]
         line = [self._flat(places.get(name, robot.position))]
-        left = [situation.tasks[task] for task in tasks if situation.states.get(task, DONE) not in _OVER]
+        left = [mission_state.tasks[task] for task in tasks if mission_state.states.get(task, DONE) not in _OVER]
         for task in left:
-            line += self._leg(name, situation, line[-1], self._flat(task.entry or task.position))
+            line += self._leg(name, mission_state, line[-1], self._flat(task.entry or task.position))
             line += [self._flat(place) for place in (task.position, task.exit or task.position) if place != line[-1]]
-        end = robot.place_at_end(situation.mission.rules)
+        end = robot.place_at_end(mission_state.mission.rules)
         if end is not None and left:
-            line += self._leg(name, situation, line[-1], self._flat(end))
+            line += self._leg(name, mission_state, line[-1], self._flat(end))
         return line
 
-    def _leg(self, name: str, situation: MissionState, start: Point, goal: Point) -> tuple[Point, ...]:
+    def _leg(self, name: str, mission_state: MissionState, start: Point, goal: Point) -> tuple[Point, ...]:
         leg = (name, start, goal)
         if leg not in self._found:
-            self._found[leg] = tuple(tuple(point) for point in self._path(situation.robots[name], start, goal))[1:]
+            self._found[leg] = tuple(tuple(point) for point in self._path(mission_state.robots[name], start, goal))[1:]
         return self._found[leg]
 
     def _flat(self, place: Point) -> Point:

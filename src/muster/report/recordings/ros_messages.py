@@ -120,22 +120,22 @@ def _in_space(point: Sequence[float]) -> Sequence[float]:
 
 def _events(recording: Recording, begins_s: float) -> Iterator[TimedMessage]:
     """Each event as JSON, and the markers that it changes; first those of the beginning."""
-    mission, situation = recording.mission, MissionState(recording.mission)
+    mission, mission_state = recording.mission, MissionState(recording.mission)
     markers = Markers(ros_names(recording.tracks.robots))
-    tasks = [scenes.task_entity(0.0, task, situation.states[task.id]) for task in mission.tasks]
+    tasks = [scenes.task_entity(0.0, task, mission_state.states[task.id]) for task in mission.tasks]
     robots = [scenes.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
     first = markers.of([*scenes.map_entities(mission.map), *tasks, *robots], begins_s)
     yield TimedMessage("/markers", 0.0, MarkerArray(first))
     for event in recording.events:
         text = json.dumps({"time_s": event.time_s, "kind": event.kind, "data": json.loads(json_bytes(event.data))})
         yield TimedMessage("/muster/event", event.time_s, String(text))
-        changed = situation.take(event.kind, event.data)
+        changed = mission_state.take(event.kind, event.data)
         if changed is not None:
-            entity = _entity(situation, event.kind, changed)
+            entity = _entity(mission_state, event.kind, changed)
             yield TimedMessage("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
 
 
-def _entity(situation: MissionState, kind: str, name: str) -> dict[str, Any]:
+def _entity(mission_state: MissionState, kind: str, name: str) -> dict[str, Any]:
     if kind == "robot_joins":
-        return scenes.robot_entity(0.0, situation.robots[name], list(situation.robots).index(name))
-    return scenes.task_entity(0.0, situation.tasks[name], situation.states[name])
+        return scenes.robot_entity(0.0, mission_state.robots[name], list(mission_state.robots).index(name))
+    return scenes.task_entity(0.0, mission_state.tasks[name], mission_state.states[name])

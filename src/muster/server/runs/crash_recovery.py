@@ -1,7 +1,7 @@
-"""What a log says of a run of real robots that a crash has ended: what was done, and what is left to do.
+"""Recovers a run of real robots from its log after a crash: what was done, and what is left.
 
-A task that must be begun at most once (`across_partition`) and was begun, and whose end is not in the log, is not begun
-again: nobody knows how far it came.
+A task that may be started at most once (`across_partition`), and was started but did not end in the log, is not started
+again.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ _OUT = ("robot_fails", "robot_stuck")
 
 
 @dataclass(frozen=True)
-class Aftermath:
-    """The mission with tasks added and moved, the plan that was in force, and what was done."""
+class Recovered:
+    """The mission with its changes, the plan in force, and what was done."""
 
     mission: Mission
     plan: Plan
     past: CompletedWork
 
 
-def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Aftermath:
-    """What a log says: entries with `time_s`, `kind`, `data`."""
-    situation = MissionState(mission)
+def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Recovered:
+    """Recover the state from a log: entries with `time_s`, `kind`, `data`."""
+    mission_state = MissionState(mission)
     arrives: dict[str, float] = {}
     starts: dict[str, float] = {}
     done: dict[str, CompletedTask] = {}
@@ -43,7 +43,7 @@ def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) ->
     for entry in log:
         now, kind, data = float(entry["time_s"]), entry["kind"], entry["data"]
         if kind not in _OURS:
-            situation.take(kind, data)
+            mission_state.take(kind, data)
         if "used" in data:
             used[data["robot"]] = data["used"]
         if kind == "plan":
@@ -71,17 +71,19 @@ def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) ->
             failed[data["robot"]] = now
         elif kind == "robot_returns":
             failed.pop(data["robot"], None)
-    once = {name for name, task in situation.tasks.items() if task.across_partition == "at-most-once"}
+    once = {name for name, task in mission_state.tasks.items() if task.across_partition == "at-most-once"}
     barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
     past = CompletedWork(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
     names = tuple(robot.id for robot in mission.robots)
-    tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in situation.tasks.values())
+    tasks = tuple(
+        replace(task, only_robots=names) if task.id in barred else task for task in mission_state.tasks.values()
+    )
     current = plan if routes is None else _of_those(routes, names)
-    return _with_locks_of_barred(Aftermath(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
+    return _with_locks_of_barred(Recovered(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
 
 
-def _with_locks_of_barred(found: Aftermath) -> Aftermath:
-    """Where locks are ignored, those of barred tasks are not: other tasks lose theirs, and the rule holds."""
+def _with_locks_of_barred(found: Recovered) -> Recovered:
+    """Keep the locks of barred tasks if locks are ignored: all other tasks lose theirs, and the rule holds."""
     if "lock" not in found.plan.ignored:
         return found
     tasks = tuple(
@@ -92,6 +94,6 @@ def _with_locks_of_barred(found: Aftermath) -> Aftermath:
 
 
 def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:
-    """The plan without routes of robots that joined: they are found again, or not."""
+    """The plan without routes of robots that joined during the run: they join again if they are there."""
     routes = [route for route in plan["routes"] if route["robot"] in robots]
     return plan_from({**plan, "routes": routes}, "the log")
