@@ -6,6 +6,7 @@ import json
 
 from nicegui import events, ui
 
+from muster.exchange.export_request import FORMATS
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
 from muster.server.pages.notices import errors_shown, say
@@ -55,7 +56,7 @@ class PlanActions:
 
     def _exports(self, plan: int, on_earth: bool) -> None:
         with ui.dropdown_button("Export", icon="download", auto_close=True).props('outline id="export"'), ui.list():
-            for name, words in _FORMATS.items():
+            for name, words in (_FORMATS | {name: name for name in FORMATS if name not in _FORMATS}).items():
                 if name in _ON_EARTH and not on_earth:
                     with ui.item().props("disable"), ui.item_section():
                         ui.item_label(words)
