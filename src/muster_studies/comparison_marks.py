@@ -25,12 +25,12 @@ def equal_rule(what: str) -> str:
 
 
 def equal(published: float, own: float) -> bool:
-    """Whether a figure is the published one, as far as that is printed."""
+    """Whether a figure equals the published one within the tolerance."""
     return abs(own - published) <= TOLERANCE
 
 
 def differences(published: Mapping[str, Any], own: Mapping[str, Cell], columns: Iterable[str]) -> str:
-    """A check mark if all published figures come out, else those that do not, with what they are more or less."""
+    """A check mark if all published figures are equal, else the columns that differ, with their differences."""
     found = []
     for column in columns:
         there, here = published.get(column), own.get(column)
@@ -40,7 +40,7 @@ def differences(published: Mapping[str, Any], own: Mapping[str, Cell], columns: 
 
 
 def reached(sample: Sample, value: float, tasks: int | None) -> str:
-    """Whether a random algorithm does as well as the published run: more tasks, or as many at no more cost."""
+    """In how many runs a random algorithm reaches the published one: more tasks, or as many at no more cost."""
     needed = sample.best.verdict.tasks_total if tasks is None else tasks
     runs = sum(
         (-outcome.verdict.tasks_completed, outcome.value) <= (-needed, value + TOLERANCE) for outcome in sample.outcomes

@@ -1,4 +1,4 @@
-"""How much of a study is done, and how thoroughly."""
+"""The effort of a study: which tables, how many seeds and iterations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SEEDS, QUICK_SEEDS = 10, 2
 
 @dataclass(frozen=True, kw_only=True)
 class Effort:
-    """What a study is asked for.
+    """The effort of a study.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Effort:
     quick
         few and short runs, to see that everything works.
     tables
-        the numbers of the tables wanted; all by default.
+        the numbers of the tables to make; all by default.
 
     Raises
     ------
@@ -49,7 +49,7 @@ class Effort:
         return self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
 
     def wanted(self, tables: Sequence[str]) -> tuple[str, ...]:
-        """Those of a study's tables that are asked for.
+        """Those of a study's tables that are to be made.
 
         Raises
         ------

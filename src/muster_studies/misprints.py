@@ -1,4 +1,4 @@
-"""Published rows with misprinted values: as printed, as they should have been, and what is wrong."""
+"""Published rows with misprints: as printed, corrected, and described."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from muster.library import as_corrected, as_printed
 
 
 def errata(record: Mapping[str, Any]) -> Iterator[str]:
-    """What is misprinted in a row: what is printed, what is right, and why."""
+    """The misprints of a row: the printed value, the right one, and why."""
     for key, value in record.items():
         if isinstance(value, dict) and "erratum" in value:
             there, right = _shown(value["printed"]), _shown(value["corrected"])
@@ -28,5 +28,5 @@ def printed(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def corrected(record: Mapping[str, Any]) -> dict[str, Any]:
-    """A row as it should have been printed."""
+    """A row with misprints corrected."""
     return dict(as_corrected(dict(record)))

@@ -62,7 +62,7 @@ _leave: Event | None = None
 
 
 def _begin_process(leave: Event) -> None:
-    """Prepare a process: Ctrl-C is for its parent, which then tells it to leave; it does not outlive its parent."""
+    """Prepare a process: it ignores Ctrl-C, ends on its parent's event, and ends with its parent."""
     global _leave  # an initializer has no other way to hand something to the jobs
     _leave = leave
     signal.signal(signal.SIGINT, signal.SIG_IGN)

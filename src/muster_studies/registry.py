@@ -48,7 +48,7 @@ class Study(Protocol):
 
 @runtime_checkable
 class Illustrated(Protocol):
-    """A study with pictures of the tables that are wanted."""
+    """A study with pictures of its tables."""
 
     def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
 

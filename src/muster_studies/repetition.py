@@ -1,4 +1,4 @@
-"""A study that is a number of tables: which runs they need, and the tables made of what these found."""
+"""A study as a list of tables: the runs that they need, and the tables made from the results."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Reproduction(Protocol[Job, FoundIn]):
 
 @dataclass(frozen=True)
 class Performed(Generic[Job, Found]):
-    """What all jobs found, in how many runs, and the processor time of these."""
+    """The results of all jobs, the number of runs, and their processor time."""
 
     found: Mapping[Job, Found]
     runs: int
@@ -42,7 +42,7 @@ class Performed(Generic[Job, Found]):
 
 
 Performer = Callable[[Iterable[Job], int | None, int, OnDone | None], Performed[Job, Found]]
-"""Does jobs, which may be equal: with so many seeds, if any, and on a number of processes."""
+"""Does jobs, of which some may be equal, with a number of seeds (None: nothing is random) and of processes."""
 
 
 def _accept(effort: Effort) -> None:
@@ -55,12 +55,12 @@ def _no_remarks(effort: Effort, found: Mapping[Any, Any]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Repetition(Generic[Job, Found]):
-    """A study by its tables.
+    """A study as a list of tables.
 
     Parameters
     ----------
     document
-        what is repeated.
+        the publication that is repeated.
     reproductions
         the tables, in order.
     perform
@@ -136,7 +136,7 @@ class IllustratedRepetition(Repetition[Job, Found]):
 
 
 def one_by_one(do: Callable[[Job], Found]) -> Performer[Job, Found]:
-    """Each job is one run, in this process, whatever the number of processes."""
+    """Each job is one run in this process; `workers` is ignored."""
 
     def perform(
         jobs: Iterable[Job], seeds: int | None, workers: int, on_done: OnDone | None = None

@@ -21,7 +21,10 @@ from muster.verification import Verdict, verify
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is run. Without a limit the allocator ends by itself, and the seed makes no difference."""
+    """An allocator with its settings on a mission.
+
+    Without a limit it ends by itself, and does not depend on the seed.
+    """
 
     mission: str
     allocator: str
@@ -37,7 +40,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """One run: what the judge says of its plan, the allocator's processor time, and when it had found the plan."""
+    """One run: the verdict on its plan, the allocator's processor time, and the time at which it found the plan."""
 
     case: Case
     seed: int
@@ -93,7 +96,7 @@ def mission_named(name: str) -> Mission:
 
 
 def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) -> Verdict:
-    """What the judge says of routes that state nothing else."""
+    """The verdict on routes without stated figures."""
     stated = tuple(Route(robot, tuple(map(str, tasks))) for robot, tasks in routes.items())
     return verify(mission_named(mission), Plan(routes=stated), ignored, "total+max")
 
@@ -101,7 +104,7 @@ def judged(mission: str, ignored: tuple[str, ...], routes: Mapping[str, Any]) ->
 def accepted(
     mission: Mission, plan: Plan, whose: str, ignored: Collection[str] = (), objective: str | None = None
 ) -> Verdict:
-    """What the judge says of a plan that is right; `whose` it is, is told where it is not.
+    """The verdict on a valid plan; `whose` names the plan in the error.
 
     Raises
     ------
@@ -115,14 +118,14 @@ def accepted(
 
 
 def rejection(verdict: Verdict) -> str:
-    """The first thing that is wrong with a plan."""
+    """The first violation of a plan, as text."""
     found = verdict.violations[0]
     place = " ".join(part for part in (found.robot, found.task) if part)
     return f"{found.kind}: {place + ', ' if place else ''}{found.detail}"
 
 
 def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -> Outcome:
-    """Run a case; `unwanted` is asked now and then, and ends the run early.
+    """Run a case; it ends early when `unwanted`, which is called now and then, returns true.
 
     Raises
     ------

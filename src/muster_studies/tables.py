@@ -65,7 +65,7 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """What a study found.
+    """The result of a study.
 
     `cpu_s` is the processor time of all `runs`; only times differ between repetitions. `seeds` is None where nothing is
     random.
@@ -106,7 +106,7 @@ class Notes:
 
 
 def row(columns: tuple[str, ...], cells: Mapping[str, Cell]) -> tuple[Cell, ...]:
-    """Cells by name in the order of the columns; what is not there is empty."""
+    """Cells by name in the order of the columns; a missing cell is empty."""
     return tuple(cells.get(column) for column in columns)
 
 

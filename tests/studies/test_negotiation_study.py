@@ -10,12 +10,12 @@ from muster.allocation.problem import Problem
 from muster.cli.main import run as muster
 from muster.negotiation.methods import METHODS
 from muster_studies.effort import Effort
-from muster_studies.negotiation.cost import Cost, Talk, hold
+from muster_studies.negotiation.cost import AuctionRun, Cost, hold
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_loss_costs_messages_and_never_the_plan(method):
-    lossless, lossy = (hold(Talk(method, 6, loss, 1)) for loss in (0.0, 0.3))
+    lossless, lossy = (hold(AuctionRun(method, 6, loss, 1)) for loss in (0.0, 0.3))
     assert lossless.gap == lossy.gap
     assert lossless.repairs == 0
     assert (lossy.news, lossy.rounds) == (lossless.news, lossless.rounds)
@@ -24,7 +24,7 @@ def test_loss_costs_messages_and_never_the_plan(method):
 
 
 def test_an_auction_has_a_round_a_task_and_a_bid_a_robot_a_round():
-    talk = Talk("auction", 6, 0.0, 2)
+    talk = AuctionRun("auction", 6, 0.0, 2)
     said, tasks = hold(talk), len(talk.mission.tasks)
     assert (said.rounds, said.news) == (tasks, 6 * (tasks + 2))  # one declaration, and a last round without bids
     assert Problem.compile(talk.mission).objective == "total+max"

@@ -129,11 +129,11 @@ class ServerBackend:
 
     def _kept(self, mission: Mission) -> MissionText:
         found = self._client.missions.keep(mission, "sent by the command")
-        self._note(f"the server has it as mission {found.mission}, version {found.version}")
+        self._note(f"the server has it as mission {found.id}, version {found.version}")
         return found
 
     def _kept_plan(self, mission: Mission, plan: Plan) -> ServerPlan:
-        entry = self._client.plans.upload(self._kept(mission).mission, plan)
+        entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
 

@@ -113,7 +113,7 @@ class Client:
         if not isinstance(options_from(plain).allocator, str):
             raise ParameterError("allocator: a function; expected the name of an allocator of the server")
         there = self._mission(mission)
-        address = there.mission if isinstance(there, MissionText) else there
+        address = there.id if isinstance(there, MissionText) else there
         if isinstance(there, MissionText) and there.version:
             plain["version"] = there.version
         for name, plan in (("start", start), ("fixed", fixed)):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class MissionText:
     """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
 
-    mission: str
+    id: str
     version: int
     text: str
     author: str
@@ -72,12 +72,12 @@ class Missions:
             return found
         me = self._connection.get("/me")["name"]
         ours = next((old for old in there if old.author == me), None)
-        return self.create(text, files) if ours is None else self.save(ours.mission, text, ours.version, files, note)
+        return self.create(text, files) if ours is None else self.save(ours.id, text, ours.version, files, note)
 
     def _has_files(self, old: MissionText, files: Mapping[str, bytes]) -> bool:
         if dict(old.files) != {name: len(data) for name, data in files.items()}:
             return False
-        return all(self.file(old.mission, name) == data for name, data in files.items())
+        return all(self.file(old.id, name) == data for name, data in files.items())
 
     def save(
         self, mission: str, text: str, base_version: int, files: Mapping[str, bytes] | None = None, note: str = ""

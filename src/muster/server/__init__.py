@@ -1,15 +1,14 @@
-"""Mission control: missions, plans, runs and records of a team, in the browser and over HTTP, kept in a database.
+"""Mission control: missions, plans, runs and records of a team, in the browser and over HTTP, stored in a database.
 
 | part | what it does |
 |---|---|
-| `words` | what is passed between the parts: plain frozen data |
-| `settings` | how a server was asked to be |
+| `settings` | the settings of a server |
+| `app`, `serving` | the application, and the HTTP server that runs it |
 | `store` | the database: tables, migrations, backup |
-| `work` | planning and other long work, in processes of their own with limits |
-| `runs` | missions that are carried out: a process each, their log, and how they go on after a crash |
-| `services` | all that mission control can do; the API and the pages are its two faces |
-| `security` | who may do what: tokens, roles, origins, limits |
+| `work` | planning and other long work, in worker processes with limits |
+| `runs` | runs: a process each, their log, and how they resume after a crash |
+| `services` | what mission control can do; the API and the pages call it |
+| `security` | authentication, roles, origins and limits |
 | `api` | HTTP and WebSocket, described by OpenAPI |
-| `pages` | the web page |
-| `client` | a server seen from Python |
+| `pages` | the web pages |
 """

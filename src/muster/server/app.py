@@ -1,4 +1,4 @@
-"""Mission control as one application: the services, the API, the pages, and the guard before all of them."""
+"""The application of mission control: services, API, pages, and the guard before them."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from muster.server.settings import Settings
 
 
 def make_app(settings: Settings) -> FastAPI:
-    """Mission control; its lifespan opens and closes the services, which are `app.state.services` meanwhile.
+    """Make the application. Its lifespan opens and closes the services, which are `app.state.services` meanwhile.
 
-    `app.state.left` says at the end how many runs go on when the server is started again.
+    At the end `app.state.left` is the number of runs that resume at the next start.
 
-    A test client is to name a host of this server: `TestClient(app, base_url="http://localhost")`.
+    A test client must name a host of this server: `TestClient(app, base_url="http://localhost")`.
 
     Raises
     ------
     ParameterError, InputError, OSError
-        if it would not be safe to serve in this way, or a file that it needs cannot be read.
+        if the settings are not safe to serve with, or a file cannot be read.
     """
     require_safe(settings)
 
@@ -61,7 +61,7 @@ def make_app(settings: Settings) -> FastAPI:
     app.router.routes += [*login_routes(guard_state), health_route(services_of, guard_state.warning), metrics.route()]
     if settings.tiles is not None:
         app.mount("/tiles", StaticFiles(directory=settings.tiles))
-    _mount_faces(app, services_of)
+    _mount_api_and_pages(app, services_of)
 
     def observe(completed: CompletedRequest) -> None:
         metrics.observe(completed)
@@ -83,12 +83,12 @@ def _audit_writer(services: Services | None) -> Keep | None:
     return keep
 
 
-def _mount_faces(app: FastAPI, services_of: Any) -> None:
-    """The API, and the pages, which take every path that nothing else has."""
+def _mount_api_and_pages(app: FastAPI, services_of: Any) -> None:
+    """Mount the API, and the pages, which take all other paths."""
     from muster.server.api import PREFIX, api
     from muster.server.api.problems import add_handlers
 
-    with _absent("aiohttp", "requests"):  # what NiceGUI's socket.io would be a client with: 0.4 s, and 15 MB
+    with _absent("aiohttp", "requests"):  # for clients of socket.io, which is not used here: 0.4 s and 15 MB
         from muster.server.pages import mount
 
     add_handlers(app)
@@ -98,7 +98,7 @@ def _mount_faces(app: FastAPI, services_of: Any) -> None:
 
 @contextmanager
 def _absent(*modules: str) -> Iterator[None]:
-    """Meanwhile these cannot be imported, unless they are already; who can do without them does."""
+    """Hide optional modules from imports within the block, unless they are imported already."""
     hidden = [name for name in modules if name not in sys.modules]
     sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type]  # None: the import system's own way
     try:

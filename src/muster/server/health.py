@@ -1,6 +1,6 @@
-"""`/healthz`: whether the database answers and work goes on; for load balancers, containers and people.
+"""`/healthz`: whether the database and the services work; for load balancers, containers and people.
 
-Whoever is not known is told `ok` or `not ok` only; reasons name files and hosts.
+Without a login the answer is only `ok` or `not ok`: reasons name files and hosts.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from muster.server.store.store import Store
 
 _PATIENCE_S = 2.0
 """Less than who asks waits: a container's check ends after 5 s."""
-_HOLDS_S = 1.0  # so that nobody can keep the database busy with this
+_HOLDS_S = 1.0  # so that requests cannot keep the database busy
 
 
 def health_route(services_of: Callable[[], Services | None], warning: Callable[[], str] = str) -> Route:
-    """200 or 503; a `warning` is told with either, to those who are known."""
+    """The route, which answers 200 or 503, and to users who are logged in a `warning`."""
     checked_at, found = float("-inf"), ["not checked yet"]
     check = _Check()
     turn = asyncio.Lock()
@@ -47,12 +47,12 @@ def health_route(services_of: Callable[[], Services | None], warning: Callable[[
 
 
 class _Check:
-    """Of the database, one at a time: one that takes long is not joined by others in the threads that wait for it."""
+    """Checks the database, once at a time: a slow check must not occupy more threads."""
 
     _under_way: asyncio.Task[None] | None = None
 
     async def why_not(self, store: Store) -> str:
-        """What is wrong with the database, the empty text: nothing."""
+        """What is wrong with the database; empty if nothing is."""
         if self._under_way is None:
             self._under_way = asyncio.create_task(asyncio.to_thread(store.check))
         done, _ = await asyncio.wait({self._under_way}, timeout=_PATIENCE_S)
@@ -67,7 +67,7 @@ class _Check:
 
 
 async def _reasons(services: Services | None, check: _Check) -> list[str]:
-    """Why it is not well; empty: it is."""
+    """What does not work; empty if all does."""
     if services is None:
         return ["starting or ending"]
     return [why for why in (await check.why_not(services.store), *services.runs.troubles) if why]

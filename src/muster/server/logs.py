@@ -1,4 +1,4 @@
-"""Logs on standard error: lines for people, or one JSON object a line. Secrets are taken out of both."""
+"""Logs on standard error: lines for people, or one JSON object per line. Secrets are removed from both."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ requests = logging.getLogger("muster.requests")
 
 
 def without_secrets(text: str) -> str:
-    """The text with stars for tokens, sessions and passwords."""
+    """The text with tokens, sessions and passwords replaced by stars."""
     for pattern, stars in _SECRETS:
         text = pattern.sub(stars, text)
     return text
@@ -43,7 +43,7 @@ def _time_of(record: logging.LogRecord) -> str:
 
 
 class JsonLines(logging.Formatter):
-    """One object a line: `time`, `level`, `event`, `logger`, and what the event has beside: `request`, `user`, ..."""
+    """One object per line: `time`, `level`, `event`, `logger`, and further fields such as `request` and `user`."""
 
     def format(self, record: logging.LogRecord) -> str:
         words = {
@@ -59,7 +59,7 @@ class JsonLines(logging.Formatter):
 
 
 class TextLines(logging.Formatter):
-    """A line for a person; what strangers wrote cannot begin another one."""
+    """A line for a person; text of clients cannot begin another line."""
 
     def format(self, record: logging.LogRecord) -> str:
         beside = "".join(f" {name}={value}" for name, value in _extras(record).items() if value not in ("", None))
@@ -77,20 +77,20 @@ def _clean(value: Any) -> Any:
 
 
 def _is_failure(record: logging.LogRecord) -> bool:
-    """Whether what the HTTP server logs is one; requests that its end breaks off are none."""
+    """Whether a message of the HTTP server is a failure; requests that its shutdown breaks off are none."""
     broken_off = record.exc_info is not None and isinstance(record.exc_info[1], asyncio.CancelledError)
     return not broken_off and record.getMessage() not in _NO_FAILURES
 
 
 def begin_logs(form: Literal["text", "json"], *, quiet: bool, verbose: bool) -> None:
-    """From now on everything that is logged goes to standard error in this form.
+    """Send all logs to standard error in this form.
 
     Parameters
     ----------
     quiet
-        warnings and errors alone.
+        warnings and errors only.
     verbose
-        every request too; in the form `json` requests are logged without it.
+        also requests; the form `json` always logs requests.
     """
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonLines() if form == "json" else TextLines())
@@ -98,15 +98,15 @@ def begin_logs(form: Literal["text", "json"], *, quiet: bool, verbose: bool) -> 
     root.handlers[:] = [handler]
     root.setLevel(logging.WARNING)
     logging.getLogger("muster").setLevel(logging.WARNING if quiet else logging.INFO)
-    logging.getLogger("uvicorn").setLevel(logging.WARNING)  # it would log queries, too
+    logging.getLogger("uvicorn").setLevel(logging.WARNING)  # it would log queries
     logging.getLogger("uvicorn.error").addFilter(_is_failure)
-    logging.getLogger("nicegui").setLevel(logging.ERROR)  # so would it, of pages that are not there
+    logging.getLogger("nicegui").setLevel(logging.ERROR)  # likewise for pages that do not exist
     shows_requests = verbose or (form == "json" and not quiet)
     requests.setLevel(logging.INFO if shows_requests else logging.WARNING)
 
 
 def log_answered(completed: CompletedRequest) -> None:
-    """A line for a request that is over; files of the page only where they failed."""
+    """Log a completed request; static files only if they failed."""
     if is_static(completed.path) and completed.status < 400:
         return
     requests.info(

@@ -29,7 +29,7 @@ _METHODS = ("GET", "HEAD", "POST", "PUT", "DELETE")
 
 
 class Metrics:
-    """The figures of one server."""
+    """The metrics of a server."""
 
     def __init__(self, services_of: Callable[[], Services | None], guard_state: GuardState) -> None:
         self._desk_of = services_of
@@ -51,7 +51,7 @@ class Metrics:
         self._registry.register(self)
 
     def observe(self, completed: CompletedRequest) -> None:
-        """Count a request; WebSockets, which stay, are counted while they are open."""
+        """Count a completed request; WebSockets are counted while they are open."""
         if completed.scope["type"] != "http":
             return
         method = completed.scope["method"]
@@ -59,7 +59,7 @@ class Metrics:
         self._requests.labels(*labels).observe(completed.seconds)
 
     def appended(self, seconds: float) -> None:
-        """The log of a run was written, which took so long."""
+        """Count a write of a run's log."""
         self._appends.observe(seconds)
 
     def route(self) -> Route:
@@ -70,7 +70,7 @@ class Metrics:
         return Route("/metrics", metrics, methods=["GET"], include_in_schema=False)
 
     def collect(self) -> Iterator[Metric]:
-        """What is looked up when somebody asks; called by the registry, in a thread of its own."""
+        """Metrics that are read on request; called by the registry in a separate thread."""
         yield _gauge("muster_websockets", "WebSockets that are open.", self._shield.sockets.taken)
         yield _gauge("muster_memory_bytes", "Memory of the server process (RSS).", _memory_bytes())
         services = self._desk_of()
@@ -83,7 +83,7 @@ class Metrics:
         try:
             found = statistics(services.store)
         except StoreError:
-            found = None  # counted below; the rest is worth telling all the same
+            found = None  # counted below; the other metrics are still valid
         if found is not None:
             yield from _of_database(found)
         yield CounterMetricFamily(
@@ -116,7 +116,7 @@ def _by(name: str, what: str, label: str, values: Mapping[str, int]) -> Metric:
 
 
 def _activities(services: Services) -> Counter[str]:
-    """How many robots of runs under way do what, as watchers were told last."""
+    """How many robots of runs under way have which activity, by the newest status."""
     activities: Counter[str] = Counter()
     for text in services.runs.statuses():
         activities.update(robot["activity"] for robot in json.loads(text)["robots"].values())
@@ -124,7 +124,7 @@ def _activities(services: Services) -> Counter[str]:
 
 
 def _route(completed: CompletedRequest) -> str:
-    """The template of the path, of which there are few, whatever strangers ask for."""
+    """The template of the path: few values, whatever clients ask for."""
     route = completed.scope.get("route")
     path = getattr(route, "path_format", None) or getattr(route, "path", None)
     if path is None:

@@ -1,4 +1,4 @@
-"""Why a request was not done, as every part of the server answers it: problem JSON (RFC 9457)."""
+"""Problem JSON (RFC 9457): the errors of every part of the server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The HTTP server: its socket, its patience, its end."""
+"""The HTTP server: its socket, its time limits, its shutdown."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _MESSAGE_BYTES = 4 * 2**20
 
 
 class PatientProtocol(HttpToolsProtocol):
-    """HTTP of which the headers must come within a while, and be few: nobody keeps connections or memory busy so.
+    """HTTP with limits on the time and size of headers, so that slow clients cannot hold connections.
 
-    The rest of a body that was completed before it was whole is read and thrown away, for as long as that is little: a
-    connection that is closed with something unread is reset, and the answer lost with it (RFC 9112, 9.6).
+    The rest of a body that was answered early is read and discarded up to a limit: closing a connection with unread
+    data resets it, and the response is lost (RFC 9112, 9.6).
     """
 
     _late: asyncio.TimerHandle | None = None
@@ -51,7 +51,7 @@ class PatientProtocol(HttpToolsProtocol):
     def data_received(self, data: bytes) -> None:
         awaited = self._late
         super().data_received(data)
-        if self._late is not None and self._late is awaited:  # headers, or a body that nobody wants, are not whole yet
+        if self._late is not None and self._late is awaited:  # headers, or a body that is discarded, are incomplete
             self._unread += len(data)
             if self._unread > self._most:
                 self.transport.abort()
@@ -67,7 +67,7 @@ class PatientProtocol(HttpToolsProtocol):
 
     def on_message_complete(self) -> None:
         super().on_message_complete()
-        if self._late is not None:  # the rest of a body is through; more may follow it
+        if self._late is not None:  # the body is complete; another request may follow
             self._await_headers()
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -89,7 +89,7 @@ class PatientProtocol(HttpToolsProtocol):
 
 
 class _Server(uvicorn.Server):
-    """Its signals are taken before the application starts."""
+    """A server that leaves signals alone: they are handled before the application starts."""
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -97,12 +97,12 @@ class _Server(uvicorn.Server):
 
 
 def listening(host: str, port: int) -> socket.socket:
-    """A socket that listens; taken before anything else is done, as it may fail.
+    """A listening socket, opened before anything else, as it may fail.
 
     Raises
     ------
     NetworkError
-        if the port is taken, or not for everybody, or the host is not of this machine.
+        if the port is in use or not permitted, or the host is not of this machine.
     """
     try:
         family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
@@ -128,12 +128,12 @@ def _instead(error: OSError) -> str:
 
 
 def require_certificate(certificate: Path, key: Path) -> None:
-    """Find out before anything else that TLS cannot be had of two files.
+    """Check a certificate and its key before anything else.
 
     Raises
     ------
     ParameterError, OSError
-        if one of them cannot be read, or is not what it should be.
+        if one of them cannot be read, or they do not belong together.
     """
     for file in (certificate, key):
         with file.open("rb"):
@@ -154,12 +154,12 @@ def require_certificate(certificate: Path, key: Path) -> None:
 
 
 def serve(app: FastAPI, settings: Settings, at: socket.socket, on_ready: Callable[[], Awaitable[None]]) -> None:
-    """Serve until SIGTERM, SIGHUP or Ctrl-C, none of which is a failure.
+    """Serve until SIGTERM, SIGHUP or Ctrl-C, which end it without an error.
 
     Parameters
     ----------
     on_ready
-        is called when the first page can be asked for; the server ends where it raises.
+        called when the server answers; the server ends if it raises.
 
     Raises
     ------
@@ -168,14 +168,14 @@ def serve(app: FastAPI, settings: Settings, at: socket.socket, on_ready: Callabl
     """
     config = uvicorn.Config(
         app,
-        lifespan="off",  # it is entered here, so that a database that refuses is an exception, not a log
+        lifespan="off",  # entered below, so that an error of the database is raised, not only logged
         http=PatientProtocol,
         ws="websockets-sansio",
         ws_max_size=_MESSAGE_BYTES,
         ws_per_message_deflate=False,
         log_config=None,
-        access_log=False,  # the guard's own says who asked, too
-        proxy_headers=False,  # the guard believes the proxies that it was told of
+        access_log=False,  # the guard's log also names the user
+        proxy_headers=False,  # the guard reads them, from trusted proxies only
         server_header=False,
         limit_concurrency=_CONNECTIONS,
         timeout_graceful_shutdown=_ENDING_S,
@@ -188,7 +188,7 @@ def serve(app: FastAPI, settings: Settings, at: socket.socket, on_ready: Callabl
 
 @contextlib.asynccontextmanager
 async def _ended_by_signals(server: uvicorn.Server) -> AsyncIterator[None]:
-    """Meanwhile signals to end are the server's, and afterwards what they were."""
+    """Let signals end the server within the block; restore their handlers afterwards."""
     loop = asyncio.get_running_loop()
     before = {each: signal.getsignal(each) for each in TO_END}
     for each in TO_END:

@@ -1,4 +1,4 @@
-"""How a server was asked to be: what `muster serve` takes."""
+"""The settings of a server: the options of `muster serve`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def usual_database() -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Everything that a server is told when it starts.
+    """The settings of a server.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ class Settings:
     database
         a URL of SQLAlchemy: `sqlite:///FILE` or `postgresql://USER@HOST/NAME`.
     workers, memory_mb, job_s
-        how many processes plan at once, how much memory each of them and each simulated run may have, and how long one
-        piece of work may take.
+        how many processes plan at once, the memory of each and of each simulated run, and the longest time of one piece
+        of work.
     queue
         how many jobs may wait.
     runs
@@ -45,18 +45,18 @@ class Settings:
     bridges
         worlds of real robots in which runs may be started here: `ros1`, `ros2`, `mavlink`.
     tokens
-        a file of tokens with roles; None: no token is asked for, which is allowed on loopback alone.
+        a file of tokens with roles; None: no token is needed, which is allowed on loopback only.
     user_header, trusted_proxies, proxy_secret
-        the header in which a reverse proxy says who asks, from which addresses that is believed, and a file with the
-        secret that the proxy has to show.
+        the header in which a reverse proxy names the user, the trusted addresses of proxies, and a file with the secret
+        that the proxy must send.
     certificate, key
         of TLS.
     insecure_http
-        whether passwords and pictures may cross a network in the clear: listen beyond loopback without TLS.
+        whether to listen beyond loopback without TLS.
     public_origins
         origins (`https://control.example.org`) under which browsers reach this server through a proxy.
     sockets, sockets_per_address
-        how many WebSockets may be open: in all, and of one address.
+        how many WebSockets may be open, in all and per address.
     """
 
     host: str = "127.0.0.1"
@@ -85,7 +85,7 @@ class Settings:
 
     @property
     def folder(self) -> Path:
-        """Where files beside the database are kept: next to SQLite's, or in the user's data folder."""
+        """The folder of further files: beside SQLite's database, or the user's data folder."""
         scheme, _, file = self.database.partition(":///")
         if scheme.startswith("sqlite") and file and file != ":memory:":
             return Path(file.partition("?")[0]).absolute().parent

@@ -21,7 +21,7 @@ PUBLISHED_NAMES: Mapping[str, str] = {"total": "MiniSum", "max": "MiniMax", "ave
 
 @dataclass(frozen=True, kw_only=True)
 class Auction:
-    """What is held: a mission, and the terms."""
+    """An auction: a mission and the terms."""
 
     mission: str
     bid: str
@@ -30,8 +30,8 @@ class Auction:
 
 
 @dataclass(frozen=True)
-class Held:
-    """One auction: its plan with the book, what the judge says of it, and the processor time of the allocator alone."""
+class AuctionResult:
+    """The result of an auction: its plan with the book, the verdict, and the processor time of the allocator alone."""
 
     plan: Plan
     verdict: Verdict
@@ -45,7 +45,7 @@ class Held:
         return found
 
 
-def hold(auction: Auction) -> Held:
+def hold(auction: Auction) -> AuctionResult:
     """Hold an auction.
 
     Raises
@@ -59,4 +59,4 @@ def hold(auction: Auction) -> Held:
     begin = time.process_time()
     plan = allocator.solve(problem, Stop(), params=params)
     cpu_s = time.process_time() - begin
-    return Held(plan, accepted(mission, plan, f"internal error: {auction}"), cpu_s)
+    return AuctionResult(plan, accepted(mission, plan, f"internal error: {auction}"), cpu_s)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.verification import RouteFigures
-from muster_studies.auction_5.auctions import Auction, Held
+from muster_studies.auction_5.auctions import Auction, AuctionResult
 from muster_studies.auction_5.published import content, judged_paths
 from muster_studies.comparison_marks import EQUAL, ERRATUM
 from muster_studies.effort import Effort
@@ -36,7 +36,7 @@ class Paths:
             for placement in self.placements:
                 yield Auction(mission=mission, bid=bid, placement=placement)
 
-    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, AuctionResult]) -> Table:
         notes, rows = Notes(), []
         for k, there in enumerate(judged_paths(self.number).routes):
             rows.append(row(self.columns, _cells("thesis", there)))
@@ -76,7 +76,7 @@ class Positions:
     def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield from ()
 
-    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, AuctionResult]) -> Table:
         published, notes, rows = content(self.number), Notes(), []
         positions = published["positions"]
         there, right = printed(positions), corrected(positions)

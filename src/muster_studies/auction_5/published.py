@@ -31,5 +31,5 @@ def paths(number: str) -> Mapping[str, tuple[str, ...]]:
 
 @cache
 def judged_paths(number: str) -> Verdict:
-    """What the judge says of navigation paths whose mission is known."""
+    """The verdict on published navigation paths."""
     return judged(content(number)["plans"][0]["run_as"], (), paths(number))

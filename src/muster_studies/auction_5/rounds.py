@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.mission.auction_book import Bid
-from muster_studies.auction_5.auctions import Auction, Held
+from muster_studies.auction_5.auctions import Auction, AuctionResult
 from muster_studies.auction_5.published import content
 from muster_studies.comparison_marks import EQUAL
 from muster_studies.effort import Effort
@@ -32,7 +32,7 @@ class Bids:
     def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield _AUCTION
 
-    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, AuctionResult]) -> Table:
         published, rows = content(self.number), []
         columns = ("drone", "values", *content("5.1")["positions"], "mark")
         own = held[_AUCTION].bids()[published["round"]]
@@ -64,7 +64,7 @@ class SubmittedBids:
     def jobs(self, effort: Effort) -> Iterator[Auction]:
         yield _AUCTION
 
-    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, AuctionResult]) -> Table:
         published, rows = content(self.number), []
         winner = published["winner"]
         own = held[_AUCTION].bids()[published["round"]]

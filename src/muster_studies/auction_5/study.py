@@ -1,8 +1,8 @@
-"""The study: which tables there are, and how they are made."""
+"""The study: its tables, its legend, and how its runs are made."""
 
 from __future__ import annotations
 
-from muster_studies.auction_5.auctions import Auction, Held, hold
+from muster_studies.auction_5.auctions import Auction, AuctionResult, hold
 from muster_studies.auction_5.paths import Paths, Positions
 from muster_studies.auction_5.rounds import Bids, SubmittedBids
 from muster_studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
@@ -14,7 +14,7 @@ _NOT_AS_DESCRIBED = (
     "alike. average-as-printed, the number of tasks times the length of the path, is fitted to Table 5.20."
 )
 
-_TABLES: tuple[Reproduction[Auction, Held], ...] = (
+_TABLES: tuple[Reproduction[Auction, AuctionResult], ...] = (
     Bids("5.2"),
     Bids("5.3"),
     SubmittedBids("5.4"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster_studies.auction_5.auctions import BIDS, PUBLISHED_NAMES, Auction, Held
+from muster_studies.auction_5.auctions import BIDS, PUBLISHED_NAMES, Auction, AuctionResult
 from muster_studies.auction_5.published import judged_paths, paths
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
@@ -39,7 +39,7 @@ class Teams:
         for placement in PLACEMENTS:
             yield Auction(mission=self.mission, bid=bid, placement=placement, winner=self.winner)
 
-    def table(self, effort: Effort, held: Mapping[Auction, Held]) -> Table:
+    def table(self, effort: Effort, held: Mapping[Auction, AuctionResult]) -> Table:
         rows = []
         for bid in self.bids:
             if bid in self.published:
@@ -56,7 +56,7 @@ class Teams:
         return {**cells, **_shares(list(paths(number).values()))}
 
 
-def _own_cells(auction: Auction, own: Held) -> dict[str, Cell]:
+def _own_cells(auction: Auction, own: AuctionResult) -> dict[str, Cell]:
     return {
         "bid": auction.bid,
         "placement": auction.placement,

@@ -30,7 +30,7 @@ def scene(seed: int) -> Problem:
 
 
 def held(problem: Problem, transport: str, victims: Sequence[str] = ()) -> tuple[float, Counter[str], int]:
-    """Seconds to agreement, messages by kind, and bytes that were sent in all.
+    """Seconds to agreement, messages by kind, and the total of bytes sent.
 
     With `victims` the seconds are from when these are killed, in the middle of the auction.
 

@@ -1,4 +1,4 @@
-"""Speed of collision avoidance, beside RVO2 through its binding pyrvo: part of what `muster bench` measures."""
+"""Speed of collision avoidance, beside RVO2 through its binding pyrvo: part of `muster bench`."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ STEPS = 20
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Robots on a jittered grid of 4.5 m, half of the ground covered, each of which wants to go its own way."""
+    """Robots on a jittered grid of 4.5 m, half of the ground covered, with random preferred directions."""
 
     positions: Floats
     preferred: Floats
 
     @classmethod
     def random(cls, count: int, seed: int) -> Scene:
-        """Draw one."""
+        """A random scene."""
         random, side = np.random.default_rng(seed), int(np.ceil(np.sqrt(count)))
         grid = SPACING_M * np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)[:count]
         jitter = 0.5 * (SPACING_M - 2 * RADIUS_M)

@@ -1,4 +1,4 @@
-"""Speed of planning again while a mission is carried out: part of `muster bench`.
+"""Speed of re-planning during execution: part of `muster bench`.
 
 Twenty robots are under way to a hundred tasks at random places; after a while the one that has most left to do fails.
 The same rest planned by greedy, the work under way kept, is the measure of how good the new plan is.
@@ -37,7 +37,7 @@ def scene(seed: int, stability: int | None) -> Mission:
 
 
 class _Timed:
-    """A re-allocation that keeps what it was asked, what it answered, and for how long it thought, seconds."""
+    """A re-allocation that records its problem, its answer, and its time in seconds."""
 
     def __init__(self, replan: Reallocation) -> None:
         self._replan = replan

@@ -1,4 +1,4 @@
-"""What a bench measures."""
+"""Measurements of benches."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Self
 
 @dataclass(frozen=True)
 class Measurement:
-    """One line of the table: what was measured, the median and range over the runs, and the aim it stands against."""
+    """One line of the table: the quantity, its median and range over the runs, and the aim."""
 
     name: str
     unit: str
@@ -23,5 +23,5 @@ class Measurement:
 
     @classmethod
     def over_runs(cls, name: str, unit: str, values: Sequence[float], aim: str, note: str = "") -> Self:
-        """Of the values of several runs."""
+        """The measurement of the values of several runs."""
         return cls(name, unit, statistics.median(values), min(values), max(values), len(values), aim, note)

@@ -1,4 +1,4 @@
-"""Speed of motion on this machine: what `muster bench` measures of paths and travel lengths."""
+"""Speed of path planning and of travel lengths: part of `muster bench`."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def free_places(blocked: Bools, count: int) -> Floats:
 
 
 def _timed(call: Callable[[], Answer], runs: int) -> tuple[Answer, dict[str, list[float]]]:
-    """What the last call returns, and the seconds of each by both clocks."""
+    """The result of the last call, and the seconds of each call by both clocks."""
     times: dict[str, list[float]] = {"CPU s": [], "s": []}
     for _ in range(runs):
         cpu, wall = time.process_time(), time.perf_counter()
@@ -96,7 +96,7 @@ def _timed(call: Callable[[], Answer], runs: int) -> tuple[Answer, dict[str, lis
 
 
 def _rows(name: str, threads: int, times: dict[str, list[float]], aim: str, note: str) -> list[Measurement]:
-    """A row a clock: the processor's, all threads together, and the one on the wall."""
+    """One row for each clock: processor time of all threads, and wall time."""
     name = f"{name}, {threads} thread{'s' if threads > 1 else ''}"
     return [
         Measurement(name, unit, statistics.median(t), min(t), max(t), len(t), aim if unit == "CPU s" else "", note)

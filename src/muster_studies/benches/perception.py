@@ -21,7 +21,7 @@ PICTURES = 50
 
 
 def perception(runs: int) -> list[Measurement]:
-    """Pictures a second that a drone over tags takes and looks through; processor time, one core.
+    """Pictures a second that a drone renders and searches for tags; processor time, one core.
 
     Raises
     ------

@@ -20,7 +20,7 @@ _WITHIN = 1e-4  # of the best known value: 0.01 %
 
 @dataclass(frozen=True)
 class Case:
-    """A mission, the objective value of the best plan known, and the seconds in which it is to be found."""
+    """A mission, the objective value of the best known plan, and the time limit in seconds."""
 
     mission: str
     objective: str

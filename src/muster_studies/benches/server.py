@@ -155,7 +155,7 @@ def _over(served: Served, job: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def queued(runs: int) -> list[Measurement]:
-    """Many ask for plans at once."""
+    """Many plan requests at once."""
     seconds, answers = [], []
     for _ in range(min(runs, 3)):
         with serving() as served:
@@ -183,7 +183,7 @@ def _load(*arguments: object) -> list[dict[str, float]]:
 
 
 def _family(process: int) -> list[int]:
-    """A process and all below it."""
+    """A process and its descendants."""
     children: list[int] = []
     for task in Path(f"/proc/{process}/task").iterdir():
         children += map(int, (task / "children").read_text().split())

@@ -1,4 +1,4 @@
-"""Who watches mission control in its bench, in a process of its own so that its processor time is not the server's.
+"""Clients of mission control for its bench, in a process of their own so that their processor time is apart.
 
 `sockets ADDRESS RUN COUNT WINDOWS SECONDS` opens so many streams of a run, and prints for each window of time what came
 over them as a line of JSON; `page ADDRESS RUN SECONDS` opens the page of the run in a browser, and prints how late what

@@ -1,4 +1,4 @@
-"""What stands in the arena for lasers to see, and how they and all else err: chosen here, but for the laser.
+"""Cylinders in the arena, and errors of lasers and odometry; all but the scanner is chosen here.
 
 The paper's survivors are white cylinders (section 5). Its gripper takes what is up to 50 mm wide, so that is their
 width. Where they and the landmarks stand it shows in pictures only.

@@ -1,4 +1,4 @@
-"""What each robot makes of its odometry and its laser: where it is, and where cylinders are that are no landmarks.
+"""Localisation of each robot by odometry and laser, and its sightings of cylinders that are no landmarks.
 
 The paper's robots know their places by odometry; its landmarks (section 6 names their extraction) serve that too,
 in a manner that it does not print. Here an extended Kalman filter takes both in.
@@ -38,15 +38,15 @@ NEAR_M = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
-    """A cylinder that is no landmark, seen once: where it is, (2,) with its covariance, map frame."""
+class CylinderSighting:
+    """One sighting of a cylinder that is no landmark: its position (2,) with covariance, map frame."""
 
     robot: str
     time_s: float
     place: Estimate
 
 
-class Eyes:
+class RobotLocalisation:
     """One robot: its odometry, its laser, and the filter that has both.
 
     Parameters
@@ -70,7 +70,7 @@ class Eyes:
         """What the last scan hit, (k, 2) in the map, from where the robot took itself to be."""
 
     def move(self) -> None:
-        """Take in what was counted since the last time."""
+        """Update the filters with odometry since the last call."""
         before, now = self._said, self._telemetry()
         if now.time_s <= before.time_s:
             return
@@ -80,8 +80,8 @@ class Eyes:
         )
         self._said = now
 
-    def look(self, others: Iterable[Floats]) -> list[Seen]:
-        """Scan: landmarks go into the filter; what is none, and no other robot, is returned."""
+    def look(self, others: Iterable[Floats]) -> list[CylinderSighting]:
+        """Scan: update the filter with landmarks; return sightings that are neither landmarks nor robots."""
         ranges = self._laser.scan(CYLINDERS)
         self.hits = self._in_map(points_of(ranges, self._laser.bearings))
         marks = landmarks(ranges, self._laser.bearings, SEARCH)
@@ -93,17 +93,17 @@ class Eyes:
         team = [tuple(other) for other in others]
         return [self._seen(mark) for mark in unknown if _nearest(self._place(mark), team) is None]
 
-    def _seen(self, mark: Landmark) -> Seen:
+    def _seen(self, mark: Landmark) -> CylinderSighting:
         pose = Estimate(self.fused.mean[:3], self.fused.covariance[:3, :3])
         target = TargetSighting(pose, mark.range_m, mark.bearing_rad, RANGE_M, BEARING_RAD).target
-        return Seen(self.robot, self._said.time_s, target)
+        return CylinderSighting(self.robot, self._said.time_s, target)
 
     def _place(self, mark: Landmark) -> tuple[float, float]:
         x, y = self._in_map(np.array(mark.position))
         return float(x), float(y)
 
     def _in_map(self, points: Floats) -> Floats:
-        """Points (..., 2) of the robot's frame, from where it takes itself to be."""
+        """Points (..., 2) of the robot's frame in the map frame, by the estimated pose."""
         x, y, heading = self.fused.mean[:3]
         c, s = math.cos(heading), math.sin(heading)
         return np.asarray(points @ np.array([[c, s], [-s, c]]) + [x, y])
@@ -114,7 +114,7 @@ class Eyes:
         return said
 
 
-def raw_estimates(seen: Sequence[Seen]) -> RawEstimates:
+def raw_estimates(seen: Sequence[CylinderSighting]) -> RawEstimates:
     """The list of all robots' sightings, as those of cameras are."""
     return RawEstimates(
         np.array([one.place.mean for one in seen]).reshape(-1, 2),

@@ -13,7 +13,7 @@ from muster.report.tracking import Measure, Tracked, plot_measures, plot_trackin
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
-from muster_studies.market_5.searches import PLACES, TRUE, Search, Searched, performed, searches
+from muster_studies.market_5.searches import PLACES, TRUE, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
 from muster_studies.picture_files import draw_figures
 from muster_studies.rescue.flights import repetitions
@@ -60,7 +60,7 @@ def _metrics(effort: Effort) -> Figure:
     return plot_measures(measures, title, columns=len(SHOWN))
 
 
-def _measure(found: Sequence[Searched], metric: Metric, place: str, robots: Sequence[str]) -> Measure:
+def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: Sequence[str]) -> Measure:
     values = {robot: measured(found, metric, robot, place) for robot in robots}
     return Measure(
         label=f"{metric.label}\n{place}",

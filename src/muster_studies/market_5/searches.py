@@ -1,4 +1,4 @@
-"""What is run: the market's plan carried out with noise, while all three robots scan; and what they found."""
+"""The runs: the market's plan carried out with noise while all three robots scan; and their results."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from muster.running.simulation import Simulation
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import SURVIVORS
-from muster_studies.market_5.localisation import Eyes, Seen, raw_estimates
+from muster_studies.market_5.localisation import CylinderSighting, RobotLocalisation, raw_estimates
 from muster_studies.market_rescue.scenario import market_case
-from muster_studies.rescue.flights import NOISE, Flown, Log, repetitions
+from muster_studies.rescue.flights import NOISE, FlightResult, Log, repetitions
 from muster_studies.rescue.teams import ARENA, mission_of, plan_of
 from muster_studies.rescue.tracking import Tracking, tracking
 
@@ -39,7 +39,7 @@ FARTHEST_M = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Searched:
+class SearchResult:
     """One search.
 
     Parameters
@@ -57,17 +57,17 @@ class Searched:
         by robot what its last scan hit, (k, 2) in the map, from where it took itself to be.
     """
 
-    flown: Mapping[str, Flown]
+    flown: Mapping[str, FlightResult]
     off: Mapping[tuple[str, str], Floats]
     surprise: Mapping[tuple[str, str], Floats]
-    seen: tuple[Seen, ...]
+    seen: tuple[CylinderSighting, ...]
     hits: Mapping[str, Floats]
 
     def tracking(self, robot: str, place: str) -> Tracking:
         return tracking(ARENA, self.flown[place], robot)
 
     def found(self, robots: Sequence[str] = ()) -> ErrorTable:
-        """What these robots together found of the survivors; all by default."""
+        """The survivors that these robots (by default all) found together."""
         places = [point.position for point in self.points(robots)]
         return error_table(places, SURVIVORS, FARTHEST_M)
 
@@ -76,7 +76,7 @@ class Searched:
         raw = raw_estimates([one for one in self.seen if not robots or one.robot in robots])
         return points_of_interest(raw, by_density(raw.positions, APART_M, LEAST), independent_after_s=TOGETHER_S)
 
-    def sightings(self, survivor: str, robot: str | None = None) -> list[Seen]:
+    def sightings(self, survivor: str, robot: str | None = None) -> list[CylinderSighting]:
         """Those that are within `FARTHEST_M` of it."""
         there = SURVIVORS[survivor]
         by = [one for one in self.seen if robot is None or one.robot == robot]
@@ -85,19 +85,19 @@ class Searched:
 
 @dataclass(frozen=True, kw_only=True)
 class Search:
-    """The plan carried out once in one of the worlds; `seed` is of all errors, `iterations` of the market's."""
+    """One run: the plan carried out in one of the worlds; `seed` is of all errors, `iterations` of the market's."""
 
     world: str
     iterations: int
     seed: int
 
-    def perform(self) -> Searched:
+    def perform(self) -> SearchResult:
         mission = mission_of(ARENA)
         log = Log(mission)
         how: dict[str, Any] = {"world": self.world, "seed": self.seed, "noise": NOISE, "recorder": log}
         with closing(Simulation(mission, plan_of(ARENA, self.iterations), **how)) as simulation:
-            eyes = [Eyes(simulation.world, robot.id, self.seed) for robot in mission.robots]
-            states, seen = [_states(eyes)], list[Seen]()
+            eyes = [RobotLocalisation(simulation.world, robot.id, self.seed) for robot in mission.robots]
+            states, seen = [_states(eyes)], list[CylinderSighting]()
             while not simulation.done:
                 simulation.advance(simulation.time_s + STEP_S)
                 for one in eyes:
@@ -111,8 +111,8 @@ class Search:
 
 
 @cache
-def performed(search: Search) -> Searched:
-    """What it found; tables and pictures share it."""
+def performed(search: Search) -> SearchResult:
+    """The result of a search, computed once for tables and pictures."""
     return search.perform()
 
 
@@ -123,13 +123,13 @@ def searches(effort: Effort, worlds: Sequence[str] = WORLDS.shipped) -> list[Sea
     return [Search(world=world, iterations=iterations, seed=seed) for world in worlds for seed in seeds]
 
 
-def found_by_world(effort: Effort, results: Mapping[Any, Any]) -> Iterator[tuple[str, list[Searched]]]:
+def found_by_world(effort: Effort, results: Mapping[Any, Any]) -> Iterator[tuple[str, list[SearchResult]]]:
     """Each world, and what its searches found."""
     for world in WORLDS.shipped:
         yield world, [results[job] for job in searches(effort, [world])]
 
 
-def _states(eyes: Sequence[Eyes]) -> list[list[Floats]]:
+def _states(eyes: Sequence[RobotLocalisation]) -> list[list[Floats]]:
     """Of each robot, by odometry and with landmarks: x, y and their covariance, (6,)."""
     return [
         [np.concatenate([one.mean[:2], one.covariance[:2, :2].ravel()]) for one in (each.odometry, each.fused)]
@@ -137,7 +137,9 @@ def _states(eyes: Sequence[Eyes]) -> list[list[Floats]]:
     ]
 
 
-def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...], hits: Mapping[str, Floats]) -> Searched:
+def _searched(
+    flown: FlightResult, states: Floats, seen: tuple[CylinderSighting, ...], hits: Mapping[str, Floats]
+) -> SearchResult:
     """`states` (t, n, 2, 6) as `_states` gives them, at the times of the flight."""
     places, off, surprise = {TRUE: flown}, {}, {}
     for k, place in enumerate((ODOMETRY, LASER)):
@@ -148,4 +150,4 @@ def _searched(flown: Flown, states: Floats, seen: tuple[Seen, ...], hits: Mappin
         for number, robot in enumerate(flown.visits):
             off[robot, place] = np.linalg.norm(apart[:, number], axis=1)
             surprise[robot, place] = squares[:, number]
-    return Searched(flown=places, off=off, surprise=surprise, seen=seen, hits=hits)
+    return SearchResult(flown=places, off=off, surprise=surprise, seen=seen, hits=hits)

@@ -1,15 +1,15 @@
-"""The study: which tables there are, how they are made, and the pictures beside them."""
+"""The study: its tables, its legend, how its runs are made, and its pictures."""
 
 from __future__ import annotations
 
 from muster_studies.market_5.pictures import draw
-from muster_studies.market_5.searches import Search, Searched, performed
+from muster_studies.market_5.searches import Search, SearchResult, performed
 from muster_studies.market_5.targets import Figure7, Targets
 from muster_studies.market_5.tracks import Figure8, Localisation
 from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
 from muster_studies.rescue.flights import repetitions
 
-_TABLES: tuple[Reproduction[Search, Searched], ...] = (Figure7(), Figure8(), Targets(), Localisation())
+_TABLES: tuple[Reproduction[Search, SearchResult], ...] = (Figure7(), Figure8(), Targets(), Localisation())
 
 _LEGEND = (
     "The mission is market-rescue-arena, carried out in the kinematic and in the physics world, where the paper took "

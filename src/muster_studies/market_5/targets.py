@@ -1,4 +1,4 @@
-"""What lasers find: rangeBot's survivor (Figure 7), and all survivors by the whole team."""
+"""Survivors found by lasers: rangeBot's own (Figure 7), and all by the whole team."""
 
 from __future__ import annotations
 
@@ -11,7 +11,16 @@ from typing import Any
 from muster.perception.matching import ErrorTable
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import CYLINDER_RADIUS_M, SCANNER, SURVIVORS
-from muster_studies.market_5.searches import FARTHEST_M, LEAST, SCAN_S, TRUE, Search, Searched, found_by_world, searches
+from muster_studies.market_5.searches import (
+    FARTHEST_M,
+    LEAST,
+    SCAN_S,
+    TRUE,
+    Search,
+    SearchResult,
+    found_by_world,
+    searches,
+)
 from muster_studies.rescue.metrics import SHOWN_ROBOT
 from muster_studies.tables import Cell, Table, row
 
@@ -19,11 +28,11 @@ NOBODY = "none of them"
 
 
 def error_of(found: ErrorTable, survivor: str) -> float | None:
-    """Metres from a survivor to what was found of it; None where it was missed."""
+    """The error of a survivor's estimated position, metres; None where it was not found."""
     return next((match.error_m for match in found.matches if match.name == survivor), None)
 
 
-def single_errors(one: Searched, survivor: str, robot: str | None = None) -> list[float]:
+def single_errors(one: SearchResult, survivor: str, robot: str | None = None) -> list[float]:
     """Metres that each sighting of a survivor is off."""
     return [math.dist(seen.place.mean, SURVIVORS[survivor]) for seen in one.sightings(survivor, robot)]
 
@@ -54,7 +63,7 @@ class Figure7:
         return Table(self.number, title, self.columns, tuple(rows), notes, decimals=4)
 
 
-def _own_survivor(one: Searched) -> dict[str, Cell]:
+def _own_survivor(one: SearchResult) -> dict[str, Cell]:
     survivor = one.flown[TRUE].visits[SHOWN_ROBOT][-1].task
     single = single_errors(one, survivor, SHOWN_ROBOT)
     return {
@@ -101,7 +110,7 @@ class Targets:
         return Table(self.number, "Survivors that the team finds", self.columns, tuple(rows), notes, decimals=4)
 
 
-def _cells(found: Sequence[Searched], survivor: str) -> dict[str, Cell]:
+def _cells(found: Sequence[SearchResult], survivor: str) -> dict[str, Cell]:
     errors = [error for one in found if (error := error_of(one.found(), survivor)) is not None]
     seen = [sightings for one in found if (sightings := one.sightings(survivor))]
     single = [error for one in found for error in single_errors(one, survivor)]

@@ -15,7 +15,16 @@ import numpy as np
 
 from muster_studies.comparison_marks import OTHER_MEASURE
 from muster_studies.effort import Effort
-from muster_studies.market_5.searches import LASER, ODOMETRY, PLACES, TRUE, Search, Searched, found_by_world, searches
+from muster_studies.market_5.searches import (
+    LASER,
+    ODOMETRY,
+    PLACES,
+    TRUE,
+    Search,
+    SearchResult,
+    found_by_world,
+    searches,
+)
 from muster_studies.rescue.flights import NOISE, repetitions
 from muster_studies.rescue.metrics import METRICS, Metric, printed_goal_error_m
 from muster_studies.rescue.teams import ARENA, BODY_RADIUS_M, sent
@@ -28,7 +37,7 @@ SHOWN = tuple(
 """What the paper's figure shows by its text; the risk factor both as (8) and as least distance."""
 
 
-def measured(found: Sequence[Searched], metric: Metric, robot: str, place: str) -> list[float]:
+def measured(found: Sequence[SearchResult], metric: Metric, robot: str, place: str) -> list[float]:
     """Of each search one figure."""
     return [float(getattr(one.tracking(robot, place), metric.name)) for one in found]
 
@@ -127,7 +136,7 @@ class Localisation:
         return Table(self.number, title, self.columns, tuple(rows), notes, decimals=4)
 
 
-def _off(found: Sequence[Searched], robot: str) -> dict[str, Cell]:
+def _off(found: Sequence[SearchResult], robot: str) -> dict[str, Cell]:
     off = {place: [one.off[robot, place] for one in found] for place in (ODOMETRY, LASER)}
     surprise = {place: np.concatenate([one.surprise[robot, place][1:] for one in found]) for place in off}
     better = sum(laser.mean() < odometry.mean() for odometry, laser in zip(off[ODOMETRY], off[LASER], strict=True))

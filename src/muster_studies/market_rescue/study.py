@@ -1,4 +1,4 @@
-"""The study: which tables there are, and how they are made."""
+"""The study: its tables, its legend, and how its runs are made."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What agreeing without a centre costs, how good its plans are, and how long it takes after faults."""
+"""Agreement without a centre: its cost, the quality of its plans, and its time after faults."""

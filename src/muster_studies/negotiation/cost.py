@@ -1,4 +1,4 @@
-"""What agreeing without a centre costs, and how good the plans are: teams of growing size in a simulated network."""
+"""Cost and plan quality of agreement without a centre, for teams of growing size in a simulated network."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ LONGEST_S = 600.0
 
 
 @dataclass(frozen=True)
-class Talk:
-    """One auction of a team: how robots agree, how many there are, and what the network loses."""
+class AuctionRun:
+    """One auction of a team: the method, the number of robots, and the loss of the network."""
 
     method: str
     robots: int
@@ -48,8 +48,8 @@ class Talk:
 
 
 @dataclass(frozen=True)
-class Said:
-    """What it took until all knew that all agree.
+class AuctionCost:
+    """The cost of an auction until all robots know that all agree.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Said:
     gap: float
 
 
-def hold(talk: Talk) -> Said:
+def hold(talk: AuctionRun) -> AuctionCost:
     """Hold an auction.
 
     Raises
@@ -102,7 +102,7 @@ def hold(talk: Talk) -> Said:
     counts = [one.counts for one in network.nodes.values()]
     value = verify(mission, method.plan(problem, params, view_of(node), None)).value()
     assert value is not None
-    return Said(
+    return AuctionCost(
         rounds=node.stage.round,
         news=sum(count.news for count in counts),
         repairs=sum(count.repairs for count in counts),
@@ -116,7 +116,7 @@ def hold(talk: Talk) -> Said:
 @cache
 def searched(robots: int, seed: int) -> float:
     """The objective of the plan that one process finds, by `search`."""
-    mission = Talk("auction", robots, 0.0, seed).mission
+    mission = AuctionRun("auction", robots, 0.0, seed).mission
     search = ALLOCATORS["search"]
     plan = search.solve(Problem.compile(mission).ready(), Stop(iterations=SEARCH_ITERATIONS), seed=seed)
     value = verify(mission, plan).value()
@@ -130,14 +130,14 @@ class Cost:
 
     number: str = "cost"
 
-    def jobs(self, effort: Effort) -> Iterator[Talk]:
+    def jobs(self, effort: Effort) -> Iterator[AuctionRun]:
         for method in METHODS:
             for robots in QUICK_SIZES if effort.quick else SIZES:
                 for loss in LOSSES:
                     for seed in range(min(effort.seed_count, MOST_SEEDS.get(robots, effort.seed_count))):
-                        yield Talk(method, robots, loss, seed)
+                        yield AuctionRun(method, robots, loss, seed)
 
-    def table(self, effort: Effort, found: Mapping[Talk, Said]) -> Table:
+    def table(self, effort: Effort, found: Mapping[AuctionRun, AuctionCost]) -> Table:
         figures = ("news a task", "all a task", "kB a task", "s", "gap %")
         columns = ("method", "robots", "tasks", "loss %", "runs", "rounds", *figures)
         rows: list[tuple[Cell, ...]] = []

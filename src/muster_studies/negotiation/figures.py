@@ -1,4 +1,4 @@
-"""How soon robots agree in a simulated network, what that costs, and how often they suspect each other wrongly."""
+"""Time and cost of agreement in a simulated network, and the rate of false suspicions."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def healed(robots: int, tasks: int, loss: float, seed: int) -> float:
 
 
 def noticed(robots: int, loss: float, seed: int) -> float:
-    """How long after a crash nobody has the robot for a member any more, seconds."""
+    """The time from a crash until no robot has the crashed one as a member, seconds."""
     network = settled_team(robots, robots, loss, seed)
     network.run(network.now + Random(seed).uniform(0, 1))
     gone, nodes = network.robots[seed % robots], network.nodes

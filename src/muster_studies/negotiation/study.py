@@ -1,4 +1,4 @@
-"""The study: what agreeing without a centre costs, as a table and a picture."""
+"""The study: the cost of agreement without a centre, as a table and a picture."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 from muster.report.files import save_figure
 from muster_studies.effort import Effort
-from muster_studies.negotiation.cost import LOSSES, Cost, Said, Talk, hold
+from muster_studies.negotiation.cost import LOSSES, AuctionCost, AuctionRun, Cost, hold
 from muster_studies.repetition import IllustratedRepetition, one_by_one
 from muster_studies.tables import Table
 
 _held = cache(hold)
 
 
-def _hold(talk: Talk) -> Said:
+def _hold(talk: AuctionRun) -> AuctionCost:
     """Hold an auction, once for the table and the picture."""
     return _held(talk)
 
@@ -63,7 +63,7 @@ def _figure(table: Table) -> Any:
 
 _SHOWN = (("all a task", "messages a task"), ("kB a task", "kB a task"), ("gap %", "objective above search, %"))
 
-NEGOTIATION = IllustratedRepetition[Talk, Said](
+NEGOTIATION = IllustratedRepetition[AuctionRun, AuctionCost](
     name="negotiation",
     summary="what agreeing without a centre costs as the team grows, and how good the plans are",
     document="no publication: simulated network, 50 ms each way",

@@ -1,4 +1,4 @@
-"""How often robots take each other for lost that are not: measured, and bounded by what can be reckoned.
+"""The rate of false suspicions: measured, and bounded by calculation.
 
 That is rare, so it is measured by importance sampling. From each word of one robot that the other hears on, the network
 loses the next ones more often than it should, until one is heard or the other suspects it. Each suspicion counts as

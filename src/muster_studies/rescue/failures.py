@@ -8,7 +8,7 @@ from typing import Any
 
 from muster.mission.model import Mission
 from muster_studies.effort import Effort
-from muster_studies.rescue.flights import Flight, Flown, repetitions
+from muster_studies.rescue.flights import Flight, FlightResult, repetitions
 from muster_studies.rescue.scenario import undisturbed
 from muster_studies.rescue.teams import ARENA, PAIRS, POINTS, RICHER, mission_of, sent
 from muster_studies.tables import Cell, Notes, Table, row
@@ -61,7 +61,7 @@ def failing(effort: Effort, team: str, robot: str) -> list[Flight]:
     return [replace(undisturbed(effort, team), fails=robot, share=(k + 1) / (count + 1)) for k in range(count)]
 
 
-def _cells(team: str, robot: str, found: Sequence[Flown], reasons: Notes) -> dict[str, Cell]:
+def _cells(team: str, robot: str, found: Sequence[FlightResult], reasons: Notes) -> dict[str, Cell]:
     mission, reports = mission_of(team), [one.report for one in found]
     lost = [task for report in reports for task, _ in report.tasks_lost]
     without = {one.id: one.skills for one in mission.robots if one.id != robot}
@@ -78,7 +78,7 @@ def _cells(team: str, robot: str, found: Sequence[Flown], reasons: Notes) -> dic
     }
 
 
-def _why_lost(mission: Mission, without: Mapping[str, Sequence[str]], flown: Flown) -> Iterator[str]:
+def _why_lost(mission: Mission, without: Mapping[str, Sequence[str]], flown: FlightResult) -> Iterator[str]:
     """Of each task lost by these robots that are left, the reason, in short where no other has the skill."""
     required = {task.id: task.requires for task in mission.tasks}
     for name, reason in flown.report.tasks_lost:

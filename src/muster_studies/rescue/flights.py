@@ -46,7 +46,7 @@ class Planning:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Flown:
+class FlightResult:
     """What one carrying out was.
 
     Parameters
@@ -102,7 +102,7 @@ class Flight:
         (route,) = (route for route in verdict_of(self.team, self.iterations).routes if route.robot == self.fails)
         return replace(mission, events=(Event(at_s=self.share * route.visits[-1].ends_s, robot_fails=self.fails),))
 
-    def perform(self) -> Flown:
+    def perform(self) -> FlightResult:
         log = Log(self.mission)
         report = carry_out(
             self.mission,
@@ -149,8 +149,8 @@ class Log:
     def on_report(self, report: Mapping[str, Any]) -> None:
         pass
 
-    def flown(self, report: Report) -> Flown:
-        return Flown(
+    def flown(self, report: Report) -> FlightResult:
+        return FlightResult(
             report=report,
             times=np.array(self.times),
             positions=np.array(self.positions),

@@ -13,7 +13,7 @@ from muster.motion.grid import Floats
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster_studies.effort import Effort
 from muster_studies.picture_files import draw_figures
-from muster_studies.rescue.flights import Flown, repetitions
+from muster_studies.rescue.flights import FlightResult, repetitions
 from muster_studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
 from muster_studies.rescue.teams import mission_of
 from muster_studies.rescue.tracking import Tracking, deviations, legs, track
@@ -39,7 +39,7 @@ def _tracking(effort: Effort) -> Figure:
     return plot_tracking(mission.map, np.concatenate(reference), flights, goals, title)
 
 
-def _tracked(name: str, flown: Flown, reference: Sequence[Floats]) -> Tracked:
+def _tracked(name: str, flown: FlightResult, reference: Sequence[Floats]) -> Tracked:
     places = track(flown, SHOWN_ROBOT)
     return Tracked(name=name, places=places, times=flown.times[: len(places)], aside=deviations(reference, places))
 

@@ -19,7 +19,7 @@ from muster_studies.market_rescue.scenario import (
     market_case,
     paper,
 )
-from muster_studies.rescue.flights import Flight, Flown, Planning, repetitions
+from muster_studies.rescue.flights import Flight, FlightResult, Planning, repetitions
 from muster_studies.rescue.teams import ARENA, verdict_of
 from muster_studies.runs import Sample
 from muster_studies.tables import Cell, Table, row
@@ -57,7 +57,7 @@ class Figure6:
 
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         flight = undisturbed(effort)
-        flown: Flown = results[flight]
+        flown: FlightResult = results[flight]
         verdict, rows = verdict_of(flight.team, flight.iterations), []
         for route in verdict.routes:
             printed = execution_s(route.robot)

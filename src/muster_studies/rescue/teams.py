@@ -35,13 +35,13 @@ def mission_of(team: str) -> Mission:
 
 @cache
 def plan_of(team: str, iterations: int) -> Plan:
-    """What the market makes of it, with seed 0."""
+    """The market's plan for a team, with seed 0."""
     return solve(mission_of(team), "market", iterations=iterations)
 
 
 @cache
 def verdict_of(team: str, iterations: int) -> Verdict:
-    """What the judge says of that plan."""
+    """The verdict on that plan."""
     return verify(mission_of(team), plan_of(team, iterations))
 
 

@@ -19,7 +19,7 @@ from muster.motion.map_world import body_of
 from muster.motion.metrics import closest, path_length, risk_factor, trajectory_error
 from muster.motion.path import NoPath
 from muster.motion.robot_paths import RobotPaths
-from muster_studies.rescue.flights import Flown
+from muster_studies.rescue.flights import FlightResult
 from muster_studies.rescue.teams import mission_of
 
 SAMPLE_M = 0.01
@@ -82,18 +82,18 @@ def legs(team: str, robot: str, tasks: tuple[str, ...]) -> tuple[Floats, ...]:
     return tuple(found)
 
 
-def track(flown: Flown, robot: str) -> Floats:
+def track(flown: FlightResult, robot: str) -> Floats:
     """Where the robot was until its last work ended: (k, 2), every step."""
     return flown.positions[: _steps(flown, robot)[-1] + 1, _index(flown, robot)]
 
 
-def tracks(flown: Flown, robot: str) -> tuple[Floats, ...]:
+def tracks(flown: FlightResult, robot: str) -> tuple[Floats, ...]:
     """The same for each of its tasks in turn, the way there and the work, both ends included."""
     whole = track(flown, robot)
     return tuple(whole[first : last + 1] for first, last in pairwise(_steps(flown, robot)))
 
 
-def _steps(flown: Flown, robot: str) -> list[int]:
+def _steps(flown: FlightResult, robot: str) -> list[int]:
     """At which steps the robot began, and ended each work."""
     ends = np.array([0.0, *(visit.ends_s for visit in flown.visits[robot])])
     found: list[int] = np.searchsorted(flown.times, ends - _ROUNDING_S).tolist()
@@ -111,7 +111,7 @@ def deviations(reference: Sequence[Floats], way: Floats) -> Floats:
     return np.asarray(shapely.distance(line, shapely.points(way)), dtype=np.float64)
 
 
-def tracking(team: str, flown: Flown, robot: str) -> Tracking:
+def tracking(team: str, flown: FlightResult, robot: str) -> Tracking:
     """Measure one robot, which did at least one task."""
     ways, index = tracks(flown, robot), _index(flown, robot)
     reference = legs(team, robot, tuple(visit.task for visit in flown.visits[robot]))
@@ -142,5 +142,5 @@ def at_same_shares(reference: Floats, way: Floats) -> Floats:
     return np.column_stack([np.interp(asked, along, way[:, axis]) for axis in range(2)])
 
 
-def _index(flown: Flown, robot: str) -> int:
+def _index(flown: FlightResult, robot: str) -> int:
     return list(flown.visits).index(robot)

@@ -1,4 +1,4 @@
-"""The tables: who arrives, how near robots come to each other, how long it takes."""
+"""The tables: arrivals, least distances between robots, durations."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ QUICK_CIRCLES = (8, 32)
 
 @dataclass(frozen=True)
 class Found:
-    """What is kept of a run."""
+    """The figures of a run."""
 
     robots: int
     arrived: int

@@ -1,4 +1,4 @@
-"""What is run: a crowd, a method, and how much the preferred velocities are perturbed."""
+"""The runs: a scenario, a method, and the perturbation of preferred velocities."""
 
 from __future__ import annotations
 

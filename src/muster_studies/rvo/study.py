@@ -1,4 +1,4 @@
-"""The study: which tables there are, how they are made, and the pictures beside them."""
+"""The study: its tables, its legend, how its runs are made, and its pictures."""
 
 from __future__ import annotations
 

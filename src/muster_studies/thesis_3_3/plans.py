@@ -1,4 +1,4 @@
-"""Published plans, and what the judge says of them."""
+"""Published plans, and the verdicts on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Table `actions`: plans whose tasks are ways that are driven, with entry and exit, against what is flown."""
+"""Table `actions`: plans whose tasks are paths with entry and exit, as planned and as carried out."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
-from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
+from muster_studies.thesis_6.flights import ALLOCATOR, Flight, FlightResult
 from muster_studies.thesis_6.published import MEASURED, PublishedPlan, excess, plans
 from muster_studies.thesis_6.totals import best_of, search_flights
 
@@ -18,7 +18,7 @@ ALL = "all"
 
 
 @dataclass(frozen=True)
-class Ways:
+class ActionPaths:
     """A row for each robot of each plan that was flown, and one for all; for own plans the latter alone."""
 
     number: str = "actions"
@@ -48,7 +48,7 @@ class Ways:
             for own in _own(effort, plan):
                 yield from (own, _alone(own))
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         rows = []
         for plan in self.plans:
             flight = plan.flight(plan.with_actions)
@@ -90,8 +90,8 @@ def _own(effort: Effort, plan: PublishedPlan) -> list[Flight]:
 
 
 def _cells(
-    flown: Flown,
-    alone: Flown,
+    flown: FlightResult,
+    alone: FlightResult,
     which: slice,
     places: Sequence[float] | None = None,
     measured: Mapping[str, Sequence[float]] | None = None,

@@ -10,7 +10,7 @@ from statistics import fmean
 from muster.simulation import NO_NOISE, Noise
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table
-from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
+from muster_studies.thesis_6.flights import ALLOCATOR, Flight, FlightResult
 from muster_studies.thesis_6.published import PublishedPlan, excess, plans
 from muster_studies.thesis_6.totals import search_flights, search_iterations, total_and_greatest
 
@@ -40,7 +40,7 @@ class UsageUnderNoise:
             for name in NOISES:
                 yield from _seeded(plan, name, effort)
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         columns = ("mission", "noise", "runs", "planned", "mean %", "least %", "most %", "lost", "contacts")
         rows: list[tuple[Cell, ...]] = []
         for plan in self.plans:
@@ -92,7 +92,7 @@ class CapacityReserve:
             own = search_flights(effort, mission)
             yield (mission, noise, reserve), [replace(one, reserve=reserve, noise=NOISES[noise]) for one in own]
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         columns = ("mission", "noise", "reserve", "runs", "planned", "again", "moved", "lost in", "lost", "F", "over")
         rows = [(*head, *_reserve_cells([found[flight] for flight in flights])) for head, flights in self._rows(effort)]
         notes = (
@@ -106,7 +106,7 @@ class CapacityReserve:
         return Table(self.number, "Reserve of capacity, and what becomes of plans", columns, tuple(rows), notes)
 
 
-def _reserve_cells(runs: Sequence[Flown]) -> tuple[Cell, ...]:
+def _reserve_cells(runs: Sequence[FlightResult]) -> tuple[Cell, ...]:
     return (
         len(runs),
         fmean(flown.planned.tasks_completed for flown in runs),

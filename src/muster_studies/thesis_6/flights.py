@@ -28,7 +28,7 @@ ALLOCATOR = "search"
 
 @dataclass(frozen=True, kw_only=True)
 class Flight:
-    """What is carried out, and how.
+    """A plan to carry out, and the conditions.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ class Flight:
 
 
 @dataclass(frozen=True)
-class Flown:
-    """What the judge says of a plan, what carrying it out took, and the processor time of planning.
+class FlightResult:
+    """The result of a flight: the verdict on its plan, the report, and the processor time of planning.
 
     `capacities` are whole, without the reserve; None where there is none, or it is ignored. `moved` counts tasks that
     went from one robot to another on the way.
@@ -93,7 +93,7 @@ class Flown:
         )
 
 
-def fly(flight: Flight) -> Flown:
+def fly(flight: Flight) -> FlightResult:
     """Carry a plan out.
 
     Raises
@@ -106,11 +106,11 @@ def fly(flight: Flight) -> Flown:
     _, verdict, planning_s = _planned(_on_paper(flight))
     free = "capacity" in flight.ignored
     capacities = tuple(None if free else robot.work_capacity for robot in mission_named(flight.mission).robots)
-    return Flown(verdict, report, capacities, changes.moved, planning_s)
+    return FlightResult(verdict, report, capacities, changes.moved, planning_s)
 
 
 def carried_out(flight: Flight, recorder: Recorder) -> Report:
-    """Carry a plan out, and have it recorded.
+    """Carry a plan out, with a record.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def _on_paper(flight: Flight) -> Flight:
 
 @lru_cache(maxsize=1000)
 def _planned(flight: Flight) -> tuple[Plan, Verdict, float]:
-    """The plan of a flight, what the judge says of it, and the processor time of planning; made once."""
+    """The plan of a flight, its verdict, and the processor time of planning; computed once."""
     mission, begin = mission_with(flight), time.process_time()
     if flight.routes is None:
         plan = solve(mission, ALLOCATOR, seed=flight.seed, iterations=flight.iterations, ignore=flight.ignored)
@@ -153,7 +153,7 @@ def _planned(flight: Flight) -> tuple[Plan, Verdict, float]:
 
 
 class _Changes(NoObserver):
-    """Hears what happens, and counts the tasks that go from one robot to another."""
+    """Counts the tasks that move from one robot to another."""
 
     def __init__(self) -> None:
         self.moved = 0

@@ -9,7 +9,7 @@ from muster.mission.errors import MissingExtraError
 from muster.perception.optional_parts import require_physics
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
-from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
+from muster_studies.thesis_6.flights import ALLOCATOR, Flight, FlightResult
 from muster_studies.thesis_6.published import excess, plans
 from muster_studies.thesis_6.totals import search_iterations
 
@@ -36,7 +36,7 @@ class BesidePhysics:
             for _, flight in self._flights(effort):
                 yield from (flight, _in_physics(flight))
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         title = "Flown in the physics world, and in the kinematic one"
         lacking = _lacking()
         if lacking is not None:
@@ -68,7 +68,7 @@ def _in_physics(flight: Flight) -> Flight:
 
 
 def _lacking() -> str | None:
-    """What is to be installed, if anything is."""
+    """The message about a missing extra, if any."""
     try:
         require_physics("the physics world", "mujoco")
     except MissingExtraError as error:
@@ -76,7 +76,7 @@ def _lacking() -> str | None:
     return None
 
 
-def _rows(kinematic: Flown, physics: Flown) -> Iterator[dict[str, Cell]]:
+def _rows(kinematic: FlightResult, physics: FlightResult) -> Iterator[dict[str, Cell]]:
     """One for each robot, and one for all."""
     for route, before, after in zip(physics.planned.routes, kinematic.usages, physics.usages, strict=True):
         if before > 0:

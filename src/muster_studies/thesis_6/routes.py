@@ -9,7 +9,7 @@ from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import errata, printed
 from muster_studies.tables import Cell, Notes, Table, row
-from muster_studies.thesis_6.flights import Flight, Flown
+from muster_studies.thesis_6.flights import Flight, FlightResult
 from muster_studies.thesis_6.published import MEASURED, PublishedPlan, excess, plans, tables
 
 USAGE_RULE = equal_rule("own, the calculated usage, is")
@@ -25,7 +25,7 @@ class RobotUsages:
         for plan in plans(self.number):
             yield plan.flight()
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         measured = [kind for kind in MEASURED if any(plan.usages(kind) for plan in plans(self.number))]
         beside = [column for kind in measured for column in (MEASURED[kind], f"{MEASURED[kind]} %")]
         columns = ("figure", "robot", "tasks", "thesis", "own", "mark", *beside, "flown", "flown %")
@@ -62,7 +62,7 @@ def _cells(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[st
     return cells
 
 
-def _carried_out(plan: PublishedPlan, flown: Flown) -> str:
+def _carried_out(plan: PublishedPlan, flown: FlightResult) -> str:
     report = flown.report
     contacts = f"{report.contacts or 'no'} contact{'' if report.contacts == 1 else 's'}"
     apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"

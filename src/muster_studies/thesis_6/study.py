@@ -1,17 +1,17 @@
-"""The study: which tables there are, and how they are made."""
+"""The study: its tables, its legend, and how its runs are made."""
 
 from __future__ import annotations
 
 from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
-from muster_studies.thesis_6.action_paths import Ways
+from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.disturbed import CapacityReserve, UsageUnderNoise
-from muster_studies.thesis_6.flights import Flight, Flown, fly
+from muster_studies.thesis_6.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6.physics import BesidePhysics
 from muster_studies.thesis_6.pictures import draw
 from muster_studies.thesis_6.routes import RobotUsages
 from muster_studies.thesis_6.totals import SystemTotals
 
-_TABLES: tuple[Reproduction[Flight, Flown], ...] = (
+_TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     RobotUsages("6.2"),
     SystemTotals("6.3", "6.2"),
     RobotUsages("6.6"),
@@ -20,7 +20,7 @@ _TABLES: tuple[Reproduction[Flight, Flown], ...] = (
     RobotUsages("6.9"),
     SystemTotals("6.10", "6.8"),
     SystemTotals("6.11", "6.9"),
-    Ways(),
+    ActionPaths(),
     BesidePhysics(),
     UsageUnderNoise(),
     CapacityReserve(),

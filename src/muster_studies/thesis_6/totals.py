@@ -10,7 +10,7 @@ from muster_studies.comparison_marks import ERRATUM, differences, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.tables import Cell, Notes, Table, row
-from muster_studies.thesis_6.flights import ALLOCATOR, Flight, Flown
+from muster_studies.thesis_6.flights import ALLOCATOR, Flight, FlightResult
 from muster_studies.thesis_6.published import MEASURED, PublishedPlan, excess, plans, tables
 
 ITERATIONS, QUICK_ITERATIONS = 3000, 300
@@ -36,7 +36,7 @@ def search_flights(effort: Effort, mission: str, ignored: tuple[str, ...] = ()) 
     return [Flight(mission=mission, iterations=count, ignored=ignored, seed=k) for k in range(effort.seed_count)]
 
 
-def best_of(flights: Sequence[Flight], found: Mapping[Flight, Flown]) -> Flown:
+def best_of(flights: Sequence[Flight], found: Mapping[Flight, FlightResult]) -> FlightResult:
     """The one with the best plan, whatever came of it."""
 
     def rank(flight: Flight) -> tuple[float, float]:
@@ -76,7 +76,7 @@ class SystemTotals:
         (plan,) = (plan for plan in plans(self.routes) if plan.with_actions)
         return plan.mission, f"{plan.scenario}-actions"
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         notes, rows = Notes(), []
         for plan in plans(self.routes):
             rows += [row(_COLUMNS, cells) for cells in self._published(plan, found, notes)]
@@ -90,7 +90,9 @@ class SystemTotals:
         lines = (*notes.lines(), remark)
         return Table(self.number, tables()[self.number]["title"], _COLUMNS, tuple(rows), lines, mark_rule=TOTALS_RULE)
 
-    def _published(self, plan: PublishedPlan, found: Mapping[Flight, Flown], notes: Notes) -> Iterator[dict[str, Cell]]:
+    def _published(
+        self, plan: PublishedPlan, found: Mapping[Flight, FlightResult], notes: Notes
+    ) -> Iterator[dict[str, Cell]]:
         flown = found[plan.flight()]
         own = {"C": flown.planned.total_cost, "F": flown.planned.value("total+max")}
         label, count = f"{plan.figure} {plan.allocator}", flown.planned.tasks_completed
@@ -128,14 +130,14 @@ def _figures(record: Mapping[str, Any]) -> dict[str, float]:
     return {"C": record["total_cost"], "F": record["total+max"]}
 
 
-def _own_plan(mission: str, flown: Flown) -> Iterator[dict[str, Cell]]:
+def _own_plan(mission: str, flown: FlightResult) -> Iterator[dict[str, Cell]]:
     label, calculation = f"{ALLOCATOR}, {mission}", [route.usage for route in flown.planned.routes]
     count = flown.planned.tasks_completed
     yield {"plan": label, "values": CALCULATED, "tasks": count, **_cells(calculation), "s": flown.planning_s}
     yield {"plan": label, "values": FLOWN, **_flown_cells(flown, calculation)}
 
 
-def _flown_cells(flown: Flown, calculation: Sequence[float]) -> dict[str, Cell]:
+def _flown_cells(flown: FlightResult, calculation: Sequence[float]) -> dict[str, Cell]:
     return {"tasks": len(flown.report.tasks_done), **_cells(flown.usages, calculation)}
 
 

@@ -1,4 +1,4 @@
-"""Table `clusters`: the thesis' failure, a tag that is seen rarely and lost by k-means, and how it is mended.
+"""Table `clusters`: k-means misses a rarely seen tag, as in the thesis; density and decoded tags find it.
 
 The thesis' k-means (4.46) put tag 1 1.142 m beside where it is: it was seen rarely, tags 24 and 28 near it often, and
 their estimates scattered so much that one centre more among them made the sum of squares less than one for tag 1.
@@ -20,7 +20,7 @@ from muster.perception.matching import ErrorTable, error_table
 from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
-from muster_studies.thesis_6_1.flights import Flight, Flown
+from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import NOISE, STRONG_NOISE, Truth, points, tags, thirty, truth
 
 RARE, KEPT = "1", 3
@@ -57,12 +57,12 @@ def k_means(raw: RawEstimates, count: int, starts: int = 10) -> tuple[PointOfInt
 
 
 def density(raw: RawEstimates, count: int) -> tuple[PointOfInterest, ...]:
-    """DBSCAN, of what is seen alone: neither number nor tags."""
+    """DBSCAN by positions alone: it needs neither number nor tags."""
     return _filtered(raw, by_density(raw.positions, RADIUS_M, LEAST))
 
 
 def decoded(raw: RawEstimates, count: int) -> tuple[PointOfInterest, ...]:
-    """By the tags that were decoded, as robots here do it."""
+    """By decoded tags, as Muster's robots do."""
     return _filtered(raw, by_tag(raw, APART_M))
 
 
@@ -78,8 +78,8 @@ METHODS: Mapping[str, Method] = {
 }
 
 
-def samples(found: Mapping[Flight, Flown]) -> Iterator[Sample]:
-    """What is clustered: as flown, and with tag 1 seen rarely."""
+def samples(found: Mapping[Flight, FlightResult]) -> Iterator[Sample]:
+    """The samples to cluster: as flown, and with tag 1 seen rarely."""
     there = truth("6.4")
     yield Sample("physics", found[CALM].raw, there)
     yield Sample("physics, noise", found[NOISY].raw, there)
@@ -109,7 +109,7 @@ def _only(raw: RawEstimates, which: np.ndarray) -> RawEstimates:
 
 
 def errors(sample: Sample, method: Method) -> tuple[tuple[PointOfInterest, ...], ErrorTable]:
-    """What a method makes of a sample, and how far off that is."""
+    """The points that a method finds in a sample, and their errors."""
     found = method(sample.raw, len(sample.truth))
     return found, error_table([point.position for point in found], sample.truth)
 
@@ -127,7 +127,7 @@ class Clusterings:
     def jobs(self, effort: Effort) -> Iterator[Flight]:
         yield from (CALM, NOISY, SCATTERED)
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         rows = [row(self.columns, cells) for sample in samples(found) for cells in self._cells(sample)]
         printed = points()["6.4"]
         rows.append(row(self.columns, {"estimates": "thesis", "method": "k-means", **_thesis(printed["mean_error"])}))

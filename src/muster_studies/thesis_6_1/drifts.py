@@ -11,7 +11,7 @@ from muster.perception.drift import Bias, Drift, air_drift, published_flight
 from muster.perception.errors import AirErrors
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
-from muster_studies.thesis_6_1.flights import Flight, Flown
+from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import seed_count
 
 STEP_S, FIX_EVERY_S = 0.1, 1.0
@@ -38,7 +38,7 @@ class Drifts:
         """None: nothing is flown among tags."""
         yield from ()
 
-    def table(self, effort: Effort, results: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, results: Mapping[Flight, FlightResult]) -> Table:
         drifts = [drift(seed) for seed in range(seed_count(effort))]
         rows = [row(self.columns, {"sensors": name} | _errors(drifts, which)) for which, name in _SENSORS.items()]
         rows.append(row(self.columns, {"sensors": "thesis, in truth", "greatest": MEASURED_M}))

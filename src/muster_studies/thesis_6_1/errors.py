@@ -10,7 +10,7 @@ from typing import Any
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table, row
-from muster_studies.thesis_6_1.flights import Flight, Flown
+from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import calm, noisy, points, seed_count, tags, truth
 
 ALL = "all"
@@ -48,7 +48,7 @@ class TagErrors:
             yield calm(self.number, world)
             yield from noisy(self.number, effort, world)
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         there, flown = tags(self.number), found[calm(self.number, "physics")]
         ours = self._ours(effort, found)
         rows = [row(self.columns, self._cells(tag, there[tag], flown, ours)) for tag in there]
@@ -63,7 +63,7 @@ class TagErrors:
         )
         return Table(self.number, self.title, self.columns, tuple(rows), notes, decimals=3)
 
-    def _ours(self, effort: Effort, found: Mapping[Flight, Flown]) -> dict[str, dict[str, float]]:
+    def _ours(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> dict[str, dict[str, float]]:
         """By column and tag, the mean error over flights; a tag that was not found in all of them is not there."""
         columns = {}
         for world in WORLDS.shipped:
@@ -76,7 +76,7 @@ class TagErrors:
         return columns
 
     def _cells(
-        self, tag: str, published: Mapping[str, Any], flown: Flown, ours: Mapping[str, Mapping[str, float]]
+        self, tag: str, published: Mapping[str, Any], flown: FlightResult, ours: Mapping[str, Mapping[str, float]]
     ) -> dict[str, Cell]:
         x, y = published["truth"]
         return {
@@ -87,8 +87,8 @@ class TagErrors:
             **{column: errors.get(tag) for column, errors in ours.items()},
         }
 
-    def _verdicts(self, effort: Effort, found: Mapping[Flight, Flown]) -> Iterator[str]:
-        """What must hold of the physics world, and whether it does."""
+    def _verdicts(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Iterator[str]:
+        """The criteria for the physics world, and whether they hold."""
         kinds = ([calm(self.number, "physics")], noisy(self.number, effort, "physics"))
         for name, flights, below in zip(("without noise", "with noise"), kinds, self.below_m, strict=True):
             tables = [found[flight].errors(truth(self.number)) for flight in flights]

@@ -1,4 +1,4 @@
-"""One plan carried out by drones that look: what they used, what they saw, what they found."""
+"""One plan carried out by drones with cameras: usages, sightings and points of interest."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Routes = tuple[tuple[str, tuple[str, ...]], ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Flight:
-    """What is carried out, and how.
+    """A plan to carry out, and the conditions.
 
     Parameters
     ----------
@@ -55,19 +55,19 @@ class Flight:
 
 
 @dataclass(frozen=True, eq=False)
-class Flown:
-    """What came of a flight.
+class FlightResult:
+    """The result of a flight.
 
     Attributes
     ----------
     planned
-        what the judge says of the plan, with the ways of its tasks.
+        the verdict on the plan, with the paths of its tasks.
     report
-        what carrying it out took.
+        the report of execution.
     ways
         (steps, robots, 2) where bodies were in the plane, metres.
     raw, points
-        what was seen, and what was found of it.
+        raw estimates, and the points of interest found.
     looks, best
         how often cameras looked, and the first look with the most tags.
     """
@@ -91,13 +91,13 @@ class Flown:
         return tuple(np.linalg.norm(np.diff(self.ways, axis=0), axis=2).sum(axis=0).tolist())
 
     def errors(self, truth: Mapping[str, tuple[float, float]]) -> ErrorTable:
-        """What was found beside what is there."""
+        """The points of interest matched with true positions."""
         return error_table([point.position for point in self.points], truth)
 
 
 @lru_cache(maxsize=64)
-def fly(flight: Flight) -> Flown:
-    """Carry a plan out; once, as pictures ask for the flights of tables again.
+def fly(flight: Flight) -> FlightResult:
+    """Carry a plan out; computed once for tables and pictures.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def fly(flight: Flight) -> Flown:
     routes = tuple(Route(robot, tasks) for robot, tasks in flight.routes)
     plan = Plan(routes=routes, ignored=flight.ignored, objective="total+max")
     planned = accepted(mission, plan, flight.mission, flight.ignored, "total+max")
-    ways, witness = _Ways(), _Witness()
+    ways, witness = _Ways(), _LookCounter()
     how: dict[str, Any] = {"world": flight.world, "noise": flight.noise, "seed": flight.seed}
     how["ignore"] = flight.ignored
     with closing(Simulation(mission, plan, recorder=ways, on_look=witness.take, **how)) as simulation:
@@ -121,7 +121,7 @@ def fly(flight: Flight) -> Flown:
         search = camera_search.search
         points = tuple(find.point for find in search.finds)
         report, places = simulation.result(), np.array(ways.places)
-        return Flown(planned, report, places, search.raw, points, witness.looks, witness.best)
+        return FlightResult(planned, report, places, search.raw, points, witness.looks, witness.best)
 
 
 def _mission(flight: Flight) -> Mission:
@@ -133,8 +133,8 @@ def _mission(flight: Flight) -> Mission:
     return replace(mission, robots=tuple(robots))
 
 
-class _Witness:
-    """Counts looks, and keeps the best."""
+class _LookCounter:
+    """Counts camera images, and keeps the one with most tags."""
 
     def __init__(self) -> None:
         self.looks = 0

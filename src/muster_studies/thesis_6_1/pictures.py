@@ -14,7 +14,7 @@ from muster.report.found import plot_found
 from muster.report.styles import FRAME
 from muster_studies.effort import Effort
 from muster_studies.thesis_6_1.clusters import SCATTERED, decoded, errors, k_means, near, seen_rarely
-from muster_studies.thesis_6_1.flights import Flight, Flown, fly
+from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6_1.published import FLIGHTS, NOISE, truth
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _map(number: str, flight: Flight, noise: str, path: Path) -> Path:
     return path
 
 
-def _draw_ways(axes: Axes, flown: Flown) -> None:
+def _draw_ways(axes: Axes, flown: FlightResult) -> None:
     """Where the drones flew, under all else."""
     for way in np.moveaxis(flown.ways, 1, 0):
         axes.plot(*way.T, color=FRAME, linewidth=0.6, zorder=1)
@@ -63,7 +63,7 @@ def _draw_ways(axes: Axes, flown: Flown) -> None:
     frame_of_map(axes, *limits(places, _MARGIN, on_ground=False))
 
 
-def _picture(flown: Flown, path: Path) -> Path:
+def _picture(flown: FlightResult, path: Path) -> Path:
     import cv2
 
     assert flown.best is not None

@@ -1,4 +1,4 @@
-"""What the thesis prints of section 6.1, as the library holds it, and the flights that repeat it."""
+"""The published tables of section 6.1, as in the library, and the flights that repeat them."""
 
 from __future__ import annotations
 

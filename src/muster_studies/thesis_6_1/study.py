@@ -1,4 +1,4 @@
-"""The study: which tables there are, and how they are made."""
+"""The study: its tables, its legend, and how its runs are made."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from muster_studies.repetition import IllustratedRepetition, Reproduction, one_b
 from muster_studies.thesis_6_1.clusters import Clusterings
 from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
-from muster_studies.thesis_6_1.flights import Flight, Flown, fly
+from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6_1.pictures import draw
 from muster_studies.thesis_6_1.published import points, seed_count
 from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
 
-_TABLES: tuple[Reproduction[Flight, Flown], ...] = (
+_TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     DroneUsages(),
     DroneTotals(),
     TagErrors(
@@ -42,7 +42,7 @@ _LEGEND = (
 
 
 def _check(effort: Effort) -> None:
-    """Ask for what cameras need before the first flight."""
+    """Check for the parts that cameras need, before the first flight."""
     require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
 
 

@@ -14,7 +14,7 @@ from muster_studies.tables import Cell, Notes, Table, row
 from muster_studies.thesis_6.published import PublishedPlan, excess, plans, tables
 from muster_studies.thesis_6.routes import USAGE_RULE
 from muster_studies.thesis_6.totals import TOTALS_RULE, total_and_greatest
-from muster_studies.thesis_6_1.flights import Flight, Flown
+from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import flown_plan, thirty
 
 
@@ -43,7 +43,7 @@ class DroneUsages:
         for plan in plans("6.2"):
             yield from _flights(effort, plan).values()
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         notes, rows, remarks = Notes(), [], []
         for plan in plans("6.2"):
             flown = {world: found[flight] for world, flight in _flights(effort, plan).items()}
@@ -80,7 +80,7 @@ def _published(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dic
     }
 
 
-def _flown_cells(flown: Mapping[str, Flown], k: int) -> dict[str, Cell]:
+def _flown_cells(flown: Mapping[str, FlightResult], k: int) -> dict[str, Cell]:
     ways = flown["kinematic"].planned.routes[k].usage
     cells: dict[str, Cell] = {"ways": ways, **{world: one.usages[k] for world, one in flown.items()}}
     if "physics" in flown:
@@ -89,7 +89,7 @@ def _flown_cells(flown: Mapping[str, Flown], k: int) -> dict[str, Cell]:
     return cells
 
 
-def _remark(plan: PublishedPlan, world: str, flown: Flown) -> str:
+def _remark(plan: PublishedPlan, world: str, flown: FlightResult) -> str:
     report = flown.report
     apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"
     return (
@@ -109,7 +109,7 @@ class DroneTotals:
     def jobs(self, effort: Effort) -> Iterator[Flight]:
         yield from DroneUsages().jobs(effort)
 
-    def table(self, effort: Effort, found: Mapping[Flight, Flown]) -> Table:
+    def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         notes, rows = Notes(), []
         for plan in plans("6.2"):
             flown = {world: found[flight] for world, flight in _flights(effort, plan).items()}
@@ -119,7 +119,7 @@ class DroneTotals:
         title, lines = tables()["6.3"]["title"], (*notes.lines(), remark)
         return Table(self.number, title, self.columns, tuple(rows), lines, mark_rule=TOTALS_RULE)
 
-    def _rows(self, plan: PublishedPlan, flown: Mapping[str, Flown], notes: Notes) -> Iterator[dict[str, Cell]]:
+    def _rows(self, plan: PublishedPlan, flown: Mapping[str, FlightResult], notes: Notes) -> Iterator[dict[str, Cell]]:
         own = _calculated(plan)
         base = total_and_greatest(own)
         for record in (record for record in tables()["6.3"]["rows"] if record["allocator"] == plan.allocator):

@@ -25,7 +25,7 @@ def http(url):
 @pytest.fixture(scope="module")
 def yard(http):
     """The id of a mission there."""
-    return http.post("/missions", json={"text": MISSION}).json()["mission"]
+    return http.post("/missions", json={"text": MISSION}).json()["id"]
 
 
 @pytest.fixture(scope="module")

@@ -27,14 +27,14 @@ def test_missions_are_listed_made_changed_and_deleted(http):
     assert "text" not in listed[0]
     assert http.get(f"{where}/versions", params={"limit": 1}).json() == listed[:1]
     assert http.get(f"{where}/versions", params={"before": 2}).json() == listed[1:]
-    assert made.json()["mission"] in [entry["id"] for entry in http.get("/missions").json()]
+    assert made.json()["id"] in [entry["id"] for entry in http.get("/missions").json()]
     assert http.delete(where).status_code == 204
-    assert made.json()["mission"] not in [entry["id"] for entry in http.get("/missions").json()]
+    assert made.json()["id"] not in [entry["id"] for entry in http.get("/missions").json()]
 
 
 def test_who_saves_onto_a_changed_mission_is_told(http):
     made = http.post("/missions", json={"text": MISSION, "name": "contended"}).json()
-    where = f"/missions/{made['mission']}"
+    where = f"/missions/{made['id']}"
     first = http.put(where, json={"text": MISSION + "# a\n"}, headers={"if-match": '"1"'})
     second = http.put(where, json={"text": MISSION + "# b\n"}, headers={"if-match": '"1"'})
     assert (first.status_code, second.status_code) == (200, 409)
@@ -44,7 +44,7 @@ def test_who_saves_onto_a_changed_mission_is_told(http):
 
 def test_files_of_a_mission(http):
     made = http.post("/missions", json={"text": MISSION, "name": "filed", "files": {"a.csv": b64encode(b"1").decode()}})
-    where = f"/missions/{made.json()['mission']}"
+    where = f"/missions/{made.json()['id']}"
     assert made.json()["files"] == {"a.csv": 1}
     put = http.put(f"{where}/files/b.bin", content=b"\x00\xff", headers={"if-match": '"1"'})
     assert put.json()["files"] == {"a.csv": 1, "b.bin": 2}
@@ -84,7 +84,7 @@ def test_a_plan_is_made_judged_explained_and_drawn(http, yard, plan):
 
 
 def test_a_plan_is_written_for_other_tools(http):
-    mission = http.post("/missions", json={"text": ON_EARTH}).json()["mission"]
+    mission = http.post("/missions", json={"text": ON_EARTH}).json()["id"]
     number = plan_of(http, mission)
     one = http.get(f"/plans/{number}/export", params={"to": "gpx"})
     assert b"<gpx" in one.content

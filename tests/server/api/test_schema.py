@@ -41,7 +41,7 @@ def busy(tmp_path_factory):
 
     with served(tmp_path_factory.mktemp("schema"), job_s=0.5, runs=3) as url:
         with httpx.Client(base_url=f"{url}/api/v1", timeout=60) as http:
-            mission = http.post("/missions", json={"text": MISSION}).json()["mission"]
+            mission = http.post("/missions", json={"text": MISSION}).json()["id"]
             assert plan_of(http, mission) == 1
             assert http.post("/runs", json={"plan": 1, "speed": None}).json()["id"] == 1
             assert http.post("/missions/31T-6R50/plans", json={"iterations": 1}).status_code == 202

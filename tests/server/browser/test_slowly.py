@@ -169,7 +169,7 @@ def test_live_and_records_open_while_workers_are_busy(watched, client, hold):
 def test_a_page_with_unsaved_work_waits_longer_for_its_browser(watched, chromium, client, monkeypatch):
     monkeypatch.setattr(core.app.config, "reconnect_timeout", 0.1)
     text = client.missions.get(MISSION).text
-    name = client.missions.create(text, name="kept").mission
+    name = client.missions.create(text, name="kept").id
 
     def opened():
         before = set(PageClient.instances)

@@ -3,7 +3,7 @@
 import asyncio
 import json
 
-from muster.server.runs import run_session as carrying
+from muster.server.runs import run_session as session
 
 
 def entry(seq, kind, time_s=0.0, **data):
@@ -15,10 +15,10 @@ REPORT = {"tasks_done": [], "tasks_lost": [], "mission_time_s": 0.0}
 
 
 def play(monkeypatch, script):
-    """From now on runners say what `script(child, begin)` yields; returns the list in which all that start are."""
+    """From now on runners say what `script(runner, begin)` yields; returns the list in which all that start are."""
     started = []
 
-    class Child:
+    class RunnerProcess:
         pid, killed, last_words = 0, False, "played"
 
         def __init__(self):
@@ -29,13 +29,13 @@ def play(monkeypatch, script):
         async def start(cls, name, memory_mb):
             return cls()
 
-        def say(self, message):
+        def send(self, message):
             self.told.put_nowait(message)
 
-        def say_line(self, line):
-            self.say(json.loads(line))
+        def send_line(self, line):
+            self.send(json.loads(line))
 
-        async def heard(self):
+        async def messages(self):
             async for message in script(self, await self.told.get()):
                 yield json.dumps(message, separators=(",", ":"))
 
@@ -47,5 +47,5 @@ def play(monkeypatch, script):
 
         kill = dismiss
 
-    monkeypatch.setattr(carrying, "Child", Child)
+    monkeypatch.setattr(session, "RunnerProcess", RunnerProcess)
     return started

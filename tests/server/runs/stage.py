@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from muster.mission.clock import VirtualClock
-from muster.server.runs.log_recorder import Scribe
-from muster.server.runs.run_loop import Performance
-from muster.server.runs.simulated_run import SimulatedCourse
+from muster.server.runs.log_recorder import LogRecorder
+from muster.server.runs.run_loop import RunLoop
+from muster.server.runs.simulated_run import SimulatedRun
 from muster.server.runs.tracks import unpacked
 
 
@@ -27,24 +27,24 @@ class Kept:
     def stretch(self, from_s, until_s, data):
         self.tracks.append((from_s, until_s, unpacked(data)))
 
-    def say(self, message):
+    def send(self, message):
         self.others.append(message)
 
-    say_if_room = say
+    send_if_room = send
 
 
 class Script:
     """An inbox: (moment, verb, data) of the mission's clock, each said once it has come, or while nothing goes on."""
 
-    def __init__(self, course, asked):
-        self._course = course
+    def __init__(self, world_run, asked):
+        self._world_run = world_run
         self._asked = [
             (at_s, {"id": k, "verb": verb, "data": data, "who": "ada"})
             for k, (at_s, verb, data) in enumerate(asked, start=1)
         ]
 
     def take(self, wait_s=0.0):
-        if self._asked and (wait_s is None or self._course.time_s >= self._asked[0][0]):
+        if self._asked and (wait_s is None or self._world_run.time_s >= self._asked[0][0]):
             return self._asked.pop(0)[1]
         assert wait_s is not None, "it waits for ever"
         return None
@@ -64,12 +64,12 @@ def performed(
 ):
     """Carry a plan out to its end; returns what was told, behind the log that there was."""
     kept = Kept()
-    scribe = Scribe(mission, kept, log=log, tracked_s=tracked_s)
-    with closing(SimulatedCourse(mission, plan, world, settings or {}, scribe)) as course:
-        script = Script(course, asked)
-        performance = Performance(course, scribe, script, kept, speed=None, ended=ended, clock=VirtualClock(step_s=1.0))
-        performance.catch_up(log, max([until_s or 0.0, *(entry["time_s"] for entry in log)]) if log else 0.0)
-        performance.perform()
+    recorder = LogRecorder(mission, kept, log=log, tracked_s=tracked_s)
+    with closing(SimulatedRun(mission, plan, world, settings or {}, recorder)) as world_run:
+        script = Script(world_run, asked)
+        run_loop = RunLoop(world_run, recorder, script, kept, speed=None, ended=ended, clock=VirtualClock(step_s=1.0))
+        run_loop.catch_up(log, max([until_s or 0.0, *(entry["time_s"] for entry in log)]) if log else 0.0)
+        run_loop.run()
     return kept
 
 

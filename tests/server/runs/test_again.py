@@ -8,8 +8,8 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 
 import muster
 from muster.execution import Status
-from muster.server.runs.log_recorder import DivergedError, Scribe
-from muster.server.runs.run_loop import Performance
+from muster.server.runs.log_recorder import DivergedError, LogRecorder
+from muster.server.runs.run_loop import RunLoop
 
 MOMENTS = st.floats(0, 60).map(lambda value: round(value, 2))
 
@@ -103,7 +103,7 @@ def test_a_log_that_does_not_come_about_again_is_refused():
 
 
 class Drives:
-    """A course of real robots that never come to an end by themselves."""
+    """A run of real robots that never come to an end by themselves."""
 
     real, done, time_s, next_s = True, False, 5.0, 5.0
     status = Status(robots={}, tasks={})
@@ -127,9 +127,9 @@ def test_a_cancel_before_a_crash_holds_for_real_robots_also_where_the_log_has_no
         {"seq": 1, "time_s": 3.0, "kind": "command", "data": {"action": 1, "verb": "pause", "outcome": "done"}},
         {"seq": 2, "time_s": 4.0, "kind": "command", "data": {"action": 2, "verb": "cancel", "outcome": "done"}},
     ]
-    kept, course = Kept(), Drives()
-    scribe = Scribe(mission, kept, log=log, again=False)
-    performance = Performance(course, scribe, None, kept, speed=1.0, ended=lambda: False)
-    performance.recall(log)
-    performance.perform()
-    assert course.told == ["not done when the run was cancelled"]
+    kept, world_run = Kept(), Drives()
+    recorder = LogRecorder(mission, kept, log=log, again=False)
+    run_loop = RunLoop(world_run, recorder, None, kept, speed=1.0, ended=lambda: False)
+    run_loop.recall(log)
+    run_loop.run()
+    assert world_run.told == ["not done when the run was cancelled"]

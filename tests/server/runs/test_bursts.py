@@ -8,9 +8,9 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 import muster
 from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
-from muster.server.runs.log_recorder import Scribe
-from muster.server.runs.run_loop import STEPS_FIRST_S, Performance
-from muster.server.runs.simulated_run import QUANTUM_S, SimulatedCourse
+from muster.server.runs.log_recorder import LogRecorder
+from muster.server.runs.run_loop import STEPS_FIRST_S, RunLoop
+from muster.server.runs.simulated_run import QUANTUM_S, SimulatedRun
 
 ROBOTS = tuple(Robot(id=f"r_{k}", position=(k % 5, k // 5), speed_mps=2.0) for k in range(20))
 MISSION = Mission(robots=ROBOTS, tasks=tuple(Task(id=f"t_{k}", position=(3 * k, 40)) for k in range(20)))
@@ -67,11 +67,11 @@ class Stream:
 
 def test_while_orders_come_without_end_the_clock_goes_on():
     kept, clock = Kept(), VirtualClock(step_s=STEPS_FIRST_S / 10)
-    with closing(SimulatedCourse(MISSION, PLAN, "kinematic", {}, Scribe(MISSION, kept))) as course:
-        scribe = Scribe(MISSION, kept)
-        Performance(
-            course, scribe, Stream(30), kept, speed=None, ended=lambda: course.time_s > 20, clock=clock
-        ).perform()
+    with closing(SimulatedRun(MISSION, PLAN, "kinematic", {}, LogRecorder(MISSION, kept))) as world_run:
+        recorder = LogRecorder(MISSION, kept)
+        RunLoop(
+            world_run, recorder, Stream(30), kept, speed=None, ended=lambda: world_run.time_s > 20, clock=clock
+        ).run()
     times = [entry["time_s"] for entry in kinds(kept.log, "command")]
     assert len(times) == 30
     assert all(later - earlier >= QUANTUM_S for earlier, later in pairwise(times))

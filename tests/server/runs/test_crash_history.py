@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.server.runs.crash_history import DEATHS, KILLS, Deaths
+from muster.server.runs.crash_history import MOST_CRASHES, MOST_KILLS, CrashHistory
 
 
 class Clock:
@@ -13,30 +13,30 @@ class Clock:
         return self.now
 
 
-@pytest.mark.parametrize(("killed", "most"), [(False, DEATHS), (True, KILLS)])
+@pytest.mark.parametrize(("killed", "most"), [(False, MOST_CRASHES), (True, MOST_KILLS)])
 def test_without_getting_further(killed, most):
-    deaths = Deaths(real=False)
-    assert [deaths.too_often((5.0, 7), killed=killed) for _ in range(most)] == [False] * (most - 1) + [True]
+    crashes = CrashHistory(real=False)
+    assert [crashes.too_often((5.0, 7), killed=killed) for _ in range(most)] == [False] * (most - 1) + [True]
 
 
 @pytest.mark.parametrize("further", [(0.1, 0), (0.0, 1)])
 def test_a_simulated_world_gets_further_by_its_clock_or_its_log(further):
-    deaths, reached = Deaths(real=False), (0.0, 0)
-    for _ in range(10 * DEATHS):
+    crashes, reached = CrashHistory(real=False), (0.0, 0)
+    for _ in range(10 * MOST_CRASHES):
         reached = (reached[0] + further[0], reached[1] + further[1])
-        assert not deaths.too_often(reached, killed=False)
-        assert not deaths.too_often(reached, killed=False)
-        assert deaths.count == 2
+        assert not crashes.too_often(reached, killed=False)
+        assert not crashes.too_often(reached, killed=False)
+        assert crashes.count == 2
 
 
 def test_of_real_robots_it_counts_how_long_each_has_lived():
     clock = Clock()
-    deaths = Deaths(real=True, clock=clock)
+    crashes = CrashHistory(real=True, clock=clock)
 
     def dies_after(seconds, at):
-        deaths.born()
+        crashes.started()
         clock.now += seconds
-        return deaths.too_often((at, int(at)), killed=False)
+        return crashes.too_often((at, int(at)), killed=False)
 
     assert [dies_after(90.0, 90.0 * k) for k in range(1, 10)] == [False] * 9
-    assert [dies_after(2.0, 900.0 + k) for k in range(DEATHS - 1)] == [False, True]
+    assert [dies_after(2.0, 900.0 + k) for k in range(MOST_CRASHES - 1)] == [False, True]

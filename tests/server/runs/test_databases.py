@@ -22,7 +22,7 @@ __all__ = ["database_url", "postgresql", "postgresql_url"]
 async def watched(runs, run, holds=lambda said: False):
     """All that watchers are told, until something holds."""
     said = []
-    async for text in runs.feed(run).watch(0):
+    async for text in runs.subscribers(run).watch(0):
         said.append(json.loads(text))
         if holds(said[-1]):
             break
@@ -34,7 +34,7 @@ def going_at(time_s):
 
 
 async def gone(runs, run):
-    while runs.feed(run) is not None:
+    while runs.subscribers(run) is not None:
         await asyncio.sleep(0.01)
 
 

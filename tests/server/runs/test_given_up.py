@@ -27,9 +27,9 @@ def test_a_run_that_another_server_goes_on_with(tmp_path):
         before = store.log.entries(run)
         theirs = Entry(run=run, seq=before[-1].seq + 1, time_s=before[-1].time_s, kind="resumed", data={})
         store.log.append(run, theirs.time_s, [theirs])
-        feed = runs.feed(run)
+        subscribers = runs.subscribers(run)
         await runs.act(ADA, run, "resume")
-        texts = [text async for text in feed.watch(theirs.seq)]
+        texts = [text async for text in subscribers.watch(theirs.seq)]
         await runs.close()
         assert any("given up here: run 1: entry" in text for text in texts)
         assert [entry.kind for entry in store.log.entries(run, before[-1].seq)] == ["resumed"]

@@ -1,4 +1,4 @@
-"""What a journal keeps while the database is slow or refuses, and what it says of what it cannot keep."""
+"""What a log writer keeps while the database is slow or refuses, and what it says of what it cannot keep."""
 
 import asyncio
 import logging
@@ -10,7 +10,7 @@ from tests.server.runs.store import planned
 import muster
 from muster.exchange.mission_control import StoreError
 from muster.server.runs import log_writer as module
-from muster.server.runs.log_writer import Journal
+from muster.server.runs.log_writer import LogWriter
 
 PIECE = b"x" * 100
 
@@ -27,19 +27,19 @@ def run(store, monkeypatch):
 
 
 def journalled(store, run, story):
-    """Run a story with a journal, to the end of both; returns whether all was written."""
+    """Run a story with a log writer, to the end of both; returns whether all was written."""
 
     async def whole():
-        journal = Journal(store, run, on_entries=len, on_trouble=len, on_lost=pytest.fail)
-        await story(journal)
-        return await journal.close()
+        log_writer = LogWriter(store, run, on_entries=len, on_trouble=len, on_lost=pytest.fail)
+        await story(log_writer)
+        return await log_writer.close()
 
     return asyncio.run(asyncio.wait_for(whole(), 60))
 
 
-def add(journal, numbers):
+def add(log_writer, numbers):
     for k in numbers:
-        journal.add_stretch(k - 1.0, float(k), PIECE)
+        log_writer.add_stretch(k - 1.0, float(k), PIECE)
 
 
 async def until(condition):
@@ -61,12 +61,12 @@ def test_a_slow_database_loses_no_tracks_but_those_that_do_not_fit(store, run, m
 
     monkeypatch.setattr(store.log, "append", slow)
 
-    async def story(journal):
-        add(journal, [1, 2])
-        await until(lambda: writing.is_set() and journal.trouble)
-        add(journal, [3, 4, 5, 6, 7])  # two too many
+    async def story(log_writer):
+        add(log_writer, [1, 2])
+        await until(lambda: writing.is_set() and log_writer.trouble)
+        add(log_writer, [3, 4, 5, 6, 7])  # two too many
         goes_on.set()
-        await journal.drained()
+        await log_writer.drained()
 
     with caplog.at_level(logging.WARNING, "muster.runs"):
         assert journalled(store, run, story)
@@ -91,11 +91,11 @@ def test_tracks_that_the_database_refused_are_written_in_order(store, run, monke
 
     monkeypatch.setattr(store.log, "append", refusing)
 
-    async def story(journal):
-        add(journal, [1])
+    async def story(log_writer):
+        add(log_writer, [1])
         await until(lambda: len(refusals) < 2)
-        add(journal, [2, 3])
-        await journal.drained()
+        add(log_writer, [2, 3])
+        await log_writer.drained()
 
     assert journalled(store, run, story)
     assert kept(store, run) == [(1, 1.0), (2, 2.0), (3, 3.0)]

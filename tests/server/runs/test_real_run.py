@@ -61,7 +61,7 @@ def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
         runs = Runs(store, settings_of(store, bridges=("mavlink",)))
         run = await runs.start(ADA, plan, "mavlink", endpoints=sky, arm=True)
         at_work = False
-        async for text in runs.feed(run.id).watch(0):
+        async for text in runs.subscribers(run.id).watch(0):
             said = json.loads(text)
             what = (said.get("kind"), said.get("data", {}).get("task"))
             if what == ("ends", "t_0"):
@@ -71,7 +71,7 @@ def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
             if what == ("starts", "once") and not at_work:
                 at_work = True
                 os.kill(runs.pid(run.id), signal.SIGKILL)
-        while runs.feed(run.id) is not None:
+        while runs.subscribers(run.id) is not None:
             await asyncio.sleep(0.02)
         await runs.close()
         return store.runs.get(run.id), store.log.entries(run.id)

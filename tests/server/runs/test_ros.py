@@ -37,7 +37,7 @@ async def through(store, world, there, **settings):
     runs = Runs(store, settings_of(store, bridges=(world,)))
     run = (await runs.start(ADA, planned(store, there), world, **settings)).id
     paused_at, stood, killed, ended = None, [], False, 0
-    async for text in runs.feed(run).watch(0):
+    async for text in runs.subscribers(run).watch(0):
         said = json.loads(text)
         ended += said.get("kind") == "ends"
         if said["type"] == "run" and said["state"] == "paused" and paused_at is None:
@@ -54,7 +54,7 @@ async def through(store, world, there, **settings):
         if said.get("kind") == "starts" and ended >= 2 and not killed:
             killed = True
             os.kill(runs.pid(run), signal.SIGKILL)
-    while runs.feed(run) is not None:
+    while runs.subscribers(run) is not None:
         await asyncio.sleep(0.02)
     await runs.close()
     return store.runs.get(run), store.log.entries(run), stood

@@ -44,19 +44,19 @@ def carried(store, story):
 
 
 async def gone(runs, run):
-    while runs.feed(run) is not None:
+    while runs.subscribers(run) is not None:
         await asyncio.sleep(0.01)
 
 
-async def stays(child, begin):
+async def stays(runner, begin):
     yield {"type": "mission", "mission": {}}
     if not begin["log"]:
         yield PLAN
     yield {"type": "going"}
-    await child.gone.wait()
+    await runner.gone.wait()
 
 
-async def ends(child, begin):
+async def ends(runner, begin):
     yield {"type": "mission", "mission": {}}
     yield PLAN
     yield entry(2, "report", **REPORT)
@@ -108,7 +108,7 @@ def test_who_asked_before_a_crash_is_obeyed_before_who_asks_after_it(store, run,
 def test_a_run_that_is_resumed_begins_where_watchers_have_seen_it(store, run, monkeypatch):
     begins = []
 
-    async def seen(child, begin):
+    async def seen(runner, begin):
         begins.append(begin)
         yield {"type": "mission", "mission": {}}
         if not begin["log"]:
@@ -140,7 +140,7 @@ def test_who_asks_while_it_ends_is_told_so(store, run, monkeypatch, patience_s):
         await asyncio.to_thread(adding.wait)
         while not started:
             await asyncio.sleep(0.01)
-        runs._live[run]._reported = True
+        runs._sessions[run]._reported = True
         started[0].gone.set()
         await gone(runs, run)
         if patience_s > 1.0:
@@ -154,7 +154,7 @@ def test_who_asks_while_it_ends_is_told_so(store, run, monkeypatch, patience_s):
 
 
 def test_a_runner_that_dies_each_time_it_has_gone_on_fails_the_run(store, run, monkeypatch):
-    async def dies(child, begin):
+    async def dies(runner, begin):
         yield {"type": "mission", "mission": {}}
         yield entry(len(begin["log"]) + 1, "resumed", how="") if begin["log"] else PLAN
 
@@ -180,7 +180,7 @@ def test_a_server_that_closes_while_a_run_begins_does_not_wait_for_it(store, run
         await asyncio.wait_for(closing, 5)
 
     carried(store, story)
-    assert all(child.gone.is_set() for child in started)
+    assert all(runner.gone.is_set() for runner in started)
     assert store.runs.get(run).state == "starting"
 
 
@@ -214,9 +214,9 @@ def test_a_database_that_cannot_be_read_for_a_while_does_not_end_a_run(store, ru
 
 
 def test_an_error_of_ours_ends_the_runner_too(store, run, monkeypatch):
-    async def says_nonsense(child, begin):
+    async def says_nonsense(runner, begin):
         yield {"type": "entry"}
-        await child.gone.wait()
+        await runner.gone.wait()
 
     started = play(monkeypatch, says_nonsense)
     carried(store, lambda runs: gone(runs, run))
@@ -262,10 +262,10 @@ def test_actions_that_the_database_refused_have_numbers_of_their_own_after_a_cra
 
 
 def test_actions_that_the_database_refused_are_written_once_and_as_of_when_they_were_asked_for(store, run, monkeypatch):
-    async def obeys(child, begin):
+    async def obeys(runner, begin):
         yield {"type": "mission", "mission": {}}
         yield PLAN
-        asked = await child.told.get()
+        asked = await runner.told.get()
         yield command(2, asked["id"], asked["verb"])
         yield entry(3, "report", **REPORT)
 

@@ -39,7 +39,7 @@ async def opened(store, **settings):
 
 async def watched(runs, run, until=lambda message: False, after=0):
     messages = []
-    async for text in runs.feed(run).watch(after):
+    async for text in runs.subscribers(run).watch(after):
         messages.append(json.loads(text))
         if until(messages[-1]):
             break
@@ -47,7 +47,7 @@ async def watched(runs, run, until=lambda message: False, after=0):
 
 
 async def gone(runs, run):
-    while runs.feed(run) is not None:
+    while runs.subscribers(run) is not None:
         await asyncio.sleep(0.01)
 
 
@@ -225,13 +225,13 @@ def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
             await gone(runs, run)
             return run, (took, told), (paused, again)
 
-    run, took, unkept = asyncio.run(story())
+    run, took, unsaved_action = asyncio.run(story())
     assert 0.5 < took[0] < took[1] < 8  # of the database's own patience of 10 s
-    assert all(action.id < 0 for action in unkept)
+    assert all(action.id < 0 for action in unsaved_action)
     asked = [(action.verb, action.outcome) for action in store.actions.list(run=run)]
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
     at = {action.verb: action.at for action in store.actions.list(run=run)}
-    assert (at["run.pause"], at["run.resume"]) == tuple(action.at for action in unkept)
+    assert (at["run.pause"], at["run.resume"]) == tuple(action.at for action in unsaved_action)
     commands = [entry.data["verb"] for entry in store.log.entries(run) if entry.kind == "command"]
     assert commands == ["pause", "resume", "speed"]
 

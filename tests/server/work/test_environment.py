@@ -4,7 +4,7 @@ import asyncio
 import tempfile
 from pathlib import Path
 
-from muster.server.runs.runner_process import Child
+from muster.server.runs.runner_process import RunnerProcess
 from muster.server.work.environment import without_secrets
 from muster.server.work.temporary_folders import OF_RUNS, sweep
 
@@ -35,16 +35,16 @@ def test_runners_leave_no_folder_and_know_no_secret(tmp_path, monkeypatch):
     monkeypatch.setenv("MUSTER_TOKEN", "muster_secret")
 
     async def story(end):
-        child = await Child.start("run 1", 2048)
+        child = await RunnerProcess.start("run 1", 2048)
         while not list(tmp_path.iterdir()):
             await asyncio.sleep(0.02)
         assert b"muster_secret" not in Path(f"/proc/{child.pid}/environ").read_bytes()
         end(child)
-        assert [text async for text in child.heard()] == []
+        assert [text async for text in child.messages()] == []
 
-    asyncio.run(story(Child.dismiss))
+    asyncio.run(story(RunnerProcess.dismiss))
     assert not list(tmp_path.iterdir())
-    asyncio.run(story(Child.kill))
+    asyncio.run(story(RunnerProcess.kill))
     (tmp_path / f"{OF_RUNS}1-mine").mkdir()  # of a process that lives
     assert len(list(tmp_path.iterdir())) == 2
     sweep(OF_RUNS)

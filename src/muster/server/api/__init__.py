@@ -1,14 +1,14 @@
-"""Mission control over HTTP and WebSocket: a file a resource, described by OpenAPI.
+"""Mission control over HTTP and WebSocket, one module per resource, described by OpenAPI.
 
 | part | what it does |
 |---|---|
-| `api` | puts it together: what is mounted under /api/v1 |
+| `api` | the application that is mounted under /api/v1 |
 | `dependencies` | what every route needs: the services, the user, known parameters |
-| `bodies` | reads bodies within limits; JSON that a database and other programs can take |
-| `parameter_types` | kinds of parameters: ids, names, texts, numbers |
-| `problems` | every failure as problem JSON |
+| `bodies` | reads bodies within limits; accepts only JSON that databases can store |
+| `parameter_types` | types of parameters: ids, names, texts, numbers |
+| `problems` | errors as problem JSON |
 | `responses` | answers that are not plain JSON: files; and the description of answers |
-| `description` | OpenAPI, and a page that lists it |
+| `description` | OpenAPI, and a page that lists all routes |
 | `missions`, `plans`, `jobs`, `runs`, `records`, `actions`, `about` | the resources |
 """
 

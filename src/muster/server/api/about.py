@@ -1,4 +1,4 @@
-"""What this server is, who asks, and how it can plan."""
+"""The server, its user, and its allocators."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class About:
     Parameters
     ----------
     worlds
-        in which runs may be started here.
+        in which this server may start runs.
     upload_bytes
         the largest body of a request.
     """
@@ -55,7 +55,7 @@ async def about(services: TheServices) -> About:
 
 @router.get("/me", summary="See who asks")
 async def me(who: TheUser) -> Me:
-    """The role `watch` may read everything and change nothing."""
+    """The role `watch` may read, the role `command` may also change."""
     return Me(name=who.name, role=who.role, address=who.address)
 
 

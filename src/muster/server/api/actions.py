@@ -1,4 +1,4 @@
-"""Actions: who commanded what, and what came of it."""
+"""The audit log of users' actions."""
 
 from __future__ import annotations
 
@@ -16,5 +16,5 @@ router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute
 async def actions(
     services: TheServices, run: RunQuery = None, limit: Limit = 200, before: Before = None
 ) -> list[Action]:
-    """Newest first; ask again with `before` the last `id` for more."""
+    """Newest first; `before` the last `id` gives the next ones."""
     return list(await services.actions.list(run=run, limit=limit, before=before))

@@ -1,4 +1,4 @@
-"""The API put together: what is mounted under /api/v1."""
+"""The application that is mounted under /api/v1."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ PREFIX = "/api/v1"
 
 
 def api(services_of: Callable[[], Services], user_of: Callable[[HTTPConnection], User] = usual_who_of) -> FastAPI:
-    """An application to be mounted at PREFIX.
+    """The application to mount at PREFIX.
 
     Parameters
     ----------
     services_of
-        gives the services; called at each request, so that the app can be made before they are there.
+        gives the services at each request: the application is made before they are opened.
     user_of
-        says who asks; raises where nobody may.
+        gives the user of a request; raises if there is none.
     """
     app = FastAPI(
         openapi_url=None,

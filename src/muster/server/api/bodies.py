@@ -1,7 +1,7 @@
-"""Bodies of requests, read within limits: their length, how deep JSON goes, how many values it has, what texts hold.
+"""Reads bodies of requests within limits of length, depth and number of values.
 
-PostgreSQL takes no NUL, UTF-8 no lone surrogate, and JSON has neither NaN nor infinity; such a body is refused here,
-once, so that nothing behind has to think of it.
+PostgreSQL cannot store NUL, UTF-8 has no lone surrogates, and JSON has neither NaN nor infinity. Bodies with any of
+these are refused here, so that no other part has to check for them.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from fastapi import HTTPException, Request, Response
 from fastapi.routing import APIRoute
 
 MOST_VALUES = 500_000
-"""In one body of JSON: what takes at most some 50 MB once it is read."""
+"""Of one JSON body, which takes at most about 50 MB in memory."""
 DEEPEST = 60
 _TEXT = re.compile(rb'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)', re.DOTALL)
-"""A text, or what is left of one that does not end: what begins as one is one, so that no byte is read twice."""
+"""A JSON string, or the rest of the body after an opening quote, so that no byte is read twice."""
 _TOO_LARGE, _BAD = 413, 400
 
 
 class BoundedRequest(Request):
-    """A request whose body is refused if it is longer than the server's `upload_bytes`, or JSON that none can keep."""
+    """A request whose body is refused if it exceeds the server's limits or cannot be stored."""
 
     async def stream(self) -> AsyncGenerator[bytes, None]:
-        """The body in pieces; everything that reads it comes through here."""
+        """The body in pieces; all other ways of reading it use this one."""
         most: int = self.app.state.services_of().settings.upload_bytes
         length = self.headers.get("content-length", "")
         if length.isdecimal() and (len(length) > 18 or int(length) > most):
@@ -45,10 +45,10 @@ class BoundedRequest(Request):
 
 
 class BoundedRoute(APIRoute):
-    """A route that gets BoundedRequests."""
+    """A route whose requests are BoundedRequests."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """What answers a request."""
+        """The handler of a request."""
         handle = super().get_route_handler()
 
         async def bounded(request: Request) -> Response:
@@ -67,8 +67,7 @@ def strict_json(body: bytes) -> Any:
     Raises
     ------
     HTTPException
-        400 or 413, if it is none, too deep, has too many values, numbers that are not finite, or texts with NUL or
-        half characters.
+        400 or 413, if it is no JSON, is too deep, has too many values, or numbers or texts that cannot be stored.
     """
     if _values(body) > MOST_VALUES and _values(_TEXT.sub(b"", body)) > MOST_VALUES:
         raise HTTPException(_TOO_LARGE, f"the body has too many values; expected at most {MOST_VALUES}")

@@ -1,4 +1,4 @@
-"""What every route needs: the services, who asks, and that nothing unknown is asked."""
+"""Dependencies of routes: the services, the user, checks for unknown parameters, and keys of requests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The API described: OpenAPI 3.1 as JSON, and a page that lists it, which needs nothing from elsewhere."""
+"""The description of the API: OpenAPI 3.1 as JSON, and a self-contained page that lists all routes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ td:first-child {{ white-space: nowrap }}
 
 
 def describe(app: FastAPI) -> None:
-    """Let the app describe itself in our words."""
+    """Set the description of the application."""
 
     def openapi() -> dict[str, Any]:
         if not app.openapi_schema:

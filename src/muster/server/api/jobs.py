@@ -1,4 +1,4 @@
-"""Jobs: long work that was asked for; followed, stopped, and cancelled."""
+"""Jobs: planning requests, followed, stopped and cancelled."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ async def jobs(
 
 @router.get("/{job}", summary="See how far a job is")
 async def job(services: TheServices, job: JobId) -> Job:
-    """Its `progress`; when it is done its `result`, when it failed its `error`."""
+    """Its state and `progress`; when it is over its `result` or its `error`."""
     return await services.jobs.get(job)
 
 
@@ -43,16 +43,16 @@ async def cancel(services: TheServices, who: TheUser, job: JobId) -> Job:
 
 @router.post("/{job}/stop", status_code=202, summary="Stop a job with what it has", responses=errors(409))
 async def stop(services: TheServices, who: TheUser, job: JobId) -> Job:
-    """Its search ends with the best plan so far, or with the first, and it is soon `done`.
+    """A running job ends with the best plan so far, or the first one; a queued job is cancelled.
 
-    One that waits for its turn is `cancelled`. Asked once more, it leaves out the reasons for tasks left out.
+    A second request also leaves out the reasons for unassigned tasks.
     """
     return await services.jobs.stop(who, job)
 
 
 @router.websocket("/{job}/stream")
 async def stream(socket: WebSocket, services: TheServices, job: JobId) -> None:
-    """Each change of a job as `{"type": "job", ...}`, beginning with how it is, until it is over."""
+    """Send the job as `{"type": "job", ...}` now and after each change, until it is over."""
     await tell(socket, _changes(services.jobs, job))
 
 

@@ -1,4 +1,4 @@
-"""Missions: listed, read, made, changed, checked; every change is a new version."""
+"""Missions: listed, read, created, changed and checked; every change is a new version."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _BasedOn = Annotated[int | None, Query(ge=0, le=LARGEST, description="Instead of
 class MissionText:
     """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
 
-    mission: str
+    id: str
     version: int
     text: str
     author: str
@@ -60,10 +60,10 @@ class MissionText:
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """What is wrong with a mission, which tasks can never be done, how much is in it (null where it is none).
+    """What is wrong with a mission, which tasks can never be done, and its size (null if it cannot be read).
 
-    `conflict` are tasks that can be done, but not all of them by one plan; `unknown` is true where that was not looked
-    into, or not found out. `floor` is the picture of the mission's map, one of its files, and how it lies.
+    `conflict` are tasks that no single plan can do together; `unknown` is true if that was not checked or not decided.
+    `floor` is the image of the mission's map, one of its files, with its resolution and origin.
     """
 
     errors: list[dict[str, Any]]
@@ -76,7 +76,7 @@ class Checked:
 
 
 class NewMission(Body):
-    """A mission to be kept."""
+    """A new mission."""
 
     text: Text = Field(examples=[_EXAMPLE])
     files: Files = Field(default={}, examples=[{}])
@@ -84,7 +84,7 @@ class NewMission(Body):
 
 
 class ChangedMission(Body):
-    """A mission's next version."""
+    """A new version of a mission."""
 
     text: Text = Field(examples=[_EXAMPLE])
     files: Files | None = Field(default=None, description="All files that it names; null: as they are.")
@@ -93,7 +93,7 @@ class ChangedMission(Body):
 
 
 class MissionToCheck(Body):
-    """A mission to be checked, kept nowhere."""
+    """A mission to check; it is not stored."""
 
     text: str = Field(examples=[_EXAMPLE])
     files: Files = Field(default={}, examples=[{}])
@@ -105,20 +105,20 @@ class MissionToCheck(Body):
 
 @router.get("", summary="List missions")
 async def missions(services: TheServices) -> list[MissionEntry]:
-    """All of them: those that were made here, and those that ship with Muster."""
+    """The missions made on this server, and the shipped ones."""
     return list(await services.missions.list())
 
 
 @router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
 async def create(services: TheServices, who: TheUser, response: Response, body: NewMission) -> MissionText:
-    """The mission is checked first: one with errors is not kept. Its id is made of its name."""
+    """A mission with errors is refused. The id is made from the name."""
     made = await services.missions.create(who, body.text, body.files, body.name)
     return _made(response, made)
 
 
 @router.post("/check", summary="Check a mission")
 async def check(services: TheServices, body: MissionToCheck) -> Checked:
-    """What is wrong with it, with lines; and the tasks that nobody can ever do. Nothing is kept."""
+    """What is wrong with it, with line numbers, and the tasks that no robot can do. Nothing is stored."""
     found = await services.missions.check(body.text, body.files, ignore=body.ignore, time_limit=body.time_limit)
     return Checked(**found)
 
@@ -136,7 +136,7 @@ async def upload(
     response: Response,
     file: Annotated[UploadFile, File(description="YAML, CSV, TSPLIB, or .plan.")],
 ) -> MissionText:
-    """A file of any kind that Muster reads: it is turned into a mission file."""
+    """A file of any format that Muster reads; it is converted to a mission file."""
     made = await services.missions.upload(who, _base_name(file.filename), await file.read())
     return _made(response, made)
 
@@ -149,7 +149,7 @@ async def upload(
 async def mission(
     services: TheServices, mission: MissionId, response: Response, version: OptionalVersion = None
 ) -> MissionText:
-    """Its text, and what files it names."""
+    """Its text, and the names and sizes of its files."""
     found = await services.missions.get(mission, version)
     response.headers["ETag"] = _etag(found)
     return _text(found)
@@ -168,10 +168,9 @@ async def save(
     body: ChangedMission,
     if_match: _IfMatch = None,
 ) -> MissionText:
-    """Keep a new version.
+    """Save a new version.
 
-    Which version it is based on has to be said, by If-Match or `base_version`: where another has saved since, the
-    answer is 409 and nothing is lost.
+    If-Match or `base_version` must name the version that it is based on; if there is a newer one the answer is 409.
     """
     base = _base(if_match, body.base_version)
     saved = await services.missions.save(who, mission, body.text, base, body.files, body.note)
@@ -181,7 +180,7 @@ async def save(
 
 @router.delete("/{mission}", status_code=204, summary="Delete a mission", responses=errors(409))
 async def delete(services: TheServices, who: TheUser, mission: MissionId) -> None:
-    """It is not listed any more; its plans and runs stay."""
+    """Hide it from the list; its plans and runs stay."""
     await services.missions.delete(who, mission)
 
 
@@ -189,13 +188,13 @@ async def delete(services: TheServices, who: TheUser, mission: MissionId) -> Non
 async def versions(
     services: TheServices, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
 ) -> list[VersionEntry]:
-    """Newest first; ask again with `before` the last `version` for more."""
+    """Newest first; `before` the last `version` gives the next ones."""
     return list(await services.missions.versions(mission, limit, before))
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")
 async def version(services: TheServices, mission: MissionId, number: VersionNumber) -> MissionText:
-    """As it was then."""
+    """The text of that version."""
     return _text(await services.missions.get(mission, number))
 
 
@@ -206,7 +205,7 @@ async def version(services: TheServices, mission: MissionId, number: VersionNumb
     responses=file_described("application/octet-stream", what="The file."),
 )
 async def file(services: TheServices, mission: MissionId, name: FileName, version: OptionalVersion = None) -> Response:
-    """A floor plan, a table: what the mission names."""
+    """A file that the mission names, such as a floor plan or a table."""
     found = await services.missions.get(mission, version)
     if name not in found.files:
         raise NotFoundError(f"no file {name} in mission {mission}; expected one of {', '.join(found.files) or 'none'}")
@@ -234,7 +233,7 @@ async def put_file(
     if_match: _IfMatch = None,
     base_version: _BasedOn = None,
 ) -> MissionText:
-    """The body is the file. This makes a new version of the mission."""
+    """The body is the file. This saves a new version of the mission."""
     base, data = _base(if_match, base_version), await request.body()
     found = await services.missions.get(mission, base)
     saved = await services.missions.save(who, mission, found.text, base, {**found.files, name: data}, f"file {name}")
@@ -257,9 +256,10 @@ def _made(response: Response, made: MissionVersion) -> MissionText:
 
 
 def _text(version: MissionVersion) -> MissionText:
-    """Without the files' bytes."""
+    """The answer for a version, without the contents of its files."""
     given = asdict(replace(version, files={}))
-    return MissionText(**given | {"files": {name: len(data) for name, data in version.files.items()}})
+    sizes = {name: len(data) for name, data in version.files.items()}
+    return MissionText(id=given.pop("mission"), **given | {"files": sizes})
 
 
 def _etag(version: MissionVersion) -> str:

@@ -1,4 +1,4 @@
-"""Kinds of parameters: what is too long, too large or of a wrong form is refused before any service sees it."""
+"""Types of parameters: values that are too long, too large or of a wrong form are refused before the services."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FILE_NAME = f"^{uploads.FILE_NAME}$"
 
 
 class Body(BaseModel):
-    """A body of JSON: nothing that is not named, nothing turned into another kind."""
+    """A JSON body: unknown fields are refused, and no value is converted to another type."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, ser_json_inf_nan="null")
 

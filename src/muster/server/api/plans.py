@@ -1,4 +1,4 @@
-"""Plans: asked for, uploaded, judged, explained, exported, drawn."""
+"""Plans: requested, uploaded, judged, explained, exported and drawn."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _PICTURES = {"png": "image/png", "svg": "image/svg+xml"}
 
 
 class PlanToMake(Body):
-    """How a mission is to be planned; what is left out is as `muster solve` has it."""
+    """A planning request; the defaults are those of `muster solve`."""
 
     allocator: Name | None = Field(default=None, description=HELP["allocator"], examples=["search"])
     parameters: dict[Name, bool | int | float | Name] = Field(
@@ -77,7 +77,7 @@ async def ask(
     body: PlanToMake,
     idempotency_key: IdempotencyKey = None,
 ) -> Job:
-    """Long work: the answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
+    """The answer is a job. Follow it by GET /jobs/{id} or its stream; its `result` names the plan."""
     given = body.model_dump(exclude={"version"}, exclude_none=True, exclude_defaults=True)
     request = key_of(who, idempotency_key, f"/missions/{mission}/plans", body)
     job = await services.jobs.ask_plan(who, mission, body.version, request=request, **given)
@@ -98,7 +98,7 @@ async def upload(
     response: Response,
     plan: Annotated[dict[str, Any], Field(examples=[_PLAN])],
 ) -> PlanEntry:
-    """The body is a plan file (`muster-plan/1`), also one of another program."""
+    """The body is a plan file (`muster-plan/1`) of any program."""
     entry = await services.plans.upload(who, mission, plan)
     response.headers["Location"] = f"/api/v1/plans/{entry.id}"
     return entry
@@ -108,7 +108,7 @@ async def upload(
 async def plans(
     services: TheServices, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
 ) -> list[PlanEntry]:
-    """Newest first, without their routes, histories and books; ask again with `before` the last `id` for more."""
+    """Newest first, without routes and histories; `before` the last `id` gives the next ones."""
     return list(await services.plans.list(mission, limit, before))
 
 
@@ -133,7 +133,7 @@ async def verdict(
 async def explain(
     services: TheServices, plan: PlanId, task: TaskQuery = None, ignore: IgnoredQuery = None
 ) -> dict[str, Any]:
-    """Why tasks are left out; of one task, why this robot does it and not another."""
+    """Why tasks are unassigned, or why one task is done by its robot."""
     return dict(await services.plans.explain(plan, task, ignore))
 
 
@@ -182,5 +182,5 @@ async def picture(
 
 @router.get("/plans/{plan}/compare/{other}", summary="Compare two plans")
 async def compare(services: TheServices, plan: PlanId, other: PlanId) -> dict[str, Any]:
-    """What differs: figures, and who does which task."""
+    """Their figures, and which robot does which task."""
     return dict(await services.plans.compare(plan, other))

@@ -1,4 +1,4 @@
-"""Every failure as problem JSON."""
+"""Errors as problem JSON (RFC 9457)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _STATUS: tuple[tuple[type[MusterError], int], ...] = (
     (StoreError, 503),
     (MissingExtraError, 501),
 )
-"""Everything else that Muster says on purpose is about what was sent: 400."""
+"""All other exceptions of Muster are about the input: 400."""
 _SAID: Mapping[str, str] = {
     "missing": "this field",
     "extra_forbidden": "no such field",
@@ -39,7 +39,7 @@ log = logging.getLogger("muster.api")
 
 
 class ProblemFinding(BaseModel):
-    """One thing that is wrong, and where."""
+    """One error and its place."""
 
     file: str
     line: int | None = Field(description="From 1; null where there are no lines.")
@@ -49,7 +49,7 @@ class ProblemFinding(BaseModel):
 
 
 class Problem(BaseModel):
-    """Why it was not done (RFC 9457)."""
+    """Why a request failed (RFC 9457)."""
 
     type: str = Field(description="By which programs tell problems apart.", examples=["urn:muster:problem:conflict"])
     title: str = Field(description="The type in words.")
@@ -61,24 +61,24 @@ class Problem(BaseModel):
 def problem(
     status: int, error: str, findings: Sequence[Finding] = (), headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
-    """The answer that says it."""
+    """The response for an error."""
     return JSONResponse(problem_content(status, error, findings), status, dict(headers or {}), media_type=MEDIA_TYPE)
 
 
 def status_of(error: MusterError) -> int:
-    """Of HTTP."""
+    """The status of HTTP for an error."""
     return next((status for kind, status in _STATUS if isinstance(error, kind)), 400)
 
 
 def problem_of(error: MusterError) -> JSONResponse:
-    """The answer to what Muster raised."""
+    """The response for an exception of Muster."""
     status = status_of(error)
     headers = {"Retry-After": str(RETRY_S)} if status in (429, 503) else {}
     return problem(status, str(error), getattr(error, "findings", ()), headers)
 
 
 def add_handlers(app: FastAPI) -> None:
-    """Let every failure of an app answer in this way."""
+    """Answer all errors of an application with problem JSON."""
     app.add_exception_handler(MusterError, _muster)
     app.add_exception_handler(HTTPException, _http)
     app.add_exception_handler(RequestValidationError, _invalid)
@@ -102,7 +102,7 @@ async def _http(request: Request, error: Exception) -> Response:
 
 
 def _methods(request: Request) -> list[str]:
-    """What the path of a request may be asked with: several routes may be of one path."""
+    """The methods of a path, which several routes may share."""
     here = request.scope["path"].removeprefix(request.scope.get("root_path", ""))
     paths = request.app.openapi()["paths"]
     matching = [here] if here in paths else [path for path in paths if compile_path(path)[0].match(here)]
@@ -116,7 +116,7 @@ async def _invalid(_: Request, error: Exception) -> Response:
 
 
 def _finding(error: Mapping[str, Any]) -> Finding:
-    """What pydantic found, as Muster says it."""
+    """An error of pydantic as a finding."""
     where, *field = error["loc"]
     message = str(error["msg"]).removeprefix("Input should be ")
     expected = _SAID.get(error["type"], message[:1].lower() + message[1:])

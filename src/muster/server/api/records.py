@@ -1,4 +1,4 @@
-"""Records: runs that are over, to be looked at, taken away, compared with what was planned."""
+"""Records: runs that are over, replayed, exported and compared with their plans."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ async def page(services: TheServices, run: RunId) -> Response:
     | errors(409),
 )
 async def mcap(services: TheServices, run: RunId) -> Response:
-    """What happened, as docs/records.md describes it."""
+    """The record in the format of docs/records.md."""
     return file_response(await services.records.mcap(run), f"run-{run}.mcap", "application/octet-stream")
 
 
 @router.get("/{run}/flown", summary="Compare what was planned and flown", responses=errors(409))
 async def flown(services: TheServices, run: RunId) -> dict[str, Any]:
-    """Of the whole, of each robot, of each task."""
+    """In all, per robot and per task."""
     return dict(await services.records.flown(run))
 
 

@@ -1,4 +1,4 @@
-"""What answers beside plain words: files to be kept, what was made, what was accepted; and which errors there are."""
+"""Responses that are files, and the description of responses in OpenAPI."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _WHY = {
     503: "The database cannot be used, or the server is about to stop.",
 }
 ALWAYS = (400, 401, 403, 404, 413, 422, 429, 501, 503)
-"""Which errors any route may answer."""
+"""Statuses of errors of every route."""
 
 
 def errors(*statuses: int) -> Responses:
-    """The description of errors, as problem JSON."""
+    """The description of errors."""
     schema = {"$ref": "#/components/schemas/Problem"}
     return {status: {"description": _WHY[status], "content": {MEDIA_TYPE: {"schema": schema}}} for status in statuses}
 
 
 def file_described(*kinds: str, what: str) -> Responses:
-    """The description of an answer that is a file of one of these media types."""
+    """The description of a response that is a file of one of these media types."""
     schema = {"type": "string", "contentMediaType": "application/octet-stream"}
     header = {"description": "How the file is called.", "schema": {"type": "string"}}
     content = {kind: {"schema": schema} for kind in kinds}
@@ -46,7 +46,7 @@ def file_described(*kinds: str, what: str) -> Responses:
 
 
 def with_location(status: int, what: str, *, etag: bool = False) -> Responses:
-    """The description of an answer about something new: `Location` says where it is."""
+    """The description of a response with the header `Location`."""
     headers = {"Location": {"description": "Where it is.", "schema": {"type": "string"}}}
     if etag:
         headers["ETag"] = {"description": "Its version, for If-Match.", "schema": {"type": "string"}}
@@ -54,7 +54,7 @@ def with_location(status: int, what: str, *, etag: bool = False) -> Responses:
 
 
 def file_response(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:
-    """A file as it is: a browser keeps it, or shows it without letting it reach anything of this site."""
+    """A file: browsers save it, or show it in a sandbox."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "._- ") else "_" for c in name) or "file"
     how = "inline" if shown_in_place else "attachment"
     headers = {
@@ -67,6 +67,6 @@ def file_response(data: bytes, name: str, kind: str, *, shown_in_place: bool = F
 
 
 async def archive_response(files: Mapping[str, str], name: str) -> Response:
-    """Files by their names, in base64, as one answer: as it is if it is one, otherwise packed into a ZIP."""
+    """Files (base64, by name) as one response: the file itself, or a ZIP of several."""
     data, called = await archive_of(files, name)
     return file_response(data, called, "application/octet-stream" if len(files) == 1 else "application/zip")

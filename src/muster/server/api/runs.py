@@ -1,4 +1,4 @@
-"""Runs: plans that are carried out; started, watched, and acted upon."""
+"""Runs: plans that are carried out, started, watched and controlled."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Speed = Annotated[float, Field(gt=0, le=1e6)]
 
 
 class NewRun(Body):
-    """A plan to be carried out."""
+    """A plan to carry out."""
 
     plan: int = Field(ge=1, le=LARGEST, description="Its id.", examples=[1])
     world: Name = Field(default="kinematic", description="GET /about says which there are.")
@@ -36,7 +36,7 @@ class NewRun(Body):
 
 
 class ActionToTake(Body):
-    """What is to be done to a run."""
+    """A command to a run."""
 
     verb: Literal["pause", "resume", "speed", "cancel", "event"]
     data: dict[Name, Any] = Field(
@@ -51,7 +51,7 @@ class ActionToTake(Body):
 async def start(
     services: TheServices, who: TheUser, response: Response, body: NewRun, idempotency_key: IdempotencyKey = None
 ) -> Run:
-    """A process of its own carries the plan out, and goes on after a crash of the server."""
+    """A separate process carries out the plan, and continues after a crash of the server."""
     if taken := sorted(body.settings.keys() & _NO_SETTINGS):
         raise ParameterError(f"settings: {taken[0]}; expected it beside settings, if at all")
     request = key_of(who, idempotency_key, "/runs", body)
@@ -70,28 +70,28 @@ async def runs(services: TheServices, limit: Limit = 200) -> list[Run]:
 
 @router.get("/{run}", summary="See how a run is")
 async def run(services: TheServices, run: RunId) -> Run:
-    """Its state, and its report when it is over."""
+    """Its state, and when it is over its report."""
     return await services.runs.get(run)
 
 
 @router.post("/{run}/actions", status_code=202, summary="Act upon a run", responses=errors(409))
 async def act(services: TheServices, who: TheUser, run: RunId, body: ActionToTake) -> Action:
-    """Pause, go on, change the speed, cancel; or let an event happen: a new task, a robot that fails or is recalled.
+    """Pause, resume, change the speed, cancel, or report an event: a new task, a robot that fails or is recalled.
 
-    Its `outcome` is told by the stream, and by GET /actions.
+    The stream and GET /actions tell its `outcome`.
     """
     return await services.runs.act(who, run, body.verb, body.data)
 
 
 @router.get("/{run}/events", summary="Read the log of a run")
 async def events(services: TheServices, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
-    """In order; ask again with `after` the last `seq` for more."""
+    """In order; `after` the last `seq` gives the next ones."""
     return list(await services.runs.entries(run, after, limit))
 
 
 @router.get("/{run}/report", summary="Read the report of a run", responses=errors(409))
 async def report(services: TheServices, run: RunId) -> dict[str, Any]:
-    """What it took: as `muster simulate --format json` prints it; 409 as long as it goes on."""
+    """As `muster simulate --format json` prints it; 409 until the run is over."""
     found = await services.runs.get(run)
     if found.report is None:
         why = "has no report" if found.state in OVER else f"is {found.state}"
@@ -103,13 +103,13 @@ async def report(services: TheServices, run: RunId) -> dict[str, Any]:
 async def stream(
     socket: WebSocket, services: TheServices, run: RunId, after: Annotated[int, Query(ge=0, le=LARGEST)] = 0
 ) -> None:
-    """What happens, as it happens: docs/mission-control-api.md describes the messages."""
-    feed = services.runs.feed(run)
-    await tell(socket, _past(services.runs, run, after) if feed is None else feed.watch(after))
+    """Send what happens; docs/mission-control-api.md describes the messages."""
+    subscribers = services.runs.subscribers(run)
+    await tell(socket, _past(services.runs, run, after) if subscribers is None else subscribers.watch(after))
 
 
 async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
-    """What a run that goes on no more has to tell: its log, and how it ended."""
+    """The messages of a run that is over: its log, and how it ended."""
     found = await runs.get(run)
     yield message("hello", {"run": found, "mission": None, "seq": after})
     for entry in await runs.entries(run, after):

@@ -1,4 +1,4 @@
-"""WebSockets that only tell: refused with a problem before they open, ended when whoever listens is gone."""
+"""WebSockets that only send: refused with a problem before they open, and closed when the client disconnects."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ _LONGEST_REASON = 120  # bytes; a close frame takes 123
 
 
 async def tell(socket: WebSocket, texts: AsyncIterator[str]) -> None:
-    """Send texts until there are no more, or nobody listens. What comes from outside is read and forgotten.
+    """Send texts until there are no more, or the client disconnects. Messages of the client are ignored.
 
-    What is raised before the first text is the answer to the request, as a problem; what Muster raises later is the
-    reason with which the socket closes.
+    An exception before the first text becomes the response to the request; a later one of Muster the close reason.
     """
     first = await anext(texts, None)
     await socket.accept()
@@ -44,7 +43,7 @@ async def tell(socket: WebSocket, texts: AsyncIterator[str]) -> None:
 
 
 def message(kind: str, content: Any) -> str:
-    """A text of a stream: what the words of the API are as JSON, with a `type`."""
+    """A message of a stream: data of the API as JSON, with a `type`."""
     return json.dumps({"type": kind, **to_jsonable_python(content)}, ensure_ascii=False, separators=(",", ":"))
 
 

@@ -1,21 +1,21 @@
-"""How often a run's runners have died, and when that is too often."""
+"""Counts crashes of a run's runners, and decides when to give up."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 
-DEATHS, KILLS = 3, 30
-"""How often in a row runners may die without getting further: by themselves, and by SIGKILL."""
+MOST_CRASHES, MOST_KILLS = 3, 30
+"""How many runners may end in a row without progress: by themselves, and by SIGKILL."""
 _LONG_S = 60.0
-"""Seconds of the wall clock after which a runner of real robots has got further."""
+"""Seconds of the wall clock after which a runner of real robots counts as progress."""
 
 
-class Deaths:
-    """Of one run, in a row: a runner that gets further begins a new one.
+class CrashHistory:
+    """The crashes of one run without progress between them.
 
-    A simulated world gets further by its own clock and log. The clock of real robots goes on whatever a runner does,
-    and each of them plans again: there it counts how long it has lived.
+    The progress of a simulated world is its clock and log. The clock of real robots always advances, so there the time
+    that a runner has lived counts.
     """
 
     def __init__(self, *, real: bool, clock: Callable[[], float] = time.monotonic) -> None:
@@ -24,14 +24,14 @@ class Deaths:
         self._furthest = (-1.0, -1)
         self._born_s = clock()
 
-    def born(self) -> None:
-        """A runner begins."""
+    def started(self) -> None:
+        """Note that a runner starts."""
         self._born_s = self._clock()
 
     def too_often(self, reached: tuple[float, int], *, killed: bool) -> bool:
-        """Note that it has died at a time of the mission and an entry of the log; whether no other is to follow it."""
+        """Note that a runner has ended at a mission time and a log entry; returns whether to give up."""
         lived_s = self._clock() - self._born_s
         further = lived_s >= _LONG_S if self._real else reached > self._furthest
         self._furthest = max(self._furthest, reached)
         self.count = 1 if further else self.count + 1
-        return self.count >= (KILLS if killed else DEATHS)
+        return self.count >= (MOST_KILLS if killed else MOST_CRASHES)

@@ -1,7 +1,7 @@
-"""What a log says of a run of real robots that a crash has ended: what was done, and what is left to do.
+"""Recovers a run of real robots from its log after a crash: what was done, and what is left.
 
-A task that must be begun at most once (`across_partition`) and was begun, and whose end is not in the log, is not begun
-again: nobody knows how far it came.
+A task that may be started at most once (`across_partition`), and was started but did not end in the log, is not started
+again.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ _OUT = ("robot_fails", "robot_stuck")
 
 
 @dataclass(frozen=True)
-class Aftermath:
-    """The mission with tasks added and moved, the plan that was in force, and what was done."""
+class Recovered:
+    """The mission with its changes, the plan in force, and what was done."""
 
     mission: Mission
     plan: Plan
     past: CompletedWork
 
 
-def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Aftermath:
-    """What a log says: entries with `time_s`, `kind`, `data`."""
+def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) -> Recovered:
+    """Recover the state from a log: entries with `time_s`, `kind`, `data`."""
     mission_state = MissionState(mission)
     arrives: dict[str, float] = {}
     starts: dict[str, float] = {}
@@ -79,11 +79,11 @@ def aftermath(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]]) ->
         replace(task, only_robots=names) if task.id in barred else task for task in mission_state.tasks.values()
     )
     current = plan if routes is None else _of_those(routes, names)
-    return _with_locks_of_barred(Aftermath(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
+    return _with_locks_of_barred(Recovered(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
 
 
-def _with_locks_of_barred(found: Aftermath) -> Aftermath:
-    """Where locks are ignored, those of barred tasks are not: other tasks lose theirs, and the rule holds."""
+def _with_locks_of_barred(found: Recovered) -> Recovered:
+    """Keep the locks of barred tasks if locks are ignored: all other tasks lose theirs, and the rule holds."""
     if "lock" not in found.plan.ignored:
         return found
     tasks = tuple(
@@ -94,6 +94,6 @@ def _with_locks_of_barred(found: Aftermath) -> Aftermath:
 
 
 def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:
-    """The plan without routes of robots that joined: they are found again, or not."""
+    """The plan without routes of robots that joined during the run: they join again if they are there."""
     routes = [route for route in plan["routes"] if route["robot"] in robots]
     return plan_from({**plan, "routes": routes}, "the log")

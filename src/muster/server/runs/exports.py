@@ -1,4 +1,4 @@
-"""What was flown, as files of other tools: tracks and events as CSV; tracks as GeoJSON, GPX, KML; the log as JSON.
+"""Exports of a record: tracks and events as CSV; tracks as GeoJSON, GPX, KML; the log as JSON.
 
 GeoJSON is RFC 7946, GPX 1.1 topografix.com/GPX/1/1, KML 2.2 OGC 07-147r2. Tracks that cross the meridian of 180
 degrees are cut there. Formats on the earth need the mission's `origin_wgs84`.

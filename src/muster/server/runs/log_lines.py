@@ -1,4 +1,4 @@
-"""Entries of a run's log, each in a line for people: who did what, and what followed."""
+"""Entries of a run's log as lines for people."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The scribe of a run: all that is told while a mission is carried out, as entries of its log and as tracks.
+"""The recorder of a run: writes events as log entries, and positions as tracks.
 
-A run that is simulated again after a crash tells the same again: what the log has already is compared with it and not
-said twice.
+A run that is simulated again after a crash produces the same events again. They are compared with the log and not
+written twice.
 """
 
 from __future__ import annotations
@@ -28,33 +28,33 @@ RESUMED = "resumed"
 
 
 class DivergedError(MusterError):
-    """What was simulated again is not what the log says."""
+    """The repeated simulation differs from the log."""
 
 
 class Out(Protocol):
-    """Takes what is to be told."""
+    """Receives entries and stretches of tracks."""
 
     def entry(self, text: Mapping[str, Any]) -> None: ...
     def stretch(self, from_s: float, until_s: float, data: bytes) -> None: ...
 
 
-class Scribe:
+class LogRecorder:
     """Writes a run's log; a `Recorder`.
 
     Parameters
     ----------
     mission
-        that is carried out.
+        the mission of the run.
     out
-        is given what is new.
+        receives new entries and stretches.
     log
-        what the log has already, in order: `seq`, `time_s`, `kind`, `data`.
+        the entries that the log has already: `seq`, `time_s`, `kind`, `data`.
     tracked_s
-        up to when tracks are kept already.
+        the time up to which tracks are written already.
     stretch_s
-        seconds of mission time a stretch.
+        seconds of mission time per stretch.
     again
-        whether what the log has will be told again, to be compared; otherwise it goes on behind it.
+        whether the entries of the log are produced again and compared; otherwise new entries follow them.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Scribe:
 
     @property
     def catching_up(self) -> bool:
-        """Whether the log still has what was not told again."""
+        """Whether the log still has entries that were not produced again."""
         self._skip_resumed()
         return bool(self._said)
 
@@ -104,10 +104,10 @@ class Scribe:
         self.write(now, kind, data)
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
-        """See `Recorder`: where robots are is in the steps."""
+        """See `Recorder`; positions come with the steps."""
 
     def on_plan(self, now: float, plan: Plan) -> None:
-        """See `Recorder`; the routes go with it as lines, from where robots are."""
+        """See `Recorder`; the entry also has the routes as lines from the robots' positions."""
         places = {name: tuple(row[:3]) for name, row in self.rows.items()}
         lines = self._routes.of(plan, self._mission_state, places)
         self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines})
@@ -118,18 +118,18 @@ class Scribe:
         self.write(self._now, "report", report)
 
     def hold(self) -> None:
-        """Keep back what is told from now on, until `write_first`."""
+        """Hold entries back until `write_first`."""
         self._held = []
 
     def write_first(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Write an entry, and then what was kept back."""
+        """Write an entry, then those held back."""
         held, self._held = self._held or [], None
         self.write(now, kind, data)
         for write in held:
             write()
 
     def write(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """The next entry of the log.
+        """Write the next entry of the log.
 
         Raises
         ------
@@ -151,7 +151,7 @@ class Scribe:
             self._out.entry({"type": "entry", **entry, "line": line_of(kind, plain)})
 
     def _skip_resumed(self) -> None:
-        """That it was resumed before is not told again."""
+        """Skip entries of earlier resumes, which are not produced again."""
         while self._said and self._said[0]["kind"] == RESUMED:
             self._said.popleft()
             self._seq += 1

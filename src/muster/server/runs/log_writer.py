@@ -1,7 +1,7 @@
-"""Writes a run to the database, in small batches and off the event loop; while that refuses, keeps it in memory.
+"""Writes a run to the database in small batches and in threads; keeps it in memory while the database fails.
 
-What a run says comes in order, and is written in order: entries and tracks in one transaction, then the outcomes of
-users' actions, then the run's own fields. Entries are given on to watchers when they are kept, or cannot be.
+Everything is written in order: entries and tracks in one transaction, then outcomes of actions, then fields of the run.
+Subscribers receive entries when they are written, or when the database fails.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ _BEHIND = 5000
 _log = logging.getLogger("muster.runs")
 
 
-class Journal:
+class LogWriter:
     """Of one run.
 
     Parameters
     ----------
     on_entries
-        is given entries, each once and in order, when they are kept, or the database refuses them.
+        receives each entry once and in order, when it is written or the database fails.
     on_trouble
-        is told why the database refuses, and the empty text when it works again.
+        receives why the database fails, and an empty text when it works again.
     on_lost
-        is told that somebody else has written this log: nothing more is.
+        called if another process has written this log; nothing more is written then.
     """
 
     def __init__(
@@ -72,55 +72,55 @@ class Journal:
         self._task = asyncio.create_task(self._go())
 
     def add(self, entry: Entry) -> None:
-        """Keep an entry."""
+        """Add an entry."""
         self._entries.append(entry)
         if self.trouble:
             self._give([entry])
         self._ask()
 
     def add_stretch(self, from_s: float, until_s: float, data: bytes) -> None:
-        """Keep a stretch of tracks; those that cannot be kept for long are lost, the oldest first."""
+        """Add a stretch of tracks; if too many wait the oldest are lost."""
         self._stretches.append(Stretch(run=self._run, seq=0, from_s=from_s, until_s=until_s, data=data))
         while self.trouble and sum(len(one.data) for one in self._stretches) > TRACKS_MOST:
             self._drop_stretch()
         self._ask()
 
     def set(self, **fields: Any) -> None:
-        """Keep fields of the run."""
+        """Set fields of the run."""
         self._fields |= fields
         self._ask()
 
     def later(self, write: Callable[[], object]) -> None:
-        """Something else to be written behind what was said until now: the outcome of an action."""
+        """Write something after all that was added so far, such as the outcome of an action."""
         self._late.append(write)
         self._ask()
 
     @property
     def behind(self) -> bool:
-        """Whether a database that works does not keep up: who says more should wait."""
+        """Whether the database is too slow: the caller should wait before it adds more."""
         return len(self._entries) > _BEHIND and not self.trouble
 
     @property
     def full(self) -> bool:
-        """Whether more entries wait than are kept in memory."""
+        """Whether more entries wait than may be kept in memory."""
         return len(self._entries) > ENTRIES_MOST
 
     async def drained(self) -> None:
-        """Wait until all is in the database, or nothing more is written."""
+        """Wait until all is written, or nothing more will be."""
         await self._drained.wait()
 
     async def given(self) -> None:
-        """Wait until all that was said is in the database, or it has refused it."""
+        """Wait until all that was added is written, or the database has failed."""
         while not self._drained.is_set() and not self.trouble:
             await asyncio.sleep(BATCH_S / 4)
 
     async def entries(self, after: int, limit: int | None = None) -> list[Entry]:
-        """Those beyond `after`: from the database, and behind them those that it has not.
+        """Entries after `after`: from the database, then those not written yet.
 
         Raises
         ------
         StoreError
-            if they can only be in the database, and it cannot be read.
+            if they are in the database only, and it cannot be read.
         """
         waiting = [entry for entry in self._entries if entry.seq > after and entry.seq <= self._given]
         if not waiting or waiting[0].seq > after + 1:
@@ -129,7 +129,7 @@ class Journal:
         return waiting[:limit]
 
     async def close(self) -> bool:
-        """Try once more; returns whether all was written."""
+        """Try to write the rest once more; returns whether all was written."""
         self._closing = True
         self._ask()
         return await self._task
@@ -139,7 +139,7 @@ class Journal:
         self._wake.set()
 
     async def _go(self) -> bool:
-        """Write until it is closed; returns whether all was written."""
+        """Write until `close`; returns whether all was written."""
         while True:
             await self._wake.wait()
             self._wake.clear()
@@ -157,7 +157,7 @@ class Journal:
                 await asyncio.sleep(max(0.0, pause))
 
     async def _write(self) -> bool:
-        """One batch; returns whether the database took it."""
+        """Write one batch; returns whether it was written."""
         if self._lost:
             self._forget()
             return True
@@ -174,12 +174,12 @@ class Journal:
             if fields and whole:
                 await self._patiently(partial(self._store.runs.set, self._run, **fields))
                 self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
-        except ConflictError as error:  # which no other try would mend
+        except ConflictError as error:  # another try would fail too
             self._lost = True
             self._forget()
             self._on_lost(str(error))
             return True
-        except Exception as error:  # whatever it is: what cannot be written is kept, and tried again
+        except Exception as error:  # keep what cannot be written, and try again
             known = isinstance(error, MusterError)
             trouble = str(error) if known else f"an error of mission control: {type(error).__name__}: {error}"
             if trouble != self.trouble and not known:
@@ -191,7 +191,7 @@ class Journal:
         return not trouble
 
     async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
-        """Write the first entries and stretches; none of these is dropped meanwhile, nor another in its place."""
+        """Write the first entries and stretches, which are not dropped meanwhile."""
         del self._stretches[: len(stretches)]
         try:
             await self._patiently(self._append, entries, stretches)
@@ -201,7 +201,7 @@ class Journal:
         del self._entries[: len(entries)]
 
     async def _patiently(self, write: Callable[..., object], *arguments: Any) -> None:
-        """Write in a thread; where that takes its time, what waits is given on meanwhile."""
+        """Write in a thread; if it is slow, subscribers receive the waiting entries meanwhile."""
         writing = asyncio.create_task(asyncio.to_thread(write, *arguments))
         done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
         if not done:
@@ -210,7 +210,7 @@ class Journal:
         await writing
 
     def _be_troubled(self, why: str) -> None:
-        """Why the database refuses; empty: it works."""
+        """Report why the database fails; empty if it works."""
         if why != self.trouble:
             self.trouble = why
             _log.warning("run %d: %s", self._run, why or f"the database works again; {self._kept()}")
@@ -218,7 +218,7 @@ class Journal:
             self._on_trouble(why)
 
     def _drop_stretch(self) -> None:
-        """Lose the oldest tracks."""
+        """Drop the oldest stretch of tracks."""
         if not self._dropped:
             _log.warning("run %d: more than %d bytes of tracks wait; the oldest are lost", self._run, TRACKS_MOST)
         del self._stretches[0]
@@ -228,12 +228,12 @@ class Journal:
         return f"all is kept but {self._dropped} stretches of tracks" if self._dropped else "all is kept"
 
     def _forget(self) -> None:
-        """What is not written will not be."""
+        """Drop all that is not written."""
         for waiting in (self._entries, self._stretches, self._late, self._fields):
             waiting.clear()
 
     def _append(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
-        """In a thread. Stretches are numbered as they are written, as some may have been lost."""
+        """Append in a thread. Stretches are numbered when they are written, as some may have been dropped."""
         if self._last_stretch is None:
             self._last_stretch = self._store.log.last_stretch(self._run)
         numbered = [replace(one, seq=self._last_stretch + k) for k, one in enumerate(stretches, start=1)]

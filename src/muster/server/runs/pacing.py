@@ -1,4 +1,4 @@
-"""When a mission's clock goes on: as fast as the wall clock times a speed, or as fast as it can."""
+"""The pace of a mission's clock: the wall clock times a speed, or as fast as possible."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Pace:
     Parameters
     ----------
     speed
-        how many times as fast as the wall clock; None: as fast as it goes.
+        times the wall clock; None: as fast as possible.
     now_s
         the mission's clock.
     """
@@ -24,12 +24,12 @@ class Pace:
         self.set(speed, now_s)
 
     def set(self, speed: float | None, now_s: float) -> None:
-        """From now on go at another speed, or on after a pause."""
+        """Set the speed, or continue after a pause."""
         self.speed = speed
         self._begun, self._begun_s = self._clock.now(), now_s
 
     def wait_s(self, until_s: float) -> float:
-        """Seconds of the wall clock until a moment of the mission is due; what was lost beyond a while stays lost."""
+        """Seconds of the wall clock until a mission time is due; a delay beyond a limit is not made up for."""
         if self.speed is None:
             return 0.0
         wait = self._begun + (until_s - self._begun_s) / self.speed - self._clock.now()

@@ -1,4 +1,4 @@
-"""The log of a run, packed in memory: what the database cannot give back while it is gone."""
+"""The log of a run, compressed in memory, for times when the database cannot be read."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _BLOCK = 2**18
 """Characters that are packed together, to a tenth or less."""
 
 
-class Memory:
-    """Takes entries in order, and gives them back."""
+class PackedLog:
+    """Entries in order."""
 
     def __init__(self) -> None:
         self._packed: list[bytes] = []
@@ -23,7 +23,7 @@ class Memory:
         self._size = 0
 
     def add(self, entries: Sequence[Entry]) -> None:
-        """Take what follows."""
+        """Add entries."""
         for entry in entries:
             text = _text(entry)
             self._loose.append(text)
@@ -33,7 +33,7 @@ class Memory:
                 self._loose, self._size = [], 0
 
     def entries(self) -> Iterator[Entry]:
-        """All of them."""
+        """All entries."""
         for block in self._packed:
             yield from map(_entry, zlib.decompress(block).decode().split("\n"))
         yield from map(_entry, self._loose)

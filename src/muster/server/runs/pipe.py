@@ -1,4 +1,4 @@
-"""A runner's side of the pipes: JSON lines in, JSON lines out, each by a thread, so that no robot waits for a pipe."""
+"""A runner's side of its pipes: JSON lines in both directions, each in a thread, so that no robot waits for a pipe."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _ROOM = 2000
 
 
 class Inbox:
-    """What the server says; its end is told once by `None`.
+    """Messages of the server; one `None` at their end.
 
     Parameters
     ----------
     on_end
-        is called, by the reading thread, when the server is gone.
+        called by the reading thread when the server is gone.
     """
 
     def __init__(self, stream: IO[str], on_end: Callable[[], None]) -> None:
@@ -28,7 +28,7 @@ class Inbox:
         threading.Thread(target=self._read, daemon=True).start()
 
     def take(self, wait_s: float | None = 0.0) -> Mapping[str, Any] | None:
-        """The next message; None if none has come after so many seconds, None: of however many it takes."""
+        """The next message; None if there is none within `wait_s` seconds. With `wait_s` None it waits for ever."""
         try:
             return self._lines.get(timeout=wait_s) if wait_s is None or wait_s > 0 else self._lines.get_nowait()
         except queue.Empty:
@@ -36,14 +36,14 @@ class Inbox:
 
     def _read(self) -> None:
         for line in self._stream:
-            if line.endswith("\n"):  # a killed server breaks off in the middle
+            if line.endswith("\n"):  # a killed server leaves half a line
                 self._lines.put(json.loads(line))
         self._on_end()
         self._lines.put(None)
 
 
 class Outbox:
-    """What is said to the server. States and status are left out while much waits; entries and tracks never are."""
+    """Messages to the server. States are left out while many messages wait; entries and tracks never are."""
 
     def __init__(self, stream: IO[str]) -> None:
         self._stream = stream
@@ -51,27 +51,27 @@ class Outbox:
         self._writer = threading.Thread(target=self._write, daemon=True)
         self._writer.start()
 
-    def say(self, message: Mapping[str, Any]) -> None:
-        """Say something that must arrive."""
+    def send(self, message: Mapping[str, Any]) -> None:
+        """Send a message that must arrive."""
         self._lines.put(_text(message))
 
-    def say_if_room(self, message: Mapping[str, Any]) -> None:
-        """Say something that is out of date soon."""
+    def send_if_room(self, message: Mapping[str, Any]) -> None:
+        """Send a message that is soon out of date, unless many messages wait."""
         if self._lines.qsize() < _ROOM:
-            self.say(message)
+            self.send(message)
 
     def entry(self, message: Mapping[str, Any]) -> None:
-        """See `scribe.Out`."""
-        self.say(message)
+        """See `log_recorder.Out`."""
+        self.send(message)
 
     def stretch(self, from_s: float, until_s: float, data: bytes) -> None:
-        """See `scribe.Out`."""
+        """See `log_recorder.Out`."""
         said = {"type": "stretch", "from_s": from_s, "until_s": until_s}
-        self.say(said | {"data": base64.b64encode(data).decode()})
+        self.send(said | {"data": base64.b64encode(data).decode()})
 
     @property
     def full(self) -> bool:
-        """Whether the server does not keep up."""
+        """Whether too many messages wait."""
         return self._lines.qsize() >= _ROOM
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""A plan carried out by real robots, from where they stand; after a crash what is left of it."""
+"""A plan carried out by real robots from where they stand; after a crash, the rest of it."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 from muster.running.live import Live, elsewhere, with_reported_starts
-from muster.server.runs.crash_recovery import aftermath
+from muster.server.runs.crash_recovery import recovered_from
 
 _OF_WORK = ("sets_out", "arrives", "starts", "ends")
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
 
 
-class RealCourse:
-    """See `performance.Course`.
+class RealRun:
+    """See `run_loop.WorldRun`.
 
     Parameters
     ----------
     log
-        what was logged before a crash; empty for a run that begins.
+        the log before a crash; empty for a new run.
     begin_s
-        when it begins, or goes on.
+        the mission time at which the run starts or resumes.
     at_end
-        what else robots are told when all is done.
+        called when all tasks are done.
     """
 
     real = True
@@ -48,7 +48,7 @@ class RealCourse:
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        found = aftermath(mission, plan, log)
+        found = recovered_from(mission, plan, log)
         there = with_reported_starts(found.mission, fleet)
         gauged = _Gauged(recorder)
         self._live = Live(
@@ -85,7 +85,7 @@ class RealCourse:
         return self._live.status
 
     def go_on(self) -> None:
-        """Hear robots for a while, and send them on unless it is paused."""
+        """Receive telemetry for a while, and send robots on unless the run is paused."""
         self._live.hear(self.time_s + LOOK_S)
         if self._paused:
             self._live.tell_places()
@@ -118,7 +118,7 @@ class RealCourse:
         self._paused = False
 
     def close(self) -> None:
-        """Robots are told to stand, whatever ended it."""
+        """Stop the robots, whatever ended the run."""
         try:
             self._fleet.stop()
         finally:
@@ -126,7 +126,7 @@ class RealCourse:
 
 
 class _Gauged:
-    """A recorder that is told beside what robots do what they have used, so that the log alone can tell of it later."""
+    """A recorder that adds the robots' usage to events, so that the log alone is enough for recovery."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder

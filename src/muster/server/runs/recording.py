@@ -1,4 +1,4 @@
-"""A record from a run's log: what `muster simulate --record` would have written, and what is made of it.
+"""Makes a record from a run's log, as `muster simulate --record` writes it, and exports it.
 
 Done by a worker, `record` of `server.work.tasks`.
 """
@@ -52,7 +52,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 
 def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches: Sequence[Steps]) -> None:
-    """Tell a run's log and tracks to a writer of records, in the order of time, steps before events."""
+    """Pass a run's log and tracks to a recorder in the order of time, steps before events."""
     mission_state, steps = MissionState(mission), _steps(stretches)
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
@@ -69,10 +69,9 @@ def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches:
 
 
 def flown(recording: Recording) -> dict[str, Any]:
-    """What was planned beside what was flown: of the whole, of each robot and task, and where the ways led.
+    """What was planned and what was carried out: in all, per robot and task, and the paths.
 
-    `planned` has the routes of the first plan as lines, `tracks` of each robot [time_s, x, y, z], at most some
-    thousands, as it went.
+    `planned` has the routes of the first plan as lines, `tracks` each robot's [time_s, x, y, z], some thousand at most.
     """
     told = dict(recording.report or {})
     tracks = recording.tracks

@@ -1,4 +1,4 @@
-"""Which real robots a run commands: no two runs may have one in common."""
+"""The real robots that a run commands: no two runs may have one in common."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
-    """What a run has for itself, in words; nothing in a simulated world.
+    """What a run claims, in words; nothing in a simulated world.
 
     On ROS 1 that is a namespace, whichever the master, for one master goes by many names. On ROS 2 it is a namespace
     of a domain. Over MAVLink it is each line (a UDP port that is listened at, an address that is called, a device),
@@ -39,7 +39,7 @@ def _mavlink(settings: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _line(text: str) -> str:
-    """The same words for the same line, as far as its name tells."""
+    """A normalised name of a line."""
     if listens := re.fullmatch(r"udp(?:in)?:[^:]+:0*(\d+)", text):
         return f"UDP port {listens[1]}"
     if wire := re.fullmatch(r"serial:([^:]+)(?::\d+)?", text):

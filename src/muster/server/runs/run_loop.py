@@ -1,4 +1,4 @@
-"""A run as its process leads it: it goes on by the wall clock, obeys at once, and tells what happens."""
+"""The loop of a runner: advances the run by the wall clock, executes commands at once, and sends what happens."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from muster.execution import Report, RobotStatus, Status
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Event
-from muster.server.runs.log_recorder import RESUMED, DivergedError, Scribe
+from muster.server.runs.log_recorder import RESUMED, DivergedError, LogRecorder
 from muster.server.runs.pacing import Pace
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.user_events import event_given
@@ -23,8 +23,8 @@ STEPS_FIRST_S = 0.5
 CANCELLED = "not done when the run was cancelled"
 
 
-class Course(Protocol):
-    """What is carried out: in a simulated world, or by real robots."""
+class WorldRun(Protocol):
+    """A run in its world: simulated, or with real robots."""
 
     real: bool
 
@@ -45,25 +45,25 @@ class Course(Protocol):
     def close(self) -> None: ...
 
 
-class Performance:
-    """Carries a course to its end.
+class RunLoop:
+    """Carries a run to its end.
 
     Parameters
     ----------
-    course, scribe
-        what is carried out, and who writes it down.
+    world_run, recorder
+        the run in its world, and the recorder of its log.
     inbox, outbox
-        of the server.
+        messages from and to the server.
     speed
-        times real time; None: as fast as it goes.
+        times real time; None: as fast as possible.
     ended
-        whether the server is gone.
+        tells whether the server is gone.
     """
 
     def __init__(
         self,
-        course: Course,
-        scribe: Scribe,
+        world_run: WorldRun,
+        recorder: LogRecorder,
         inbox: Inbox,
         outbox: Outbox,
         *,
@@ -71,9 +71,9 @@ class Performance:
         ended: Callable[[], bool],
         clock: Clock | None = None,
     ) -> None:
-        self._course, self._scribe, self._inbox, self._outbox = course, scribe, inbox, outbox
+        self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
         self._clock, self._ended = clock or SystemClock(), ended
-        self._pace = Pace(self._clock, speed, course.time_s)
+        self._pace = Pace(self._clock, speed, world_run.time_s)
         self._paused = self._cancelled = self._must_replan = False
         self._steps_until = -1e9
         self._obeyed: set[int] = set()
@@ -81,73 +81,73 @@ class Performance:
         self._states_at = self._status_at = self._share_at = -1e9
 
     def catch_up(self, log: Sequence[Mapping[str, Any]], until_s: float) -> None:
-        """Make good a crash: what the log says comes about once more, up to a time of the mission's clock.
+        """Simulate the run of the log again after a crash, up to a mission time.
 
         Raises
         ------
         DivergedError
-            if it does not come about as the log says.
+            if the simulation differs from the log.
         """
         for entry in log:
             if entry["kind"] == "command":
                 self._go_to(entry["time_s"], until_s)
                 self._obey(_asked(entry["data"]), more=entry["data"].get("more", False))
         self._go_to(until_s, until_s)
-        if self._scribe.catching_up:
+        if self._recorder.catching_up:
             raise DivergedError("simulated again, it ends before the log does")
         if log and not self._over:  # a report is the last entry
-            self._scribe.write(self._course.time_s, RESUMED, {"how": "simulated again up to here"})
+            self._recorder.write(self._world_run.time_s, RESUMED, {"how": "simulated again up to here"})
 
     def recall(self, log: Sequence[Mapping[str, Any]]) -> None:
-        """What users asked for before a crash, where nothing is simulated again."""
+        """Restore the effect of commands before a crash, for runs that are not simulated again."""
         for entry in log:
             if entry["kind"] == "command":
                 self._obeyed.add(entry["data"]["action"])
                 if entry["data"]["outcome"] == "done":
                     self._recall(entry["data"]["verb"])
-        if self._cancelled:  # the log has no report, or nobody would go on
-            self._course.break_off(CANCELLED)
+        if self._cancelled:  # the log has no report, or the run would not be resumed
+            self._world_run.break_off(CANCELLED)
         elif self._paused:
-            self._course.pause()
+            self._world_run.pause()
 
     def _recall(self, verb: str) -> None:
         if verb in ("pause", "resume"):
             self._paused = verb == "pause"
         self._cancelled = self._cancelled or verb == "cancel"
 
-    def perform(self) -> None:
-        """Go on until it is over, or the server is gone."""
-        self._pace.set(self._pace.speed, self._course.time_s)
+    def run(self) -> None:
+        """Advance until the run is over, or the server is gone."""
+        self._pace.set(self._pace.speed, self._world_run.time_s)
         self._tell(at_once=True)
         while not self._over and not self._ended():
             orders = self._waiting_orders()
             if orders:
                 self._obey_all(orders)
-            elif self._outbox.full and not self._course.real:
+            elif self._outbox.full and not self._world_run.real:
                 time.sleep(HEAR_S)
-            elif self._course.real or not (self._paused or self._pace.wait_s(self._course.next_s) > 0):
-                self._course.go_on()
+            elif self._world_run.real or not (self._paused or self._pace.wait_s(self._world_run.next_s) > 0):
+                self._world_run.go_on()
                 self._tell()
         self._tell(at_once=True)
 
     @property
     def _over(self) -> bool:
-        return self._cancelled or self._course.done
+        return self._cancelled or self._world_run.done
 
     @property
     def _wait_s(self) -> float | None:
-        """For how long to listen before time goes on; None: as long as it takes."""
-        if self._course.real:
-            return 0.0  # robots are heard meanwhile, which takes its time
-        return None if self._paused else self._pace.wait_s(self._course.next_s)
+        """Seconds to wait for a command before time goes on; None: until one comes."""
+        if self._world_run.real:
+            return 0.0  # receiving telemetry takes time
+        return None if self._paused else self._pace.wait_s(self._world_run.next_s)
 
     def _waiting_orders(self) -> list[Mapping[str, Any]]:
-        """All that users have asked for by now, waited for until time goes on.
+        """The commands that wait, or arrive before time goes on.
 
-        After orders time goes on first, for a while: planning for them may have taken longer than the pace allows.
+        After commands time goes on first for a while: planning for them may have taken longer than the pace allows.
         """
         wait_s = self._wait_s
-        if wait_s == 0 and self._clock.now() < self._steps_until and not self._course.real:
+        if wait_s == 0 and self._clock.now() < self._steps_until and not self._world_run.real:
             return []
         orders, order = [], self._inbox.take(wait_s)
         while order is not None:
@@ -156,31 +156,31 @@ class Performance:
         return [order for order in orders if order["id"] not in self._obeyed]
 
     def _obey_all(self, orders: Sequence[Mapping[str, Any]]) -> None:
-        """Do what users asked for, in order; the rest is planned again once for all of it."""
+        """Execute commands in order, then plan the rest once for all of them."""
         for order, *later in (orders[k:] for k in range(len(orders))):
             self._obey(order, more=bool(later))
         self._steps_until = self._clock.now() + STEPS_FIRST_S
         self._tell(at_once=True)
 
     def _go_to(self, time_s: float, until_s: float) -> None:
-        while not self._over and self._course.time_s < time_s - 1e-9:
-            self._course.go_on()
+        while not self._over and self._world_run.time_s < time_s - 1e-9:
+            self._world_run.go_on()
             if self._clock.now() - self._share_at >= SHARE_S:
                 self._share_at = self._clock.now()
-                self._outbox.say({"type": "resuming", "share": round(self._course.time_s / max(until_s, 1e-9), 3)})
+                self._outbox.send({"type": "resuming", "share": round(self._world_run.time_s / max(until_s, 1e-9), 3)})
 
     def _obey(self, asked: Mapping[str, Any], *, more: bool) -> None:
-        """Do what a user asked for; the log has it before what follows from it.
+        """Execute a command; its log entry comes before those of its consequences.
 
         Parameters
         ----------
         more
-            whether the rest is planned again only after what is asked for next; the log keeps that, for crashes.
+            whether planning waits for the next command; the log keeps that for repeated simulations.
         """
         if asked["id"] in self._obeyed or self._over:
             return
         self._obeyed.add(asked["id"])
-        self._scribe.hold()
+        self._recorder.hold()
         try:
             self._do(asked["verb"], asked["data"])
             outcome = "done"
@@ -188,29 +188,29 @@ class Performance:
             outcome = str(error)
         said = {"action": asked["id"], "verb": asked["verb"], "data": asked["data"], "who": asked["who"]}
         said |= {"outcome": outcome} | ({"more": True} if more else {})
-        self._scribe.write_first(self._course.time_s, "command", said)
+        self._recorder.write_first(self._world_run.time_s, "command", said)
         if self._must_replan and not more and not self._over:
             self._must_replan = False
-            self._course.replan()
+            self._world_run.replan()
 
     def _do(self, verb: str, data: Mapping[str, Any]) -> None:
         if verb == "pause":
             self._require(not self._paused, "the run is paused already")
             self._paused = True
-            self._course.pause()
+            self._world_run.pause()
         elif verb == "resume":
             self._require(self._paused, "the run is not paused")
             self._paused = False
-            self._course.resume()
-            self._pace.set(self._pace.speed, self._course.time_s)
+            self._world_run.resume()
+            self._pace.set(self._pace.speed, self._world_run.time_s)
         elif verb == "speed":
-            self._require(not self._course.real, "real robots have their own speed")
-            self._pace.set(data["speed"], self._course.time_s)
+            self._require(not self._world_run.real, "real robots have their own speed")
+            self._pace.set(data["speed"], self._world_run.time_s)
         elif verb == "cancel":
             self._cancelled = True
-            self._course.break_off(CANCELLED)
+            self._world_run.break_off(CANCELLED)
         else:
-            self._course.report(event_given(data, self._course.time_s))
+            self._world_run.report(event_given(data, self._world_run.time_s))
             self._must_replan = True
 
     def _require(self, holds: bool, otherwise: str) -> None:
@@ -218,23 +218,23 @@ class Performance:
             raise ParameterError(otherwise)
 
     def _tell(self, *, at_once: bool = False) -> None:
-        """Where robots are and what they do, now and then."""
+        """Send states and status at their intervals."""
         now = self._clock.now()
-        if (at_once or now - self._states_at >= STATES_S) and not self._scribe.catching_up:
+        if (at_once or now - self._states_at >= STATES_S) and not self._recorder.catching_up:
             self._states_at = now
-            robots = {name: _state(row) for name, row in self._scribe.rows.items()}
-            said = {"type": "states", "time_s": round(self._course.time_s, 3), "sent_at": round(time.time(), 4)}
-            self._outbox.say_if_room(said | {"robots": robots})
-        if (at_once or now - self._status_at >= STATUS_S) and not self._scribe.catching_up:
+            robots = {name: _state(row) for name, row in self._recorder.rows.items()}
+            said = {"type": "states", "time_s": round(self._world_run.time_s, 3), "sent_at": round(time.time(), 4)}
+            self._outbox.send_if_room(said | {"robots": robots})
+        if (at_once or now - self._status_at >= STATUS_S) and not self._recorder.catching_up:
             self._status_at = now
-            status = _status(self._course.status)
+            status = _status(self._world_run.status)
             if status != self._told:
                 self._told = status
-                self._outbox.say({"type": "status", "time_s": round(self._course.time_s, 3), **status})
+                self._outbox.send({"type": "status", "time_s": round(self._world_run.time_s, 3), **status})
 
 
 def _asked(command: Mapping[str, Any]) -> dict[str, Any]:
-    """What was asked for, by its entry in the log."""
+    """A command from its log entry."""
     return {"id": command["action"], "verb": command["verb"], "data": command["data"], "who": command["who"]}
 
 

@@ -1,4 +1,4 @@
-"""What may be asked of a run: worlds, settings, speeds, actions, checked before anything is started."""
+"""Checks of worlds, settings, speeds and actions of runs, before anything is started."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _FASTEST = 1e6
 
 
 def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, Any]) -> None:
-    """Raise ParameterError unless runs may be started in a world, with these settings."""
+    """Raise ParameterError unless runs may be started in a world with these settings."""
     _require_choice("world", world, (*WORLDS, *bridges))
     for name, value in settings.items():
         _require_setting(world, name, value)
@@ -96,7 +96,7 @@ def _require_setting(world: str, name: str, value: object) -> None:
 
 
 def _require_kind(name: str, value: object, kind: type) -> None:
-    """A whole number is a number, too; true and false are none."""
+    """Raise ParameterError unless a setting has a kind; whole numbers are numbers, true and false are not."""
     kinds = (int, float) if kind is float else (kind,)
     if not isinstance(value, kinds) or (isinstance(value, bool) and kind is not bool):
         raise ParameterError(f"{name}: {shown(value)}; expected {_KINDS[kind]}")
@@ -124,7 +124,7 @@ def require_speed(speed: object) -> float | None:
 
 
 def _require_text(data: Mapping[str, Any]) -> None:
-    """What cannot be written as strict JSON in UTF-8 would end the runner that is told it."""
+    """Refuse what cannot be strict JSON in UTF-8: it would end the runner."""
     try:
         json.dumps(data, ensure_ascii=False, allow_nan=False).encode()
     except UnicodeEncodeError:
@@ -134,12 +134,12 @@ def _require_text(data: Mapping[str, Any]) -> None:
 
 
 def require_action(verb: str, data: Mapping[str, Any]) -> dict[str, Any]:
-    """What a user asks for, as a runner is told it.
+    """The data of an action, as sent to a runner.
 
     Raises
     ------
     ParameterError
-        if there is no such verb, or its data are not as expected. Whether an event fits the mission the runner says.
+        if the verb or its data are wrong. The runner checks whether an event fits the mission.
     """
     _require_choice("verb", verb, VERBS)
     _require_text(data)

@@ -1,9 +1,9 @@
-"""`python -m muster.server.runs.runner MEMORY_MB`: carries one plan out, for a server at the other end of its pipes.
+"""The runner process of a run, `python -m muster.server.runs.runner MEMORY_MB`, connected to the server by pipes.
 
-The first line says what is to be carried out: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`,
-`settings`, `speed`, `lock`, and of a run that goes on `log`, `until_s`, `tracked_s`. Others are users' actions: `id`,
-`verb`, `data`, `who`. When the pipe ends the server is gone: it ends too, and real robots are told to stand before. A
-simulated world may have so much memory; what commands real robots is not ended for that.
+The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
+`lock`, and of a resumed run `log`, `until_s`, `tracked_s`. The other lines are users' actions: `id`, `verb`, `data`,
+`who`. When the pipe ends the server is gone: the runner stops real robots and ends. The memory limit is for simulated
+worlds only.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.worlds import WORLDS
-from muster.server.runs.log_recorder import Scribe
+from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.run_loop import Course, Performance
+from muster.server.runs.run_loop import RunLoop, WorldRun
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
@@ -43,9 +43,9 @@ def main(arguments: list[str]) -> int:
 
 
 def _obey(folder: str, memory_mb: int) -> int:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's affair
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server handles Ctrl-C
     lines, said = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # whatever prints does not disturb the server
+    os.dup2(2, 1)  # prints of libraries must not mix with messages
     ended, real = threading.Event(), threading.Event()
     inbox, outbox = Inbox(lines, lambda: _end(ended, real, folder)), Outbox(said)
     begin = inbox.take(None)
@@ -59,18 +59,18 @@ def _obey(folder: str, memory_mb: int) -> int:
     try:
         _carry_out(begin, folder, inbox, outbox, ended)
     except MusterError as error:
-        outbox.say({"type": "failed", "reason": str(error).splitlines()[0]})
+        outbox.send({"type": "failed", "reason": str(error).splitlines()[0]})
     except (MemoryError, OSError) as error:
         if real.is_set() or not is_of_memory(error):
             raise
         reason = f"it needs more than {memory_mb} MB of memory; expected more (--memory)"
-        outbox.say({"type": "failed", "reason": reason})
+        outbox.send({"type": "failed", "reason": reason})
     outbox.close()
     return 0
 
 
 def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
-    """The server is gone. A simulated run is made good later; real robots are told to stand first."""
+    """End, as the server is gone: a simulated run is simulated again later; real robots are stopped first."""
     ended.set()
     if not real.is_set():
         shutil.rmtree(folder, ignore_errors=True)
@@ -84,8 +84,8 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
         os.chdir(folder)
         mission = mission_of(begin["mission"])
-        outbox.say({"type": "mission", "mission": _shown(mission)})
-        scribe = Scribe(
+        outbox.send({"type": "mission", "mission": _shown(mission)})
+        recorder = LogRecorder(
             mission,
             outbox,
             log=log,
@@ -94,32 +94,34 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
             again=not real,
         )
         plan = plan_from(begin["plan"], "the plan")
-        with closing(_course(begin, mission, plan, scribe, ended)) as course:
-            performance = Performance(course, scribe, inbox, outbox, speed=begin["speed"], ended=ended.is_set)
+        with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
+            run_loop = RunLoop(world_run, recorder, inbox, outbox, speed=begin["speed"], ended=ended.is_set)
             if real:
-                performance.recall(log)
+                run_loop.recall(log)
             else:
-                performance.catch_up(log, begin["until_s"])
-            outbox.say({"type": "going"})
-            performance.perform()
+                run_loop.catch_up(log, begin["until_s"])
+            outbox.send({"type": "going"})
+            run_loop.run()
 
 
-def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scribe, ended: threading.Event) -> Course:
+def _world_run(
+    begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
+) -> WorldRun:
     settings, log = begin["settings"], begin["log"]
     if begin["world"] in WORLDS:
-        from muster.server.runs.simulated_run import SimulatedCourse
+        from muster.server.runs.simulated_run import SimulatedRun
 
-        return SimulatedCourse(mission, plan, begin["world"], settings, scribe)
+        return SimulatedRun(mission, plan, begin["world"], settings, recorder)
     from muster.running.fleets import fleet_ready
-    from muster.server.runs.real_run import RealCourse
+    from muster.server.runs.real_run import RealRun
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
-        return RealCourse(
+        return RealRun(
             mission,
             plan,
             fleet,
-            scribe,
+            recorder,
             seed=settings.get("seed", 0),
             log=log,
             begin_s=begin["until_s"],
@@ -131,7 +133,7 @@ def _course(begin: Mapping[str, Any], mission: Mission, plan: Plan, scribe: Scri
 
 
 def _shown(mission: Mission) -> dict[str, Any]:
-    """The mission as plain data, without what pages have no use for."""
+    """The mission as plain data, without what pages do not need."""
     data: dict[str, Any] = plain(mission)
     return {key: value for key, value in data.items() if key != "travel"} | {"dimensions": mission.dimensions}
 

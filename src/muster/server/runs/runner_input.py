@@ -1,6 +1,6 @@
-"""What a runner is told first. It is read from the database once; then the next runner is told it from memory.
+"""The first message to a runner. It is read from the database once and kept in memory.
 
-So a runner that dies while the database is gone is followed by another, which goes on.
+So a runner can be restarted while the database is down.
 """
 
 from __future__ import annotations
@@ -10,51 +10,51 @@ import base64
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import Entry, MissionVersion, Run
-from muster.server.runs.packed_log import Memory
-from muster.server.runs.runner_process import line_to_say
+from muster.server.runs.packed_log import PackedLog
+from muster.server.runs.runner_process import json_line
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store
 
 
-class Brief:
+class RunnerInput:
     """Of one run."""
 
     def __init__(self, store: Store, run: Run, lock: str) -> None:
         self._store, self._run, self._lock = store, run, lock
-        self._memory = Memory()
+        self._packed_log = PackedLog()
         self._work: dict[str, Any] | None = None
         self._tracked_s = 0.0
 
     @property
     def known(self) -> bool:
-        """Whether it was read."""
+        """Whether the input was read."""
         return self._work is not None
 
     async def read(self) -> None:
-        """What the database has: mission, plan, and what was logged before a crash.
+        """Read mission, plan and log from the database.
 
         Raises
         ------
         StoreError
             if it cannot be read.
         """
-        self._memory, self._tracked_s, self._work = await asyncio.to_thread(self._read)
+        self._packed_log, self._tracked_s, self._work = await asyncio.to_thread(self._read)
 
     def add(self, entry: Entry) -> None:
-        """An entry that the runner has told."""
-        self._memory.add([entry])
+        """Add an entry of the runner."""
+        self._packed_log.add([entry])
 
     def tracked(self, until_s: float) -> None:
-        """Up to when the runner has told tracks."""
+        """Note up to when the runner has sent tracks."""
         self._tracked_s = max(self._tracked_s, until_s)
 
     def log(self) -> list[Entry]:
         """All entries."""
-        return list(self._memory.entries())
+        return list(self._packed_log.entries())
 
     def line(self, run: Run) -> bytes:
-        """What is said; the run is as it is now: what watchers have seen of it is not to happen once more."""
+        """The message for a run as it is now, including the mission time that subscribers have seen."""
         assert self._work is not None
         log = self.log()
         message = {
@@ -68,16 +68,16 @@ class Brief:
             "tracked_s": self._tracked_s,
             "lock": self._lock,
         }
-        return line_to_say(message)
+        return json_line(message)
 
-    def _read(self) -> tuple[Memory, float, dict[str, Any]]:
-        run, store, memory = self._run, self._store, Memory()
-        memory.add(store.log.entries(run.id))
+    def _read(self) -> tuple[PackedLog, float, dict[str, Any]]:
+        run, store, log = self._run, self._store, PackedLog()
+        log.add(store.log.entries(run.id))
         version = store.missions.get(run.mission, run.mission_version)
         entry = store.plans.get(run.plan)
         plan = {**entry.plan, "ignored": list(run.settings.get("ignore", entry.ignored))}
         work = {"mission": _mission(version), "plan": plan}
-        return memory, store.log.tracked_s(run.id), work
+        return log, store.log.tracked_s(run.id), work
 
 
 def _mission(version: MissionVersion) -> dict[str, Any]:

@@ -23,7 +23,7 @@ _ENDS_WITHIN_S = 20.0
 _log = logging.getLogger("muster.runs")
 
 
-class Child:
+class RunnerProcess:
     """One runner. Made by `start`."""
 
     def __init__(self, process: asyncio.subprocess.Process, name: str) -> None:
@@ -32,7 +32,7 @@ class Child:
         self._listener = asyncio.create_task(self._listen())
 
     @classmethod
-    async def start(cls, name: str, memory_mb: int) -> Child:
+    async def start(cls, name: str, memory_mb: int) -> RunnerProcess:
         """A new process, which waits for its first line; `name` is for the log of the server."""
         process = await asyncio.create_subprocess_exec(
             sys.executable,
@@ -63,17 +63,17 @@ class Child:
         """The last line that it wrote on its standard error."""
         return self._last_words[-1] if self._last_words else ""
 
-    def say(self, message: Mapping[str, Any]) -> None:
+    def send(self, message: Mapping[str, Any]) -> None:
         """Say something, if it still hears."""
-        self.say_line(line_to_say(message))
+        self.send_line(json_line(message))
 
-    def say_line(self, line: bytes) -> None:
-        """Say a line of `line_to_say`."""
+    def send_line(self, line: bytes) -> None:
+        """Say a line of `json_line`."""
         assert self._process.stdin is not None
         with suppress(OSError, RuntimeError):
             self._process.stdin.write(line)
 
-    async def heard(self) -> AsyncIterator[str]:
+    async def messages(self) -> AsyncIterator[str]:
         """The lines that it says, until it ends."""
         assert self._process.stdout is not None
         while line := await self._process.stdout.readline():
@@ -109,6 +109,6 @@ class Child:
                 _log.warning("%s: %s", self._name, text)
 
 
-def line_to_say(message: Mapping[str, Any]) -> bytes:
+def json_line(message: Mapping[str, Any]) -> bytes:
     """A message as runners hear it; of a long one another thread had better make the line."""
     return json.dumps(message, separators=(",", ":")).encode() + b"\n"

@@ -19,8 +19,8 @@ QUANTUM_S = 0.1
 """Seconds of mission time between two moments at which users can have a say."""
 
 
-class SimulatedCourse:
-    """See `performance.Course`."""
+class SimulatedRun:
+    """See `run_loop.WorldRun`."""
 
     real = False
 

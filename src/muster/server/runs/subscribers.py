@@ -1,7 +1,7 @@
-"""What watchers of a run are told: each thing serialised once for all, and no memory a watcher.
+"""Subscribers of a run: each message is serialised once for all, and nothing is stored per subscriber.
 
-Watchers take what there is at their own pace. Of states and status there is only the newest, so who is slow misses
-some; entries are taken from a short memory, or read from the log again, so nobody misses any.
+Subscribers read at their own pace. Only the newest states and status are kept, so a slow subscriber misses some.
+Entries come from a short buffer or from the log, so nobody misses any.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from typing import Any
 _REMEMBERED = 2 * 2**20
 _ACTIONS = 500
 _KINDS = ("run", "status", "states")
-"""Of which only the newest counts, in the order in which they are told."""
+"""Kinds of messages of which only the newest counts, in the order of sending."""
 
 Texts = Sequence[tuple[int, str]]
 """Entries as JSON, with their numbers."""
 
 
-class Feed:
+class Subscribers:
     """Of one run.
 
     Parameters
@@ -29,7 +29,7 @@ class Feed:
     hello
         makes the first message.
     read
-        reads entries beyond a number again.
+        reads entries after a number from the log.
     """
 
     def __init__(self, hello: Callable[[], Mapping[str, Any]], read: Callable[[int], Awaitable[Texts]]) -> None:
@@ -39,72 +39,72 @@ class Feed:
         self._newest = dict.fromkeys(_KINDS, (0, ""))
         self._actions: deque[tuple[int, str]] = deque(maxlen=_ACTIONS)
         self._said = 0
-        self._bell = asyncio.Event()
+        self._changed = asyncio.Event()
         self._ready = self._ended = False
         self.seq = 0
         self.watchers = 0
 
     def ready(self) -> None:
-        """From now on it is known what the run is about."""
+        """Note that the mission is known, so that messages can begin."""
         self._ready = True
-        self._ring()
+        self._notify()
 
     def publish(self, texts: Texts) -> None:
-        """Entries, which follow those before."""
+        """Publish the next entries."""
         for seq, text in texts:
             self._entries.append((seq, text))
             self._bytes += len(text)
             self.seq = seq
         while self._bytes > _REMEMBERED and len(self._entries) > 1:
             self._bytes -= len(self._entries.popleft()[1])
-        self._ring()
+        self._notify()
 
     def tell(self, kind: str, text: str) -> None:
-        """The newest of a kind: `run`, `status`, `states`."""
+        """Publish the newest message of a kind: `run`, `status`, `states`."""
         self._said += 1
         self._newest[kind] = (self._said, text)
-        self._ring()
+        self._notify()
 
     def newest(self, kind: str) -> str:
-        """The newest of a kind; empty: none yet."""
+        """The newest message of a kind; empty if there is none."""
         return self._newest[kind][1]
 
-    def tell_action(self, message: Mapping[str, Any]) -> None:
-        """What came of an action."""
+    def publish_action(self, message: Mapping[str, Any]) -> None:
+        """Publish the outcome of an action."""
         self._said += 1
         self._actions.append((self._said, _text({"type": "action", **message})))
-        self._ring()
+        self._notify()
 
     def end(self) -> None:
-        """Nothing more comes."""
+        """Note that no more messages follow."""
         self._ended = self._ready = True
-        self._ring()
+        self._notify()
 
     async def watch(self, after: int = 0) -> AsyncIterator[str]:
-        """JSON texts: a hello, the log after an entry, then what happens, until the run is over."""
+        """Yield JSON texts: a hello, the log after an entry, then what happens, until the run is over."""
         self.watchers += 1
         try:
             while not self._ready:
-                await self._bell.wait()
+                await self._changed.wait()
             yield _text({"type": "hello", **self._hello(), "seq": self.seq})
             told = dict.fromkeys((*_KINDS, "action"), 0)
             told["run"], told["action"] = self._newest["run"][0], self._said
             while True:
-                bell, ended = self._bell, self._ended
+                changed, ended = self._changed, self._ended
                 while self.seq > after and (texts := await self._entries_after(after)):
                     for seq, text in texts:
                         yield text
                         after = seq
                 for text in self._news(told):
                     yield text
-                if ended:  # all that can be read is told: of a run that was given up some entries are nowhere
+                if ended:  # a run that was given up may lack entries
                     return
-                await bell.wait()
+                await changed.wait()
         finally:
             self.watchers -= 1
 
     def _news(self, told: dict[str, int]) -> list[str]:
-        """What is newer than what was told; `told` is brought up to it."""
+        """The messages after those of `told`, which is updated."""
         news = [text for said, text in self._actions if said > told["action"]]
         if self._actions:
             told["action"] = max(told["action"], self._actions[-1][0])
@@ -121,9 +121,9 @@ class Feed:
             return await self._read(after)
         return [(seq, text) for seq, text in list(self._entries) if seq > after]
 
-    def _ring(self) -> None:
-        bell, self._bell = self._bell, asyncio.Event()
-        bell.set()
+    def _notify(self) -> None:
+        changed, self._changed = self._changed, asyncio.Event()
+        changed.set()
 
 
 def _text(message: Mapping[str, Any]) -> str:

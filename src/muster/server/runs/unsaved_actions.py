@@ -1,7 +1,7 @@
-"""Actions that the database has not taken when they were asked for: they are obeyed, and written down later.
+"""Actions that could not be written when they were requested: they take effect, and are written later.
 
-Each is known by when it was asked for, to the microsecond: its number is that of microseconds since 1970, below 0.
-The database may have taken it all the same, and said so too late; by that time it is found there, and not done twice.
+Each has the time of its request as its number: microseconds since 1970, negative. If the database has written it after
+all, it is found by that time and not executed twice.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ def number_at(at: datetime) -> int:
     return -((at - _1970) // timedelta(microseconds=1))
 
 
-def unkept(who: User, verb: str, data: Mapping[str, Any], run: int, at: datetime) -> Action:
-    """An action without a number of the database."""
+def unsaved_action(who: User, verb: str, data: Mapping[str, Any], run: int, at: datetime) -> Action:
+    """An action that is not in the database."""
     return Action(
         id=number_at(at), at=at, who=who.name, role=who.role, address=who.address, verb=verb, data=data, run=run
     )

@@ -1,4 +1,4 @@
-"""An event as a user gives it."""
+"""Events from users."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def event_given(data: Mapping[str, Any], now: float) -> Event:
     Raises
     ------
     ParameterError
-        if it is none.
+        if it is no event.
     """
     faults: list[Fault] = []
     event: Event = Record(Event, "an event").read({**data, "at_s": now}, (), faults)

@@ -1,16 +1,16 @@
-"""Who may do what: tokens and roles, sessions, hosts and origins, limits; `guard` puts them before every request.
+"""Authentication, roles and limits. `guard` checks every request before the application sees it.
 
 | part | what it does |
 |---|---|
-| `rules` | which ways of serving are safe enough to begin at all |
+| `serving_rules` | which settings are safe to serve with |
 | `tokens` | the file of tokens with roles; how a new one is made |
 | `sessions` | the page's signed cookie |
 | `origins` | which host a request may name, and from which origin it may come |
-| `authenticator` | who asks: a bearer's token, a session, a proxy's header, or whoever sits at this machine |
-| `limits` | how often, how much, how long, how many |
-| `headers` | what every answer tells browsers to forbid |
-| `refusals` | what was refused, in the audit log, without filling it |
-| `guard` | all of this, before everything that answers |
+| `authentication` | the user of a request: by a token, a session, a proxy's header, or as the user of this machine |
+| `limits` | limits of rates, sizes, times and WebSockets |
+| `headers` | security headers of every response |
+| `refusal`, `refusal_log` | a refused request; refusals and logins in the audit log |
+| `guard` | the middleware that applies all of this |
 | `login` | the page's login and logout |
 """
 

@@ -36,7 +36,7 @@ class Caller:
 
 
 class WrongTokenError(RefusalError):
-    """A token was given that nobody has."""
+    """The token of the request is unknown."""
 
     def __init__(self) -> None:
         super().__init__(401, "nobody has this token; expected one of the server's tokens file")
@@ -54,7 +54,7 @@ def read_proxy_secret(file: Path) -> bytes:
     Raises
     ------
     ParameterError
-        if it is too short to be one, or everybody on this machine may read it.
+        if it is too short, or everybody on this machine may read it.
     OSError
         if it cannot be read.
     """
@@ -71,20 +71,20 @@ def read_proxy_secret(file: Path) -> bytes:
 
 
 class Proxies:
-    """The reverse proxies that are believed.
+    """The trusted reverse proxies.
 
     Parameters
     ----------
     trusted
         addresses, or networks: `10.0.0.0/24`.
     secret
-        what a proxy shows in `SECRET_HEADER` before it is believed who the user is: any process of its machine has
-        the same address. None: no proxy is believed that.
+        what a proxy must send in `SECRET_HEADER` to name users: every process of its machine has the same address.
+        None: proxies may not name users.
 
     Raises
     ------
     ParameterError
-        if one of the addresses is none.
+        if one of the addresses is wrong.
     """
 
     def __init__(self, trusted: Iterable[str], secret: bytes | None = None) -> None:
@@ -101,12 +101,12 @@ class Proxies:
         return found is not None and any(found in network for network in self._networks)
 
     def may_name_users(self, peer: str, headers: Mapping[str, str]) -> bool:
-        """Whether a request comes from a trusted address, and shows the secret."""
+        """Whether a request comes from a trusted address and has the secret."""
         shown = headers.get(SECRET_HEADER, "").encode("latin-1")
         return self._secret is not None and hmac.compare_digest(shown, self._secret) and self.trust(peer)
 
     def address(self, peer: str, headers: Mapping[str, str]) -> str:
-        """Where a request comes from: the last hop that is no trusted proxy."""
+        """The address of the client: the last hop that is not a trusted proxy."""
         if not self.trust(peer):
             return peer
         for hop in reversed(headers.get("x-forwarded-for", "").split(",")):
@@ -119,14 +119,14 @@ class Proxies:
 
 
 class Authenticator:
-    """Finds out who asks.
+    """Finds the user of a request.
 
     Parameters
     ----------
     tokens, sessions
-        None: no token is asked for, and everybody who reaches this machine's own address may command.
+        None: no token is needed, and everybody who reaches the loopback address may command.
     user_header
-        in which proxies say who asks; believed of `proxies` alone, and with their secret.
+        the header in which `proxies` name the user, together with their secret.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class Authenticator:
 
     @classmethod
     def of(cls, settings: Settings) -> Authenticator:
-        """As the server was asked to be; reads the tokens, and makes the secret of sessions where there is none."""
+        """The authenticator of a server with these settings; reads the tokens, and creates the secret of sessions."""
         secret = None if settings.proxy_secret is None else read_proxy_secret(settings.proxy_secret)
         proxies = Proxies(settings.trusted_proxies, secret)
         if settings.tokens is None:
@@ -149,7 +149,7 @@ class Authenticator:
 
     @property
     def once(self) -> frozenset[str]:
-        """Headers that may be there once only, as it would be open which of them counts."""
+        """Headers that a request may have once only: with two it would be unclear which counts."""
         counting = {"host", "origin", "authorization", "content-length", SECRET_HEADER}
         return frozenset(counting | ({self._user_header} if self._user_header else set()))
 
@@ -161,14 +161,14 @@ class Authenticator:
         peer
             the address of the connection.
         address
-            from where the request came to the proxy, if there is one.
+            the address of the client, as the proxy says if there is one.
 
         Raises
         ------
         WrongTokenError
-            if nobody has the token.
+            if the token is unknown.
         RefusalError
-            if it came through a proxy that this server knows nothing of.
+            if it came through a proxy to a server without tokens.
         """
         if self.tokens is None:
             if any(name in headers for name in _FORWARDED):
@@ -179,7 +179,7 @@ class Authenticator:
             holder = self.tokens.named(user) or self.tokens.named("*")
             if holder is None:
                 return None
-            if not holder.digest:  # who has a token shows it: a proxy does not speak for them
+            if not holder.digest:  # users with a token must send it; a proxy cannot name them
                 return _held(holder, address, name=user)
         scheme, _, token = headers.get("authorization", "").partition(" ")
         if scheme.lower() == "bearer":
@@ -190,7 +190,7 @@ class Authenticator:
         return self._of_session(headers.get("cookie", ""), address)
 
     def _user(self, headers: Mapping[str, str]) -> str:
-        """Whom a proxy names, if it is believed; `*`, which is everybody else in the file of tokens, names nobody."""
+        """The user whom a proxy names; `*` names nobody, as it stands for all others in the file of tokens."""
         user = headers.get(self._user_header, "").strip() if self._user_header else ""
         return "" if user == "*" else user
 
@@ -205,7 +205,7 @@ class Authenticator:
         return None
 
     def holds(self, caller: Caller) -> bool:
-        """Whether who asked a while ago may still do the same; asked of WebSockets, which stay."""
+        """Whether a caller still has the same rights; checked for WebSockets, which stay open."""
         if caller.holder is None or self.tokens is None or self.sessions is None:
             return True
         if self.tokens.named(caller.holder.name) != caller.holder:
@@ -218,7 +218,7 @@ def _held(holder: Holder, address: str, session: Session | None = None, name: st
 
 
 def _session_cookies(header: str) -> Iterator[str]:
-    """What may be our cookie, the one that only this host can have set first."""
+    """The values of our cookie, first the one that only this host can set."""
     pairs = [pair.strip().partition("=") for pair in header.split(";")[:100]]
     for wanted in (SECURE_COOKIE, COOKIE):
         yield from (value for name, _, value in pairs if name == wanted)

@@ -1,4 +1,4 @@
-"""Before everything that answers: which host, from where, who, how often, how much; and the headers of every answer."""
+"""The guard: ASGI middleware that checks host, origin, user and limits of every request, and sets security headers."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from muster.server.work.turns import CURRENT_USER
 log = logging.getLogger("muster.security")
 
 OPEN_TO_ALL = {"/healthz": ("GET", "HEAD"), "/login": ("GET", "HEAD", "POST")}
-"""Paths that strangers may ask for, and how; not otherwise, as a page that says so would be made for each of them."""
+"""Paths and methods that need no login; all others are refused before a page is made."""
 REQUEST_KEY = "muster.request"
 _READING = ("GET", "HEAD", "OPTIONS")
 _AT_ONCE_S = 10.0
-_REQUESTS_A_PAGE = 25.0  # a page costs the server as much as so many other requests, and half a megabyte for a minute
+_REQUESTS_A_PAGE = 25.0  # a page costs as much time as so many other requests, and half a megabyte for a minute
 _PAGES_PER_S, _PAGES_AT_ONCE = 2.0, 40.0  # however few requests there may be
 _MESSAGES_PER_S = 100.0
 _FAILED_PER_S, _FAILED_AT_ONCE = 0.1, 10.0
@@ -44,7 +44,7 @@ Observe = Callable[["CompletedRequest"], None]
 
 @dataclass(frozen=True, kw_only=True)
 class CompletedRequest:
-    """A request that is over, for logs and metrics; `path` is without the query, which may hold anything."""
+    """A completed request, for logs and metrics; `path` is without the query, which may hold secrets."""
 
     id: str
     scope: Scope
@@ -55,7 +55,7 @@ class CompletedRequest:
 
 
 class GuardState:
-    """What the guard of one server knows; login and metrics look at it too."""
+    """The state of a server's guard; login and metrics use it too."""
 
     def __init__(self, settings: Settings, authenticator: Authenticator, audit: Audit) -> None:
         self.settings = settings
@@ -72,11 +72,11 @@ class GuardState:
         self.sockets = SocketLimit(settings.sockets, settings.sockets_per_address)
 
     def warning(self) -> str:
-        """What whoever looks after the server should mend."""
+        """A warning for the server's administrator; empty if there is none."""
         return "" if self.authenticator.tokens is None else self.authenticator.tokens.look()
 
     def count_wrong_token(self, address: str) -> None:
-        """Count a wrong token of an address. A right token is never refused: others may share the address.
+        """Count a wrong token of an address. Right tokens are never refused, as others may share the address.
 
         Guessing is bounded by the rate of requests of an address, and by the 256 random bits of each token.
 
@@ -92,7 +92,7 @@ class GuardState:
 
 @dataclass(frozen=True)
 class _Request:
-    """What is known of a request before anything answers it."""
+    """The parts of a request that the guard checks."""
 
     scope: Scope
     headers: dict[str, str]
@@ -108,12 +108,12 @@ class _Request:
 
 
 class Guard:
-    """ASGI middleware, so that it stands before routes, mounts, files and WebSockets alike.
+    """ASGI middleware before all routes, mounts, files and WebSockets.
 
     Parameters
     ----------
     observe
-        is told of every request that is over.
+        receives every completed request.
     """
 
     def __init__(self, app: ASGIApp, guard_state: GuardState, observe: Observe = lambda _: None) -> None:
@@ -143,8 +143,8 @@ class Guard:
                 self._shield.audit.refused(who, refusal.detail, answer.path, refusal.status_code)
             await answer.refuse(refusal, request)
         except WebSocketDisconnect:
-            pass  # whoever listened has left in the middle of a word
-        except Exception as error:  # nobody outside learns more than that, and where to look
+            pass  # the client disconnected
+        except Exception as error:  # clients learn only where to look
             if answer.gone:
                 log.debug("nobody listens any more: %s", type(error).__name__, extra={"request": answer.id})
                 return
@@ -161,12 +161,12 @@ class Guard:
             self._observe(completed)
 
     def _read(self, scope: Scope, peer: str) -> _Request:
-        """The headers, each name once; where the request comes from.
+        """Read the headers and the client's address.
 
         Raises
         ------
         RefusalError
-            if a header that counts is there twice.
+            if a header that may be there once is there twice.
         """
         headers: dict[str, str] = {}
         for raw_name, raw in scope["headers"]:
@@ -190,7 +190,7 @@ class Guard:
         if not is_static(path):
             _take(guard_state.by_address, network_of(request.address))
         caller = self._caller(request, peer)
-        reads_all = path.startswith("/_nicegui_ws/")  # as a request a socket of NiceGUI is, while it is polled
+        reads_all = path.startswith("/_nicegui_ws/")  # NiceGUI's socket while it is polled
         why = guard_state.hosts.why_not_origin(
             request.headers,
             "https" if request.scope["scheme"] in ("https", "wss") else "http",
@@ -227,7 +227,7 @@ class Guard:
             raise body.refused
 
     async def _socket(self, request: _Request, caller: Caller, receive: Receive, answer: _Answer) -> None:
-        """As long as who opened it may watch; messages that come too fast are read later."""
+        """Run a WebSocket while its user keeps their rights; messages that come too fast are delayed."""
         holds = self._shield.authenticator.holds
         pace = Buckets(_MESSAGES_PER_S, 4 * _MESSAGES_PER_S)
         over = False
@@ -254,7 +254,7 @@ class Guard:
                 raise OSError("the login is over")
             if message["type"] == "websocket.send" and not holds(caller):
                 await end()
-                raise OSError("the login is over")  # as of a connection that broke
+                raise OSError("the login is over")  # as if the connection broke
             await answer.send(message)
 
         with self._shield.sockets.place(request.address):
@@ -268,14 +268,14 @@ def _take(buckets: Buckets, key: str) -> None:
 
 
 class _Answer:
-    """An answer on its way: its headers are ours too, and it may turn into a refusal as long as it has not begun."""
+    """A response with security headers; it can become a refusal until it has begun."""
 
     def __init__(self, scope: Scope, send: Send, *, tls: bool) -> None:
         self._scope = scope
         self._send = send
         self._tls = tls
         self._begun = False
-        self.gone = False  # the connection: what is raised from then on is no fault of ours
+        self.gone = False  # whether the connection is closed: errors are no defect of ours then
         self.path = printable(scope["path"])  # before mounts change it
         self.id = uuid.uuid4().hex[:12]
         self.status = 101 if scope["type"] == "websocket" else 500
@@ -283,7 +283,7 @@ class _Answer:
 
     async def send(self, message: Message) -> None:
         if self.body is not None and self.body.refused is not None and not self._begun:
-            return  # whatever the application makes of it, the refusal is the answer
+            return  # the refusal replaces the application's response
         if message["type"] in ("http.response.start", "websocket.http.response.start"):
             self._begun = True
             self.status = message["status"]
@@ -298,7 +298,7 @@ class _Answer:
             raise
 
     async def refuse(self, refusal: RefusalError, request: _Request) -> None:
-        """Say why, if nothing was said yet."""
+        """Answer with the refusal, if no response has begun."""
         if self._begun:
             return
         self.body = None
@@ -310,7 +310,7 @@ class _Answer:
         if status == 401:
             headers["www-authenticate"] = "Bearer"
         if status == 408:
-            headers["connection"] = "close"  # what is left of the body does not come
+            headers["connection"] = "close"  # the rest of the body does not arrive
         if status == 401 and _is_page(request):
             status, headers["location"] = 303, f"/login?next={quote(request.scope['path'])}"
         await self._respond(status, headers, content)
@@ -325,7 +325,7 @@ class _Answer:
 
 
 def _is_page(request: _Request) -> bool:
-    """Whether a person opens a page in a browser."""
+    """Whether a browser asks for a page."""
     scope = request.scope
     wants = "text/html" in request.headers.get("accept", "")
     return not request.socket and scope["method"] == "GET" and wants and not scope["path"].startswith("/api/")

@@ -1,8 +1,7 @@
-"""What every answer tells browsers to forbid (OWASP secure headers; CSP level 3).
+"""Security headers of responses (OWASP secure headers; CSP level 3).
 
-NiceGUI's page needs `unsafe-inline` and `unsafe-eval`, as Vue compiles its templates in the browser; nothing may come
-from, or go to, another origin all the same. What the API answers is no page: should a browser show it as one (a
-record's page, a picture), it runs in a sandbox without the session.
+NiceGUI's page needs `unsafe-inline` and `unsafe-eval`, as Vue compiles its templates in the browser. Other origins are
+forbidden. Responses of the API that a browser shows (a record's page, a picture) run in a sandbox without the session.
 """
 
 from __future__ import annotations
@@ -49,17 +48,17 @@ STATIC = ("/_nicegui/", "/assets/", "/tiles/")  # files that are the same for ev
 
 
 def is_static(path: str) -> bool:
-    """Whether it is a file of the page's own, of which one page needs many."""
+    """Whether the path is a static file, of which one page needs many."""
     return path.startswith(STATIC)
 
 
 def is_page(path: str) -> bool:
-    """Whether it is a page, which is made anew for everybody who opens it, and kept for a while."""
+    """Whether the path is a page, which is built for each visitor and kept for a while."""
     return not is_static(path) and not path.startswith(("/api/", "/_nicegui", "/healthz", "/metrics", "/login"))
 
 
 def security_headers(path: str, *, tls: bool) -> list[tuple[bytes, bytes]]:
-    """For the answer to a request of this path."""
+    """The security headers of a response for this path."""
     answer = path.startswith("/api/")
     headers = [*_ALWAYS, (b"content-security-policy", (_ANSWER if answer else _PAGE).encode())]
     if tls:
@@ -68,7 +67,7 @@ def security_headers(path: str, *, tls: bool) -> list[tuple[bytes, bytes]]:
 
 
 def with_security(headers: list[tuple[bytes, bytes]], path: str, *, tls: bool) -> list[tuple[bytes, bytes]]:
-    """An answer's headers, and ours; what the answer says of these itself gives way, but for how long it is kept."""
+    """A response's headers with the security headers, which replace its own except `Cache-Control`."""
     ours = security_headers(path, tls=tls)
     names = {name for name, _ in ours} | {b"server"}
     kept = [(name, value) for name, value in headers if name.lower() not in names]

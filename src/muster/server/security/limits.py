@@ -1,4 +1,4 @@
-"""How often, how much, how long, how many: limits that hold before anything is read or kept."""
+"""Limits that hold before anything is read or stored: rates of requests, WebSockets, sizes and times of bodies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BODY_BYTES_PER_S = 16 * 1024  # slower than any link on which this page can be 
 
 
 def network_of(address: str) -> str:
-    """What one person has of addresses: one of IPv4, a /64 of IPv6."""
+    """The network that one person has: an address of IPv4, a /64 of IPv6."""
     found = address_in(address)
     if isinstance(found, ipaddress.IPv6Address) and not found.is_loopback:
         return str(ipaddress.ip_network((found, 64), strict=False))
@@ -27,12 +27,12 @@ def network_of(address: str) -> str:
 
 
 class Buckets:
-    """Token buckets by key: `burst` at once, and `rate` a second on average. The least recently used are forgotten.
+    """Token buckets by key: `burst` at once and `rate` per second on average. The least recently used are dropped.
 
     Parameters
     ----------
     clock
-        seconds that never go back.
+        monotonic seconds.
     most
         how many keys are remembered.
     """
@@ -47,7 +47,7 @@ class Buckets:
         self._levels: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
     def take(self, key: str) -> float:
-        """Take one; returns 0, or after how many seconds there is one again."""
+        """Take one token; returns 0, or the seconds until there is one."""
         level = self._level(key)
         if level < 1.0:
             return (1.0 - level) / self._rate
@@ -64,7 +64,7 @@ class Buckets:
 
 
 class SocketLimit:
-    """How many WebSockets are open, in all and of one address."""
+    """Limits how many WebSockets are open, in all and per address."""
 
     def __init__(self, most: int, most_of_one: int) -> None:
         self._most = most
@@ -77,12 +77,12 @@ class SocketLimit:
 
     @contextmanager
     def place(self, address: str) -> Iterator[None]:
-        """One more, as long as it is open.
+        """Count one more open WebSocket within the block.
 
         Raises
         ------
         RefusalError
-            if there are as many as may be.
+            if the limit is reached.
         """
         key = network_of(address)
         if self.taken >= self._most or self._open[key] >= self._most_of_one:
@@ -98,12 +98,12 @@ class SocketLimit:
 
 
 class LimitedBody:
-    """A request's body, which may only be so large, and must come at some speed.
+    """A request's body with a limit of its size and a minimum rate.
 
     Attributes
     ----------
     refused
-        why no more of it was read.
+        why reading stopped; None if it did not.
     """
 
     def __init__(self, receive: Receive, most_bytes: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -116,7 +116,7 @@ class LimitedBody:
         self.refused: RefusalError | None = None
 
     def require_announced(self, length: str | None) -> None:
-        """Refuse by what Content-Length says, before anything is read."""
+        """Check Content-Length before anything is read."""
         if length is None:
             return
         if not (length.isascii() and length.isdigit()):
@@ -130,10 +130,10 @@ class LimitedBody:
         Raises
         ------
         RefusalError
-            if it is one too many, or does not come.
+            if the body is too large or too slow.
         """
         if self._whole:
-            return await self._receive()  # waits for the end of the connection: that may take its time
+            return await self._receive()  # waits for the end of the connection, without a limit
         left = self._began + _BODY_FIRST_S + self._size / _BODY_BYTES_PER_S - self._clock()
         try:
             message = await asyncio.wait_for(self._receive(), max(0.0, left))

@@ -1,4 +1,4 @@
-"""The page's login: a plain form, so that whoever is not known reaches nothing but it."""
+"""Login and logout of the pages: a plain HTML form, the only page that needs no login."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _PAGE = """<!doctype html>
 
 
 def login_routes(guard_state: GuardState) -> list[Route]:
-    """`/login`, and `/logout`, to which the page posts."""
+    """The routes `/login` and `/logout`."""
 
     async def show(request: Request) -> Response:
         if guard_state.authenticator.tokens is None:
@@ -82,7 +82,7 @@ def login_routes(guard_state: GuardState) -> list[Route]:
 
 
 async def _logged_in(guard_state: GuardState, request: Request) -> Response:
-    """A session for a right token; the form again for a wrong one."""
+    """Begin a session for a right token; show the form again for a wrong one."""
     authenticator = guard_state.authenticator
     if authenticator.tokens is None or authenticator.sessions is None:
         return RedirectResponse("/", 303)
@@ -104,12 +104,12 @@ async def _logged_in(guard_state: GuardState, request: Request) -> Response:
 
 
 async def _fields(request: Request) -> dict[str, str]:
-    """A small form's fields.
+    """The fields of a small form.
 
     Raises
     ------
     RefusalError
-        if it is none, or not small.
+        if it is no form, or too large.
     """
     body = b""
     async for piece in request.stream():
@@ -129,6 +129,6 @@ def _form(following: str, alert: str = "", status: int = 200) -> Response:
 
 
 def _own_path(path: str) -> str:
-    """A path of this server, whatever a link says."""
+    """The path, if it is one of this server; `/` otherwise."""
     own = path.startswith("/") and not path.startswith(("//", "/\\")) and path.isprintable()
     return path if own and not path.startswith("/login") else "/"

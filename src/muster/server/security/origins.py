@@ -1,4 +1,4 @@
-"""Which host a request may name, and from which origin it may come.
+"""Checks of the host that a request names and of the origin that it comes from.
 
 A page of another site can make a browser send requests here (CSRF), open WebSockets here, and, by pointing a name of
 its own at this machine (DNS rebinding), even read the answers. The first two show in Origin and Sec-Fetch-Site, which
@@ -21,7 +21,7 @@ _LOOPBACK = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches a server that listens there."""
+    """Whether a server that listens there can be reached from this machine only."""
     if host == "localhost":
         return True
     address = address_in(host)
@@ -29,7 +29,7 @@ def is_loopback(host: str) -> bool:
 
 
 def address_in(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
-    """The IP address that the text is; IPv4 in the clothes of IPv6 is IPv4."""
+    """The IP address in the text; an IPv4-mapped IPv6 address becomes IPv4. None if it is no address."""
     try:
         address = ipaddress.ip_address(text.strip("[]").partition("%")[0])
     except ValueError:
@@ -47,9 +47,9 @@ class Hosts:
     names
         in lower case, without port.
     addresses
-        whether any IP address is one: no name can be pointed at it, so that nothing can be rebound.
+        whether any IP address is accepted: DNS rebinding needs a name.
     origins
-        under which browsers reach it through a proxy, as they write them in Origin.
+        under which browsers reach the server through a proxy, as in the header Origin.
     """
 
     names: frozenset[str]
@@ -68,7 +68,7 @@ class Hosts:
         return cls(frozenset(names), beyond, origins)
 
     def why_not_host(self, host: str) -> str | None:
-        """What is wrong with the header Host; None: nothing."""
+        """What is wrong with the header Host; None if nothing is."""
         match = _HOST.fullmatch(host)
         name = match["name"].strip("[]").lower() if match else ""
         address = address_in(name)
@@ -79,7 +79,7 @@ class Hosts:
         )
 
     def why_not_origin(self, headers: Mapping[str, str], scheme: str, *, changes: bool, by_cookie: bool) -> str | None:
-        """Why a request of another site is refused; None: it is not one, or nothing can come of it.
+        """Why a request from another site is refused; None if it may pass.
 
         Parameters
         ----------
@@ -88,9 +88,9 @@ class Hosts:
         scheme
             `http` or `https`: how this server was reached.
         changes
-            whether it may change something, or reads what a browser would not keep from other sites: a WebSocket.
+            whether the request changes something, or is a WebSocket, which browsers allow from other sites.
         by_cookie
-            whether the browser says by itself who asks.
+            whether the user is known by a cookie, which browsers send by themselves.
         """
         origin = headers.get("origin")
         if origin is not None:
@@ -108,7 +108,7 @@ class Hosts:
 
 
 def _origin(text: str) -> str:
-    """As browsers write it: in lower case, without a path, without the usual port."""
+    """An origin as browsers send it: in lower case, without path and default port."""
     parts = urlsplit(text.lower())
     usual = {"http": 80, "https": 443}.get(parts.scheme)
     host = f"[{parts.hostname}]" if ":" in (parts.hostname or "") else parts.hostname

@@ -12,16 +12,16 @@ from muster.server.problem import problem_content
 
 
 class RefusalError(HTTPException):
-    """A request is refused; `detail` is one line for a person.
+    """A refused request; `detail` is one line for a person.
 
     Parameters
     ----------
     status
         of HTTP.
     why
-        one line, which names what was found and what was expected.
+        one line that names what was found and what was expected.
     retry_s
-        after how long the same may be asked again.
+        seconds until the request may be repeated.
     """
 
     def __init__(self, status: int, why: str, *, retry_s: float | None = None) -> None:
@@ -29,11 +29,11 @@ class RefusalError(HTTPException):
         super().__init__(status, printable(why), headers)
 
     def as_problem(self) -> Mapping[str, Any]:
-        """As every error of the API."""
+        """The refusal as problem JSON."""
         return problem_content(self.status_code, self.detail)
 
 
 def printable(text: str, most: int = 200) -> str:
-    """What a stranger wrote, fit for a line of a log: short, without control characters."""
+    """Text from a client for one line of a log: shortened, without control characters."""
     cut = text if len(text) <= most else text[: most - 3] + "..."
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "backslashreplace").decode() for c in cut)

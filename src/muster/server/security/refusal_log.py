@@ -1,4 +1,4 @@
-"""What was refused, in the audit log; so rarely that a flood of it fills no disk."""
+"""Logins and refusals in the audit log, limited so that a flood does not fill the disk."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _SETTLES_S = 2.0
 
 
 class Audit:
-    """Logins and refusals, on their way to the audit log.
+    """Writes logins and refusals to the audit log.
 
-    Of one address one refusal in ten seconds is kept, and 100 at once and 360 an hour of all: 3 MB a day at the very
-    most. The number that was left out before goes with the next one.
+    It writes one refusal per address in ten seconds, and of all addresses 100 at once and 360 per hour: at most 3 MB a
+    day. Each entry tells how many refusals were left out before it.
 
     Parameters
     ----------
     keep
-        writes one into the audit log; None while there is no database.
+        gives the function that writes an entry; None while there is no database.
     """
 
     def __init__(self, keep: Callable[[], Keep | None], clock: Callable[[], float] = time.monotonic) -> None:
@@ -42,11 +42,11 @@ class Audit:
         self._under_way: set[asyncio.Task[None]] = set()
 
     def refused(self, who: User, why: str, path: str, status: int) -> None:
-        """Note that a request was refused."""
+        """Write a refused request."""
         self._refuse(who, {"why": why, "path": path, "status": status})
 
     def forbade(self, who: User, verb: str, why: str) -> None:
-        """Note that somebody who may only watch wanted to command, over the API or by a page."""
+        """Write that a watcher tried a command, by the API or by a page."""
         self._refuse(who, {"why": why, "command": verb})
 
     def _refuse(self, who: User, data: dict[str, Any]) -> None:
@@ -60,12 +60,12 @@ class Audit:
         self._note(who, "refused", data)
 
     def logged_in(self, who: User) -> None:
-        """Note a login."""
+        """Write a login."""
         log.info("login of %s", who.name, extra={"user": who.name, "address": who.address})
         self._note(who, "login", {"role": who.role})
 
     def logged_out(self, who: User) -> None:
-        """Note a logout."""
+        """Write a logout."""
         self._note(who, "logout", {})
 
     def _note(self, who: User, verb: str, data: Mapping[str, Any]) -> None:
@@ -79,10 +79,10 @@ class Audit:
             return
         try:
             await keep(who, verb, data)
-        except MusterError as error:  # nobody is let in or kept out by a full disk
+        except MusterError as error:  # a full disk changes nobody's rights
             log.error("not in the audit log: %s of %s: %s", verb, who.name, error)
 
     async def settle(self) -> None:
-        """Until everything noted is written; not for long, as robots are told to stand after it."""
+        """Wait until everything is written, for a short time only: robots are stopped after it."""
         if self._under_way:
             await asyncio.wait(self._under_way, timeout=_SETTLES_S)

@@ -1,4 +1,4 @@
-"""Which ways of serving are safe enough to begin at all."""
+"""Which settings are safe to serve with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from muster.server.settings import Settings
 
 
 def require_safe(settings: Settings) -> None:
-    """Refuse to serve strangers without authenticator who they are, or in the clear without having been told to.
+    """Refuse to serve a network without authentication, or without TLS unless that was asked for.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def _require_proven_proxy(settings: Settings) -> None:
 
 
 def _require_alone(settings: Settings) -> None:
-    """Without tokens everybody may command: nobody but this machine may reach the server."""
+    """Without tokens everybody may command: only this machine may reach the server."""
     if not is_loopback(settings.host):
         raise ParameterError(
             f"--host {settings.host} reaches beyond this machine; "

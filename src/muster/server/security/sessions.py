@@ -1,8 +1,8 @@
-"""The page's session: a cookie that says who logged in, signed so that nobody else can make one.
+"""Sessions of the pages: signed cookies that name the user.
 
-HMAC-SHA-256 (RFC 2104) over the words of the cookie, with a secret that is made at the first start and kept beside the
-database, readable by its owner alone. The cookie holds no token; it names the token's digest in part, so that a token
-that is taken out of the file ends its sessions.
+The signature is HMAC-SHA-256 (RFC 2104) with a secret that is made at the first start and stored beside the database,
+readable by its owner only. The cookie holds part of the token's digest, not the token: deleting a token ends its
+sessions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from muster.exchange.mission_control import Role
 from muster.server.security.tokens import Holder
 
 COOKIE = "muster_session"
-SECURE_COOKIE = f"__Host-{COOKIE}"  # a browser takes it over TLS alone, and from this very host
+SECURE_COOKIE = f"__Host-{COOKIE}"  # browsers accept it over TLS only, and from this host only
 LASTS_S: dict[Role, float] = {"command": 12 * 3600.0, "watch": 7 * 24 * 3600.0}  # a wall screen watches for days
 _SECRET_BYTES = 32
 _MOST_ENDED = 10_000
@@ -38,12 +38,12 @@ class Session:
 
 
 def kept_secret(file: Path) -> bytes:
-    """The secret of this database's sessions; made if there is none yet.
+    """The secret of this database's sessions, created if there is none.
 
     Raises
     ------
     OSError
-        if it can be neither read nor made.
+        if it can be neither read nor created.
     """
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     try:
@@ -52,7 +52,7 @@ def kept_secret(file: Path) -> bytes:
         kept = file.read_bytes()
         if len(kept) >= _SECRET_BYTES:
             return kept
-        file.unlink()  # cut off while it was written
+        file.unlink()  # incomplete: the process ended while it wrote
         return kept_secret(file)
     with os.fdopen(descriptor, "wb") as stream:
         secret = secrets.token_bytes(_SECRET_BYTES)
@@ -61,7 +61,7 @@ def kept_secret(file: Path) -> bytes:
 
 
 class Sessions:
-    """Makes and reads cookies.
+    """Creates and reads cookies.
 
     Parameters
     ----------
@@ -77,14 +77,14 @@ class Sessions:
         self._ended: dict[str, float] = {}
 
     def begin(self, holder: Holder) -> tuple[str, float]:
-        """The cookie of a new session, and how many seconds it holds."""
+        """The cookie of a new session, and its lifetime in seconds."""
         lasts = LASTS_S[holder.role]
         words = [holder.name, holder.digest[:16], self._clock() + lasts, secrets.token_urlsafe(12)]
         body = json.dumps(words).encode()
         return f"{_text(body)}.{_text(self._signature(body))}", lasts
 
     def read(self, cookie: str) -> Session | None:
-        """The session; None if the cookie is not one of ours, or its time is over, or it was ended."""
+        """The session of a cookie; None if the cookie is invalid, expired or logged out."""
         body_text, _, signature = cookie.partition(".")
         try:
             body, signed = _bytes(body_text), _bytes(signature)
@@ -96,11 +96,11 @@ class Sessions:
         return session if self.holds(session) else None
 
     def holds(self, session: Session) -> bool:
-        """Whether its time is not over, and nobody ended it."""
+        """Whether the session is neither expired nor logged out."""
         return self._clock() < session.until and session.id not in self._ended
 
     def end(self, session: Session) -> None:
-        """From now on the cookie is worth nothing, wherever it was copied to."""
+        """Log a session out: all copies of its cookie are invalid."""
         now = self._clock()
         self._ended = {id_: until for id_, until in self._ended.items() if until > now}
         while len(self._ended) >= _MOST_ENDED:

@@ -1,10 +1,9 @@
-"""The file of tokens: who may ask, and whether they may command.
+"""The file of tokens: users and their roles.
 
-A line a person or program: ROLE NAME DIGEST, where ROLE is `watch` or `command` and DIGEST is the SHA-256 of the token,
-so that the file holds no secret. Tokens are made by `muster serve --new-token NAME` and have 256 random bits, which no
-table and no trial finds; that is why a plain digest is enough. DIGEST is `-` for someone who only comes through a
-reverse proxy, and NAME is `*` then for everybody else whom the proxy lets in. `#` begins a comment. The file is read
-again when it changes: a line that is deleted ends its sessions.
+Each line is ROLE NAME DIGEST. ROLE is `watch` or `command`. DIGEST is the SHA-256 of the token, so the file holds no
+secret; a plain digest is enough, as tokens have 256 random bits (`muster serve --new-token NAME`). DIGEST is `-` for a
+user whom a reverse proxy names, and NAME `*` then stands for all others whom the proxy names. `#` begins a comment. The
+file is read again when it changes; deleting a line ends its sessions.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ log = logging.getLogger("muster.security")
 
 @dataclass(frozen=True)
 class Holder:
-    """Whoever has a token, or comes through the proxy (`digest` is empty then)."""
+    """A user of the file; `digest` is empty for a user whom the proxy names."""
 
     name: str
     role: Role
@@ -45,22 +44,22 @@ class Holder:
 
 
 def new_token() -> str:
-    """A fresh token; it can be told from other text by how it begins."""
+    """A new token; its prefix tells it from other text."""
     return PREFIX + secrets.token_urlsafe(32)
 
 
 def digest_of(token: str) -> str:
-    """What the file keeps of a token."""
+    """The digest of a token."""
     return sha256(token.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def line_of(name: str, role: Role, token: str) -> str:
-    """A line of the file.
+    """The line of the file for a token.
 
     Raises
     ------
     InputError
-        if the name is none.
+        if the name is invalid.
     """
     if not _NAME.fullmatch(name):
         raise InputError(
@@ -70,12 +69,12 @@ def line_of(name: str, role: Role, token: str) -> str:
 
 
 def read_holders(file: Path) -> tuple[Holder, ...]:
-    """Everyone whom the file names; an empty one names nobody.
+    """The users of the file.
 
     Raises
     ------
     InputError
-        if a line is none, or anybody on this machine may write the file.
+        if a line is invalid, or everybody on this machine may write the file.
     OSError
         if it cannot be read.
     """
@@ -108,7 +107,7 @@ def _holder(file: Path, number: int, words: list[str]) -> Holder:
         raise wrong("role", repr(role), f"watch or command{did_you_mean(role, ROLES)}")
     if not _NAME.fullmatch(name) and not (name == "*" and digest == "-"):
         raise wrong("name", repr(name), "up to 64 of letters, digits and . _ @ + -")
-    if digest.startswith(PREFIX):  # its value is not shown: it is a secret
+    if digest.startswith(PREFIX):  # a secret: its value is not shown
         raise wrong("digest", "a token", "its SHA-256, as muster serve --new-token prints it")
     if digest != "-" and not _DIGEST.fullmatch(digest):
         raise wrong("digest", f"{len(digest)} characters", "64 of 0-9 and a-f, or - for a user of the proxy alone")
@@ -116,21 +115,20 @@ def _holder(file: Path, number: int, words: list[str]) -> Holder:
 
 
 class Tokens:
-    """The file as it is now.
+    """The present content of the file of tokens.
 
     Parameters
     ----------
     file
-        is read at once, and again when it has changed; while a change cannot be read what held before holds on,
-        `trouble` says why, and so does the log, again and again: a token that was to be taken away still counts.
-        One whose last line was deleted can be read: nobody is let in any more.
+        is read at once, and again when it has changed. While it cannot be read the former content stays valid, and
+        `trouble` and the log say why. A file whose last line was deleted lets nobody in.
     clock
-        seconds that never go back.
+        monotonic seconds.
 
     Raises
     ------
     InputError
-        if at the beginning a line is none or there is none at all, or anybody on this machine may write the file.
+        if at the start a line is invalid, there is no line, or everybody on this machine may write the file.
     OSError
         if it cannot be read then.
     """
@@ -149,7 +147,7 @@ class Tokens:
         self.trouble = ""
 
     def holder(self, token: str) -> Holder | None:
-        """Whose token this is; takes as long for a wrong one as for a right one."""
+        """The holder of a token, in constant time; None if it is unknown."""
         self._refresh()
         digest = digest_of(token)
         found = None
@@ -159,7 +157,7 @@ class Tokens:
         return found
 
     def named(self, name: str) -> Holder | None:
-        """The holder of this name."""
+        """The holder with this name."""
         self._refresh()
         return _first(holder for holder in self._holders if holder.name == name)
 
@@ -190,7 +188,7 @@ class Tokens:
         log.error("%s", self.trouble)
 
     def look(self) -> str:
-        """Look at the file now; what is wrong with it, the empty text: nothing."""
+        """Read the file if it has changed; returns what is wrong with it, or an empty text."""
         self._refresh()
         return self.trouble
 

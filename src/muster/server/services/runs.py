@@ -15,10 +15,10 @@ from muster.exchange.mission_control import Action, BusyError, ConflictError, En
 from muster.mission.errors import MusterError, ParameterError
 from muster.running.worlds import WORLDS
 from muster.server.runs.robot_claims import claims_of
-from muster.server.runs.run_session import TOO_LATE, Carrying
+from muster.server.runs.run_session import TOO_LATE, RunSession
 from muster.server.runs.run_settings import require_action, require_speed, require_world
-from muster.server.runs.subscribers import Feed
-from muster.server.runs.unsaved_actions import unkept
+from muster.server.runs.subscribers import Subscribers
+from muster.server.runs.unsaved_actions import unsaved_action
 from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
 from muster.server.services.database_lock import lock_of_runs
 from muster.server.services.repeated_requests import made_once
@@ -42,7 +42,7 @@ class Runs:
         self._store, self._settings = store, settings
         self._actions = Actions(store, refused)
         self._lock = lock_of_runs(settings)
-        self._live: dict[int, Carrying] = {}
+        self._sessions: dict[int, RunSession] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._beginning: list[frozenset[str]] = []  # robots of runs that are being started
         self._slow: set[asyncio.Task[Action]] = set()
@@ -55,13 +55,13 @@ class Runs:
         for k, run in enumerate(unfinished):
             later = next((other for other in unfinished[k + 1 :] if _claims(run) & _claims(other)), None)
             if later is None:
-                self._carry(run)
+                self._open_session(run)
             else:  # it started after this run had ended, which could not be written
                 await self._leave(run, f"run {later.id}, which began later, commands its robots")
 
     async def close(self) -> None:
         """End all runners; the runs resume when a server starts again. Real robots are stopped."""
-        await asyncio.gather(*(carrying.close() for carrying in self._live.values()))
+        await asyncio.gather(*(session.close() for session in self._sessions.values()))
         await asyncio.gather(*self._tasks.values())
         await asyncio.gather(*self._slow, return_exceptions=True)
 
@@ -110,7 +110,8 @@ class Runs:
                 raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
             self._beginning.append(claims)
             try:
-                return self._carry(await asyncio.to_thread(self._add, who, plan, world, speed, settings, request)).run
+                run = await asyncio.to_thread(self._add, who, plan, world, speed, settings, request)
+                return self._open_session(run).run
             finally:
                 self._beginning.remove(claims)
 
@@ -121,11 +122,11 @@ class Runs:
 
     def present(self) -> Sequence[Run]:
         """Runs under way, newest first, without asking the database."""
-        return [self._live[run].run for run in sorted(self._live, reverse=True) if not self._live[run].over]
+        return [self._sessions[run].run for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over]
 
     async def over(self, limit: int = 200) -> Sequence[Run]:
         """Runs that are over, newest first, including those whose end is not written yet."""
-        ended = {run: carrying.run for run, carrying in self._live.items() if carrying.over}
+        ended = {run: session.run for run, session in self._sessions.items() if session.over}
         kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
         found = {run.id: run for run in kept} | ended
         return [found[run] for run in sorted(found, reverse=True)[:limit]]
@@ -137,8 +138,8 @@ class Runs:
         ------
         NotFoundError
         """
-        carrying = self._live.get(run)
-        return carrying.run if carrying is not None else await asyncio.to_thread(self._store.runs.get, run)
+        session = self._sessions.get(run)
+        return session.run if session is not None else await asyncio.to_thread(self._store.runs.get, run)
 
     async def act(self, who: User, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
         """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
@@ -155,13 +156,13 @@ class Runs:
         async with self._written_if_refused(who, f"run.{verb}", {"run": run, "data": dict(data or {})}):
             said = require_action(verb, data or {})
             state = (await self.get(run)).state
-            carrying = self._live.get(run)
-            if carrying is None or carrying.over:
+            session = self._sessions.get(run)
+            if session is None or session.over:
                 raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
-        action = await self._added(unkept(who, f"run.{verb}", said, run, self._moment()), who, carrying)
-        if not carrying.ask(action):
+        action = await self._added(unsaved_action(who, f"run.{verb}", said, run, self._moment()), who, session)
+        if not session.ask(action):
             await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
-            raise ConflictError(f"run {run} is over: {carrying.run.state}; expected one that is under way")
+            raise ConflictError(f"run {run} is over: {session.run.state}; expected one that is under way")
         return action
 
     async def entries(self, run: int, after: int = 0, limit: int | None = None) -> Sequence[Entry]:
@@ -171,9 +172,9 @@ class Runs:
         ------
         NotFoundError
         """
-        carrying = self._live.get(run)
-        if carrying is not None:
-            return await carrying.journal.entries(after, limit)
+        session = self._sessions.get(run)
+        if session is not None:
+            return await session.log_writer.entries(after, limit)
         await asyncio.to_thread(self._store.runs.get, run)
         return await asyncio.to_thread(self._store.log.entries, run, after, limit)
 
@@ -185,21 +186,21 @@ class Runs:
         StoreError
             if it cannot be written.
         """
-        carrying = self._live.get(run)
-        if carrying is not None:
-            await carrying.journal.given()
-            if carrying.journal.trouble:
-                raise StoreError(f"run {run} is not kept yet: {carrying.journal.trouble}")
+        session = self._sessions.get(run)
+        if session is not None:
+            await session.log_writer.given()
+            if session.log_writer.trouble:
+                raise StoreError(f"run {run} is not kept yet: {session.log_writer.trouble}")
 
-    def feed(self, run: int) -> Feed | None:
+    def subscribers(self, run: int) -> Subscribers | None:
         """What watchers of a run are told; None where it is not under way."""
-        carrying = self._live.get(run)
-        return None if carrying is None else carrying.feed
+        session = self._sessions.get(run)
+        return None if session is None else session.subscribers
 
     def pid(self, run: int) -> int | None:
         """The process id of a run's runner; None if there is none."""
-        carrying = self._live.get(run)
-        return None if carrying is None else carrying.pid
+        session = self._sessions.get(run)
+        return None if session is None else session.pid
 
     @property
     def under_way(self) -> int:
@@ -209,17 +210,17 @@ class Runs:
     @property
     def watchers(self) -> int:
         """How many WebSockets and pages watch runs."""
-        return sum(carrying.feed.watchers for carrying in self._live.values())
+        return sum(session.subscribers.watchers for session in self._sessions.values())
 
     @property
     def troubles(self) -> Sequence[str]:
         """Why logs of runs are not being written, one line per run."""
-        live = tuple(self._live.items())
-        return tuple(f"run {run}: {each.journal.trouble}" for run, each in live if each.journal.trouble)
+        live = tuple(self._sessions.items())
+        return tuple(f"run {run}: {each.log_writer.trouble}" for run, each in live if each.log_writer.trouble)
 
     def statuses(self) -> Sequence[str]:
         """The newest `status` message of each run under way."""
-        texts = (carrying.feed.newest("status") for carrying in tuple(self._live.values()))
+        texts = (session.subscribers.newest("status") for session in tuple(self._sessions.values()))
         return tuple(text for text in texts if text)
 
     @asynccontextmanager
@@ -243,7 +244,7 @@ class Runs:
 
     def _require_unclaimed(self, claims: frozenset[str]) -> None:
         """Raise ConflictError if another run commands some of these robots, or starts to."""
-        others = [(f"run {run}", _claims(each.run)) for run, each in self._live.items() if not each.over]
+        others = [(f"run {run}", _claims(each.run)) for run, each in self._sessions.items() if not each.over]
         for whose, theirs in [*others, *(("another run", theirs) for theirs in self._beginning)]:
             if both := claims & theirs:
                 what = ", ".join(sorted(both))
@@ -271,11 +272,11 @@ class Runs:
             request=request,
         )
 
-    def _carry(self, run: Run) -> Carrying:
-        carrying = self._live[run.id] = Carrying(self._store, run, str(self._lock), self._settings.memory_mb)
-        task = self._tasks[run.id] = asyncio.create_task(carrying.go())
+    def _open_session(self, run: Run) -> RunSession:
+        session = self._sessions[run.id] = RunSession(self._store, run, str(self._lock), self._settings.memory_mb)
+        task = self._tasks[run.id] = asyncio.create_task(session.go())
         task.add_done_callback(lambda _: self._forget(run.id))
-        return carrying
+        return session
 
     async def _leave(self, run: Run, why: str) -> None:
         """Give a run up instead of resuming it."""
@@ -284,16 +285,16 @@ class Runs:
             await asyncio.to_thread(self._store.runs.set, run.id, state="failed", remark=why)
 
     def _forget(self, run: int) -> None:
-        self._live.pop(run, None)
+        self._sessions.pop(run, None)
         self._tasks.pop(run, None)
 
     def _newest(self, run: Run) -> Run:
-        carrying = self._live.get(run.id)
-        return run if carrying is None else carrying.run
+        session = self._sessions.get(run.id)
+        return run if session is None else session.run
 
-    async def _added(self, action: Action, who: User, carrying: Carrying) -> Action:
+    async def _added(self, action: Action, who: User, session: RunSession) -> Action:
         """The action as written; as given if the database fails or is slow."""
-        if carrying.journal.trouble or self._slow:  # the database fails or is slow
+        if session.log_writer.trouble or self._slow:  # the database fails or is slow
             return action
         what = (who, action.verb, action.data, action.run, action.at)
         return await self._patiently(self._store.actions.add, *what) or action

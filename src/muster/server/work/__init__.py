@@ -1,8 +1,8 @@
-"""Planning and other long work, in processes of their own with limits on memory and time.
+"""Planning and other long work, in worker processes with limits on memory and time.
 
-The server asks a `Pool`; the pool keeps processes (`worker`) that do `tasks` one at a time. They speak JSON lines:
-`{"task", "arguments"}` one way, any number of `{"progress"}` and one `{"done"}` or `{"failed"}` the other. A line
-`{"stop": true}` (`StopRequest`) asks what is under way to end with what it has.
+The server calls a `Pool`, whose processes (`worker`) do `tasks` one at a time. They exchange JSON lines: a request
+`{"task", "arguments"}`, then any number of `{"progress"}` and one `{"done"}` or `{"failed"}`. A line `{"stop": true}`
+(`StopRequest`) ends the running task with its best result so far.
 """
 
 from muster.server.work.errors import OutOfMemory, TimedOut, WorkerDied, WorkError

@@ -1,4 +1,4 @@
-"""What processes that read the missions of strangers may know of the server's environment: no secrets."""
+"""The environment of processes that read missions of users: the server's environment without secrets."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ _SECRET = re.compile(r"(?!ROS_)(MUSTER_DB|PG.*|.*(PASS|TOKEN|SECRET|CREDENTIAL|K
 
 
 def without_secrets(environment: Mapping[str, str]) -> dict[str, str]:
-    """The environment without what is, or may hold, a secret: by its name; what robots need (ROS_*) stays."""
+    """The environment without variables whose names tell of secrets; those of ROS (ROS_*) stay."""
     return {name: value for name, value in environment.items() if not _SECRET.fullmatch(name.upper())}

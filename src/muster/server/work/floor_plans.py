@@ -1,4 +1,4 @@
-"""The floor plan of a mission: its picture among the mission's files, and how it lies."""
+"""The floor plan of a mission: the image among its files, with resolution and origin."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from muster.motion.maps.ros_yaml import read_ros_map
 
 
 def floor_of(mission: Mission) -> dict[str, Any] | None:
-    """`{"file", "resolution_m", "origin"}`; None where there is no picture, or what describes it cannot be read.
+    """`{"file", "resolution_m", "origin"}`; None if there is no image, or its description cannot be read.
 
-    The mission's files are where `work.missions.mission_of` has laid them.
+    `work.missions.mission_of` must have written the mission's files.
     """
     chart = mission.map
     if chart is None:
@@ -32,5 +32,5 @@ def floor_of(mission: Mission) -> dict[str, Any] | None:
 
 
 def _floor(picture: Path, resolution_m: float, origin: tuple[float, ...]) -> dict[str, Any]:
-    """The file's name without detours, as files are kept; the origin's yaw is 0 where it is not given."""
+    """The normalised file name; the origin's yaw is 0 by default."""
     return {"file": os.path.normpath(picture), "resolution_m": resolution_m, "origin": [*origin, 0.0, 0.0, 0.0][:3]}

@@ -1,4 +1,4 @@
-"""Missions and plans that a worker is given: read in its own folder, and they lead nowhere out of it."""
+"""Reads the missions and plans of a worker's tasks, in its own folder and from no other."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _HERE = "mission"  # the folder of the mission's own file, within the worker's
 
 
 def mission_of(given: Mapping[str, Any]) -> Mission:
-    """The mission in `{"text", "files", "name"}`: its YAML, and the files that it names by their names (base64).
+    """The mission in `{"text", "files", "name"}`: its YAML, and the files that it names (base64, by name).
 
-    It is laid down in the present folder, a subfolder of which becomes the present one: its files may be needed later.
+    The files are written into a subfolder of the working directory, which becomes the working directory.
 
     Raises
     ------
@@ -58,12 +58,12 @@ def plan_of(given: object, name: str = "plan") -> Plan:
 
 
 def written_files(files: Mapping[str, str]) -> frozenset[str]:
-    """Write files (base64, by name) beside where a mission's own file would be; go there; where they are.
+    """Write files (base64, by name) into the folder of the mission and change to it; returns their paths.
 
     Raises
     ------
     MissionError
-        for a name that leads out of the present folder.
+        for a name that leads out of the folder.
     """
     Path(_HERE).mkdir()
     places = {name: Path(_normal(Path(_HERE, name))) for name in files}
@@ -82,19 +82,19 @@ def written_files(files: Mapping[str, str]) -> frozenset[str]:
 
 
 def _normal(name: str | Path) -> str:
-    """A name of a file without detours."""
+    """A normalised file name."""
     return os.path.normpath(name)
 
 
 def _file_name(name: str) -> Path:
-    """What a mission's file is called in messages."""
+    """The file name of a mission in messages."""
     plain = name.isprintable() and "/" not in name and not name.startswith(".")
     stem = name if plain else "mission"
     return Path(stem if stem.endswith((".yaml", ".yml")) else f"{stem}.yaml")
 
 
 def _astray(data: Mapping[str, Any], files: Collection[str]) -> Iterator[Fault]:
-    """The files that a mission names and that are not with it."""
+    """Faults for files that a mission names and that were not sent with it."""
     for keys, name in _named(data):
         if _normal(name) not in files:
             yield Fault(keys, shown(name), "one of the files that are with the mission")
@@ -105,7 +105,7 @@ def _astray(data: Mapping[str, Any], files: Collection[str]) -> Iterator[Fault]:
 
 
 def _named(data: Mapping[str, Any]) -> Iterator[tuple[Keys, str]]:
-    """Every value of a mission that names a file."""
+    """All values of a mission that name files."""
     for group, keys in (("map", ("ros_yaml", "image")), ("travel", None)):
         table = data.get(group)
         if isinstance(table, dict):
@@ -115,7 +115,7 @@ def _named(data: Mapping[str, Any]) -> Iterator[tuple[Keys, str]]:
 
 
 def _picture_of_map(name: str) -> str | None:
-    """The image that a map file of ROS names; None where it cannot be read, which whoever needs it will say."""
+    """The image that a map file of ROS names; None if it cannot be read, which is reported where the map is used."""
     from muster.motion.maps.ros_yaml import read_ros_map
 
     try:

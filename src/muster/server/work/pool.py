@@ -1,4 +1,4 @@
-"""The workers of a server: started when they are needed, used again, at most so many at once."""
+"""The workers of a server: started on demand, reused, and limited in number."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from muster.server.work.temporary_folders import OF_WORK, sweep
 from muster.server.work.turns import CURRENT_USER, Turns
 
 MOST_WAITING, MOST_WAITING_OF_ONE = 64, 24
-"""Pieces of short work that wait, in all and of one user; what each was sent with is held meanwhile."""
+"""Short tasks that may wait, in all and of one user; their arguments are held in memory."""
 _ANY = Task("", limit_s=None)
 
 Arguments = Mapping[str, Any] | Callable[[], Mapping[str, Any]]
 
 
 class Pool:
-    """Gives work to processes; users take turns.
+    """Gives tasks to worker processes; users take turns.
 
-    Long work (plans) never keeps short work (checks, explanations) waiting: each has places of its own.
+    Long tasks (plans) and short tasks (checks, explanations) have separate places.
 
     Parameters
     ----------
     workers
-        how many processes do long work at most. As many more do short work of one user, and one more that of others.
+        the most processes with long tasks; as many more do short tasks of one user, and one more those of others.
     memory_mb
-        how much memory each may have.
+        the memory of each process.
     idle_s
-        how long a process without work is kept.
+        seconds after which an idle process ends.
     program
-        what is started; arguments are the memory and this process's id.
+        the command of a process; its arguments are the memory and the id of this process.
     """
 
     def __init__(self, *, workers: int, memory_mb: int, idle_s: float = 60.0, program: Sequence[str] = PROGRAM) -> None:
@@ -57,12 +57,12 @@ class Pool:
 
     @property
     def busy(self) -> int:
-        """Pieces of work under way."""
+        """How many tasks are running."""
         return sum(turns.taken for turns in self._turns.values())
 
     @property
     def waiting(self) -> int:
-        """Pieces of work that wait for their turn."""
+        """How many tasks wait for their turn."""
         return sum(turns.waiting for turns in self._turns.values())
 
     async def run(
@@ -75,29 +75,29 @@ class Pool:
         stop_request: StopRequest | None = None,
         user: str | None = None,
     ) -> dict[str, Any]:
-        """Have a task done; cancelling whoever awaits this kills the process at once.
+        """Run a task in a worker; cancelling the caller kills the worker.
 
         Parameters
         ----------
         task
             one of TASKS.
         arguments
-            plain data; or what reads them, called in a thread when its turn has come, so that nothing large waits.
+            plain data; or a function that reads them in a thread at the task's turn, so that nothing large waits.
         on_progress
-            is told how far it is.
+            receives the progress.
         limit_s
-            how long it may take once it has begun; by default as the task says.
+            the longest time of the task once it runs; by default the task's own.
         stop_request
-            asks it to end with what it has; tasks that cannot do that pass it over.
+            ends the task early with its best result; tasks that are not stoppable ignore it.
         user
-            whose turn it takes; by default the turn of whoever sent the present request (`CURRENT_USER`).
+            whose turn the task takes; by default the user of the present request (`CURRENT_USER`).
 
         Raises
         ------
         WorkError
-            OutOfMemory, TimedOut, WorkerDied; with `.findings` of arguments that are wrong.
+            OutOfMemory, TimedOut, WorkerDied; with `.findings` of wrong arguments.
         BusyError
-            if as much short work waits as may, in all or of this user.
+            if too many short tasks wait, in all or of this user.
         """
         known = TASKS.get(task, _ANY)
         limit_s = known.limit_s if limit_s is None else limit_s
@@ -111,7 +111,7 @@ class Pool:
                     raise TimedOut(f"it took longer than {limit_s:g} s, and was stopped") from None
 
     async def close(self) -> None:
-        """End all processes; who waits for work hears that its worker died."""
+        """End all processes; callers of running tasks get WorkerDied."""
         self._closed = True
         for worker in list(self._idle):
             self._dismiss(worker)
@@ -123,7 +123,7 @@ class Pool:
 
     @asynccontextmanager
     async def _worker(self) -> AsyncIterator[Worker]:
-        """A process, kept for the next piece of work if this one has ended by an answer."""
+        """A process within the block, kept for the next task if it has answered."""
         if self._closed:
             raise WorkError("the server is closing; expected to be asked again when it is back")
         worker = self._idle_worker() or await self._new_worker()
@@ -156,13 +156,13 @@ class Pool:
         self._alarms[worker] = asyncio.get_running_loop().call_later(self._idle_s, self._dismiss, worker)
 
     def _dismiss(self, worker: Worker) -> None:
-        """Kill a process: it holds nothing that would be lost."""
+        """Kill a process and clean up after it."""
         if worker in self._idle:
             self._idle.remove(worker)
             self._alarms.pop(worker).cancel()
         worker.kill()
         leaving = asyncio.create_task(self._see_off(worker))
-        self._leaving.add(leaving)  # the loop itself holds tasks but weakly
+        self._leaving.add(leaving)  # the event loop holds only weak references to tasks
         leaving.add_done_callback(self._leaving.discard)
 
     async def _see_off(self, worker: Worker) -> None:
@@ -171,6 +171,6 @@ class Pool:
 
 
 def _new_folder() -> Path:
-    """A folder for this pool's temporary files; those that servers left behind which were killed are removed."""
+    """A folder for temporary files of this pool; removes those of servers that were killed."""
     sweep(OF_WORK)
     return Path(tempfile.mkdtemp(prefix=f"{OF_WORK}{os.getpid()}-"))

@@ -1,4 +1,4 @@
-"""One worker as the server sees it: a process in a group and a folder of its own, which answers requests one by one."""
+"""A worker seen from the server: a process with its own group and folder, which answers requests one by one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STOP = b'{"stop": true}\n'
 _PIECE = 2**16
 _LAST_WORDS = 20  # lines of standard error that are kept for the log
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-_FEW_ARENAS = {"MALLOC_ARENA_MAX": "2"}  # which threads of their own would reserve much address space for
+_FEW_ARENAS = {"MALLOC_ARENA_MAX": "2"}  # each arena reserves address space
 
 Progress = Callable[[dict[str, Any]], None]
 
@@ -36,14 +36,14 @@ _log = logging.getLogger(__name__)
 
 
 class Worker:
-    """A process that works, started by `start`.
+    """A worker process, started by `start`.
 
     Attributes
     ----------
     alive
-        whether it can be asked: it runs, answered whatever it was asked, and has not held too much memory.
+        whether it takes requests: it runs, has answered all requests, and has not used too much memory.
     gone
-        set when nothing is left of it.
+        set when the process has ended and its folder is removed.
     """
 
     def __init__(self, process: asyncio.subprocess.Process, folder: Path, memory_mb: int) -> None:
@@ -58,7 +58,7 @@ class Worker:
 
     @classmethod
     async def start(cls, program: Sequence[str], folder: Path, memory_mb: int) -> Worker:
-        """Start a process that has `memory_mb`, and a folder of its own within `folder` for temporary files."""
+        """Start a process with `memory_mb`, and a folder within `folder` for temporary files."""
         own = Path(tempfile.mkdtemp(prefix="worker-", dir=folder))
         process = await asyncio.create_subprocess_exec(
             *program,
@@ -84,17 +84,17 @@ class Worker:
     async def ask(
         self, task: str, arguments: Mapping[str, Any], on_progress: Progress | None, stop_request: StopRequest
     ) -> dict[str, Any]:
-        """Have it do a piece of work, which `stop_request` ends early.
+        """Run a task, which `stop_request` ends early.
 
         Raises
         ------
         WorkError
-            OutOfMemory, WorkerDied; or what is wrong with the arguments.
+            OutOfMemory, WorkerDied, or an error of the arguments.
         """
         assert self._process.stdin is not None
         self._spent = True  # until it has answered
         request = json.dumps({"task": task, "arguments": arguments}).encode() + b"\n"
-        with suppress(BrokenPipeError, ConnectionResetError):  # what it has said before it ended counts
+        with suppress(BrokenPipeError, ConnectionResetError):  # its last messages are still read
             self._process.stdin.write(request)
             await self._process.stdin.drain()
         with stop_request.reaching(partial(self._process.stdin.write, STOP)):
@@ -114,7 +114,7 @@ class Worker:
         raise await self._died()
 
     async def _answers(self) -> AsyncIterator[dict[str, Any]]:
-        """Its lines, which may be of any length."""
+        """The messages of the process; a line may be of any length."""
         assert self._process.stdout is not None
         pieces: list[bytes] = []
         while piece := await self._process.stdout.read(_PIECE):
@@ -125,7 +125,7 @@ class Worker:
             pieces.append(rest)
 
     async def _hear(self) -> None:
-        """Keep its last words: what libraries print, and why it ended."""
+        """Keep the last lines of standard error, for the log."""
         assert self._process.stderr is not None
         rest = b""
         while piece := await self._process.stderr.read(_PIECE):
@@ -156,19 +156,19 @@ class Worker:
         return WorkerDied(f"the process that worked on it ended with {how}")
 
     def kill(self) -> None:
-        """End it at once, with everything that it has started."""
+        """Kill the process and its children."""
         self._spent = True
         if self._process.returncode is None:
             with suppress(ProcessLookupError):
                 os.killpg(self.pid, signal.SIGKILL)
 
     async def see_off(self) -> None:
-        """Wait until it has ended, and leave nothing of it; nobody is to be asking it any more."""
+        """Wait until the process has ended, and remove its folder; call it after the last request."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._process.stdin.close()
         while await self._process.stdout.read(_PIECE):
-            pass  # a pipe is closed only when it was read to its end
+            pass  # a pipe is closed only after it was read to its end
         await self._process.wait()
         await self._hearing
         await asyncio.to_thread(shutil.rmtree, self._folder, ignore_errors=True)

@@ -1,6 +1,6 @@
-"""What a worker is asked, read beside its work, so that a wish to stop reaches what is under way.
+"""Reads a worker's requests in a separate thread, so that a stop reaches the running task.
 
-A stop is meant for the request before it in the pipe, which keeps their order: it never reaches the next one.
+A stop belongs to the request before it in the pipe and never reaches the next one.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from queue import SimpleQueue
 from muster.allocation.stop import Stop
 from muster.server.work.process import STOP
 
-_STACK = 2**18  # of the reading thread, which does little; the memory of a worker counts what is reserved
+_STACK = 2**18  # of the reading thread; the limit of memory counts reserved address space
 _Asked = tuple[bytes, Stop]
 
 
 def requests(lines: Iterable[bytes]) -> Iterator[_Asked]:
-    """Each request in turn, until there are no more lines, with what interrupts it when that is wished."""
+    """Yield each request with the Stop that interrupts it, until the lines end."""
     asked: SimpleQueue[_Asked | None] = SimpleQueue()
     before = threading.stack_size(_STACK)
     threading.Thread(target=_read, args=(lines, asked), daemon=True).start()
@@ -35,5 +35,5 @@ def _read(lines: Iterable[bytes], asked: SimpleQueue[_Asked | None]) -> None:
             else:
                 stop = Stop()
                 asked.put((line, stop))
-    finally:  # also where a line does not fit into the memory
+    finally:  # also if a line does not fit into memory
         asked.put(None)

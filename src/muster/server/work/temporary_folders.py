@@ -1,4 +1,4 @@
-"""Folders of temporary files whose names tell the process that they belong to: PREFIX, its id, and something random."""
+"""Temporary folders whose names hold the process that they belong to: PREFIX, process id, random text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ OF_WORK, OF_RUNS = "muster-work-", "muster-run-"
 
 
 def sweep(prefix: str) -> None:
-    """Remove those of this user whose process is gone, because it was killed."""
+    """Remove this user's folders whose process does not exist any more."""
     for left in Path(tempfile.gettempdir()).glob(f"{prefix}*-*"):
         with suppress(ValueError, OSError):
             process = int(left.name.removeprefix(prefix).split("-")[0])

@@ -1,4 +1,4 @@
-"""Fair queueing: places that users take in turn, so that nobody's work keeps that of others waiting for long."""
+"""Fair queueing: users take turns at a number of places, so that no user's tasks block those of others."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from itertools import count
 from muster.exchange.mission_control import BusyError
 
 CURRENT_USER: ContextVar[str] = ContextVar("muster_current_user", default="")
-"""For whom the present request is answered; empty: for the server itself."""
+"""The user of the present request; empty if the server itself works."""
 
 
 class Turns:
-    """A number of places, for which users wait in turn.
+    """A number of places for tasks, given to users in turn.
 
-    A free place goes to the user who holds the fewest; among those to the one whose last turn is longest ago. The work
-    of one user is done in the order in which it comes.
+    A free place goes to the user with the fewest places, and among those to the one whose last turn is longest ago. The
+    tasks of one user run in the order of their requests.
 
     Parameters
     ----------
     places
-        how many pieces of work are under way at most.
+        the most tasks that run at once.
     most_of_one
-        how many of them one user may have; what is left is a reserve for others.
+        the most of them of one user; the rest is a reserve for others.
     waiting, waiting_of_one
-        how many pieces may wait, in all and of one user; None: any number.
+        the most tasks that wait, in all and of one user; None: no limit.
     """
 
     def __init__(
@@ -49,17 +49,17 @@ class Turns:
 
     @property
     def waiting(self) -> int:
-        """How many pieces of work wait for a place."""
+        """How many tasks wait for a place."""
         return sum(map(len, self._queues.values()))
 
     @asynccontextmanager
     async def turn(self, user: str) -> AsyncIterator[None]:
-        """A place of the user's, once it is their turn.
+        """Hold a place within the block, once it is the user's turn.
 
         Raises
         ------
         BusyError
-            if as much work waits as may.
+            if too many tasks wait.
         """
         await self._take(user)
         try:
@@ -91,7 +91,7 @@ class Turns:
             raise BusyError(f"{own} requests of {user or 'one user'} wait, the most that may; expected fewer at once")
 
     def _grant(self) -> None:
-        """Give free places to those whose turn it is."""
+        """Give the free places to the users whose turn it is."""
         while self.taken < self._places:
             may = [user for user, queue in self._queues.items() if queue and self._held[user] < self._most_of_one]
             if not may:
@@ -107,7 +107,7 @@ class Turns:
         self._grant()
 
     def _forget_if_gone(self, user: str) -> None:
-        """Keep nothing of users who neither hold a place nor wait for one: their names may be any number."""
+        """Forget a user without places and waiting tasks: there may be any number of users."""
         if not self._queues.get(user) and not self._held[user]:
             for table in (self._queues, self._held, self._last_turn):
                 table.pop(user, None)

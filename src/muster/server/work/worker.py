@@ -1,7 +1,7 @@
-"""A process that works: reads requests, a JSON line each, from its standard input, and answers on its standard output.
+"""A worker process: reads requests from standard input, one JSON line each, and answers on standard output.
 
-Started by the pool alone: `python -m muster.server.work.worker MEMORY_MB PARENT`. It ends when its input does, and is
-killed when the server is gone. What libraries print goes to standard error: the real standard output is for answers.
+The pool starts it: `python -m muster.server.work.worker MEMORY_MB PARENT`. It ends with its input, and is killed when
+the server ends. Standard output is for answers only; what libraries print goes to standard error.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.requests import requests
 from muster.server.work.tasks import TASKS, Task
 
-_NICE = 10  # lower than the server, so that its page stays quick
-_SPENT = 0.5  # share of the memory; a worker that has held so much is not used again
+_NICE = 10  # lower priority than the server, which must answer quickly
+_SPENT = 0.5  # of the memory; a worker whose peak is higher is not used again
 _KILL_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 Send = Callable[[Mapping[str, Any]], None]
 
 
 def main(arguments: list[str], tasks: Mapping[str, Task] = TASKS) -> None:
-    """Work until there is no more input."""
+    """Do tasks until the input ends."""
     memory_mb, parent = (int(word) for word in arguments)
     _end_with(parent)
     limit_memory(memory_mb)
@@ -46,18 +46,18 @@ def main(arguments: list[str], tasks: Mapping[str, Task] = TASKS) -> None:
 
 
 def _end_with(parent: int) -> None:
-    """Be killed when the server is gone, which the end of the input would say only after this piece of work."""
+    """Let the kernel kill this process when the server ends: the end of the input is seen only after the task."""
     if sys.platform != "linux":
         return
     import ctypes
 
     ctypes.CDLL(None).prctl(_KILL_WITH_PARENT, signal.SIGKILL)
-    if os.getppid() != parent:  # it went before that could be asked for
+    if os.getppid() != parent:  # it ended before the call above
         sys.exit()
 
 
 def _protected_output() -> BinaryIO:
-    """The real standard output; from now on everything else that is printed goes to standard error."""
+    """The standard output, for answers; everything else that is printed goes to standard error."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     return answers
@@ -72,9 +72,9 @@ def _sending(answers: BinaryIO) -> Send:
 
 
 def _held_most() -> int:
-    """The most memory that this process has held so far, bytes.
+    """The peak memory of this process, bytes.
 
-    On Linux not by getrusage, which counts what the server held when it started this process.
+    On Linux getrusage would count the memory of the server that started this process.
     """
     if sys.platform == "linux":
         status = Path("/proc/self/status").read_text(encoding="utf-8")
@@ -83,7 +83,7 @@ def _held_most() -> int:
 
 
 def _answer(request: Mapping[str, Any], tasks: Mapping[str, Task], send: Send, stop: Stop) -> dict[str, Any]:
-    """Do one piece of work, in a folder of its own, and say what came of it."""
+    """Run one task in its own folder; returns the answer."""
     home = Path.cwd()
     try:
         task = tasks[request["task"]]
@@ -100,7 +100,7 @@ def _answer(request: Mapping[str, Any], tasks: Mapping[str, Task], send: Send, s
 
 
 def _failure(error: Exception) -> dict[str, Any]:
-    """A line for a person, with all findings of an input that is wrong."""
+    """The answer for an error: a line for a person, and all findings of a wrong input."""
     if is_of_memory(error):
         return {"kind": "memory", "error": "", "findings": []}
     if isinstance(error, InputError):

@@ -1,7 +1,7 @@
-"""What workers can do: a file a task, each with a `run`, imported by the workers alone.
+"""The tasks of workers, one module per task, imported by workers only.
 
-`run(arguments, report)` gets plain data and gives plain data; `report` takes the progress, also plain. What is wrong
-with the arguments it says by a MusterError. One that can end early with what it has gets a Stop besides.
+`run(arguments, report)` takes and returns plain data; `report` takes progress as plain data. A MusterError says what is
+wrong with the arguments. A stoppable task also takes a Stop.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from types import MappingProxyType
 
 @dataclass(frozen=True)
 class Task:
-    """Where a task is, and how long it may take.
+    """A task of workers.
 
     Parameters
     ----------
     module
-        whose `run` does it.
+        with the function `run`.
     limit_s
-        after which its worker is killed; None: whoever asks says so.
+        seconds after which its worker is killed; None: the caller says.
     long
-        whether it may take minutes; then it waits for its turn apart from work that somebody sits and waits for.
+        whether it may take minutes; long tasks wait apart from tasks that a person waits for.
     stoppable
-        whether its `run` takes a Stop, which is interrupted when it is to end with what it has.
+        whether its `run` takes a Stop, which ends it early.
     """
 
     module: str

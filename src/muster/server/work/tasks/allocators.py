@@ -1,4 +1,4 @@
-"""Which allocators there are."""
+"""The task that lists allocators."""
 
 from __future__ import annotations
 

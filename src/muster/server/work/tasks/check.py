@@ -1,4 +1,4 @@
-"""What is wrong with a mission, and which tasks can never be done, alone or together."""
+"""The task that checks a mission: its errors, and tasks that can never be done, alone or together."""
 
 from __future__ import annotations
 
@@ -35,6 +35,6 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 
 def summary(mission: Mission) -> dict[str, Any]:
-    """What a list of missions shows of one."""
+    """The summary of a mission in a list."""
     counted = {"robots": len(mission.robots), "tasks": len(mission.tasks), "dimensions": mission.dimensions}
     return {"name": mission.name, **counted}

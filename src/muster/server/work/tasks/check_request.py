@@ -1,4 +1,4 @@
-"""Whether a planning request can be met by some mission: known allocators and their parameters."""
+"""The task that checks a planning request before it is queued: its allocator and parameters."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from muster.planning.options import PlanningOptions, options_from
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """The options of a planning request, by name -> `{}`, or what is wrong with them, as the command says it."""
+    """The options of a planning request, by name -> `{}`; raises the errors of the command."""
     checked_options(arguments)
     return {}
 
 
 def checked_options(given: Mapping[str, Any]) -> PlanningOptions:
-    """The options of a planning request; their parameters are of the allocator, and modest enough for a server.
+    """The options of a planning request, with parameters that the allocator has and a server allows.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def checked_options(given: Mapping[str, Any]) -> PlanningOptions:
 
 
 def _require_modest(parameters: Mapping[str, Any]) -> None:
-    """Refuse what would take more than this machine has for one plan, or go on in other machines."""
+    """Refuse more threads than processors, and clusters."""
     if parameters.get("ray", "none") != "none":
         raise ParameterError("ray: given; expected no cluster of a plan that a server makes")
     threads, most = parameters.get("threads", 1), os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""Files of other tools as missions."""
+"""The task that converts files of other programs to missions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A small change of a mission's text."""
+"""The task that edits a mission's text."""
 
 from __future__ import annotations
 

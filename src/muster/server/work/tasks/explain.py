@@ -1,4 +1,4 @@
-"""Why a plan is as it is."""
+"""The task that explains a plan."""
 
 from __future__ import annotations
 

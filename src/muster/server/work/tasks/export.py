@@ -1,4 +1,4 @@
-"""A plan as files of other tools."""
+"""The task that exports a plan to other programs."""
 
 from __future__ import annotations
 

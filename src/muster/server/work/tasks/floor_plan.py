@@ -1,4 +1,4 @@
-"""What lies under a mission: its floor plan, and where on Earth it is."""
+"""The task that finds a mission's floor plan and its place on the earth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the judge says of a plan, when robots are where, and their ways over the ground."""
+"""The task that judges a plan, with the times and paths of all robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plan as a picture."""
+"""The task that draws a plan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Planning a mission, with progress."""
+"""The task that plans a mission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands in a mission's text, right or wrong."""
+"""The task that reads values of a mission's text, valid or not."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 from muster.mission.errors import ParameterError
 from muster.server.work.editing.edits import data_of, size_of
 
-_MOST_VALUES = 50_000  # so that whoever asked is not kept busy with the answer
+_MOST_VALUES = 50_000  # so that the answer stays small
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"text", "keys"}` -> `{"data"}`: what stands at these keys of the whole."""
+    """`{"text", "keys"}` -> `{"data"}`: the values of these top-level keys."""
     data = data_of(arguments["text"])
     found = {key: data[key] for key in arguments["keys"] if key in data}
     if size_of(found) > _MOST_VALUES:

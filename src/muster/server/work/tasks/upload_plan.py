@@ -1,4 +1,4 @@
-"""A plan from elsewhere as mission control keeps it."""
+"""The task that prepares an uploaded plan for storage."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from muster.verification import Verdict, verify
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "plan"}` -> `{"plan"}`: what a plan file may hold, with the judge's figures where it has none."""
+    """`{"mission", "plan"}` -> `{"plan"}`: the plan, with the judge's figures where it has none."""
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
     verdict = verify(mission, plan, objective=plan.objective)
     figures = _figures(verdict)
@@ -27,7 +27,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 
 def _left_out(mission: Mission, plan: Plan, verdict: Verdict) -> tuple[Unassigned, ...]:
-    """The tasks in no route; with reasons, where the plan breaks no rule."""
+    """The unassigned tasks, with reasons if the plan is valid."""
     if verdict.valid:
         problem = Problem.compile(mission, plan.objective)
         return unassigned(problem, routes_of(problem, plan))
