@@ -103,7 +103,7 @@ def _places_of_robot(k: int, robot: Robot) -> Iterator[tuple[Path, Point]]:
 
 
 def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Point, Body], None]:
-    """Where robots have to be for a task, those of an action by robot, each once and in order."""
+    """The places that robots visit for a task, those of an action by robot, each once and in order."""
     allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
     if task.action is None or not task.action.has_geometry:
         bodies = dict.fromkeys(map(body_of, allowed))
