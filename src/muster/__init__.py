@@ -31,7 +31,8 @@ from muster.planning.loading import load
 from muster.planning.pictures import gantt, plot
 from muster.planning.questions import check, explain
 from muster.planning.solve import solve
-from muster.running.running import carry_out, simulate
+from muster.running.carry_out import carry_out
+from muster.running.simulate import simulate
 
 if TYPE_CHECKING:
     from muster.execution import Report

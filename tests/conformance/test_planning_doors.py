@@ -16,7 +16,7 @@ from muster.mission.errors import MusterError
 from muster.mission.plan import PLAN_SCHEMA, plan_from
 from muster.planning.options import BOUNDS, OPTIONS
 from muster.planning.request import Request
-from muster.server.api.plans import Wanted
+from muster.server.api.plans import PlanToMake
 from muster.server.work import Pool
 
 GOOD = {"r_0": ["2"], "r_1": ["3"]}
@@ -209,7 +209,7 @@ def test_there_are_requests_enough_and_all_options_occur():
 
 
 def test_the_body_of_the_api_has_the_fields_of_the_request():
-    assert set(Wanted.model_fields) == {*OPTIONS, "start", "fixed", "version"}
+    assert set(PlanToMake.model_fields) == {*OPTIONS, "start", "fixed", "version"}
     assert set(Request.__dataclass_fields__) == {*OPTIONS, "mission", "start", "fixed"}
 
 

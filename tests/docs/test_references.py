@@ -46,3 +46,20 @@ def test_docstrings_and_comments_cite_by_key(words):
     lines = re.compile(rf'^\s*(#|//|""").*{words}', re.MULTILINE)
     code = [path for path in _SOURCES if path.suffix in (".py", ".cpp", ".hpp")]
     assert [path.name for path in code if lines.search(path.read_text(encoding="utf-8"))] == []
+
+
+def test_nothing_refers_to_a_design_that_readers_do_not_have():
+    code = [path for path in _SOURCES if path.suffix in (".py", ".cpp", ".hpp")]
+    assert [path.name for path in code if re.search(r"\bDESIGN\b", path.read_text(encoding="utf-8"))] == []
+
+
+def test_sections_of_the_design_that_sources_name_are_there():
+    titles = set(re.findall(r"^## (.+)$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE))
+    named = {
+        title
+        for path in _SOURCES
+        if path.suffix in (".py", ".cpp", ".hpp")
+        for title in re.findall(r"docs/design\.md,\s+([A-Z][a-z]+(?:, [a-z]+)*)", path.read_text(encoding="utf-8"))
+    }
+    assert named
+    assert {title for title in named if not any(known.startswith(title.split(",")[0]) for known in titles)} == set()

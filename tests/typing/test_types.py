@@ -48,7 +48,7 @@ def marked(name):
 
 
 def test_every_wrong_line_is_refused_and_no_other(errors):
-    assert len(marked("wrong.py")) == 18
+    assert len(marked("wrong.py")) == 21
     assert errors["wrong.py"] == marked("wrong.py")
 
 

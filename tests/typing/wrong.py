@@ -22,3 +22,6 @@ muster.simulate(mission, plan, dt_s="short")  # error
 muster.simulate(mission, plan).mission_time  # error
 muster.plot(mission, plan).no_such_thing()  # error
 muster.gantt(mission, plan).no_such_thing()  # error
+muster.export(mission, plan, "qgc", altitud=10.0)  # error
+muster.solve(mission, objective=lambda verdict: verdict.max_use)  # error
+muster.explain(mission, plan, "t").unassigned  # error

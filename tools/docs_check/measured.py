@@ -48,11 +48,12 @@ def measure(name: str, command: str, scratch: Path, folder: Path = FOLDER) -> st
     RuntimeError
         if the command fails.
     """
+    (scratch / "docs").mkdir(exist_ok=True)
     begin = time.monotonic()
     ran = run_command(command, scratch, _HOURS)
     if ran.code != 0:
         raise RuntimeError(f"{command}: exit code {ran.code}\n{ran.err}")
-    written = "".join(path.read_text(encoding="utf-8") for path in sorted(scratch.glob("*.md")))
+    written = "".join(path.read_text(encoding="utf-8") for path in sorted(scratch.rglob("*.md")))
     stored = {
         "command": command,
         "commit": commit(),

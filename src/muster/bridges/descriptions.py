@@ -14,7 +14,7 @@ from muster.mission.yaml_writer import plain
 R = TypeVar("R", Robot, Task)
 
 
-def robot_as_said(said: object, robot: Robot, where: str) -> Robot:
+def robot_from_description(said: object, robot: Robot, where: str) -> Robot:
     """A robot with what it says of itself: keys of a robot in a mission file, such as speed_mps; its id stays.
 
     Parameters

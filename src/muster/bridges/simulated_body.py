@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from muster.bridges.follower import Follower
-from muster.bridges.steering import STILL, Driven, Steering, Velocity
+from muster.bridges.steering import STILL, SteeredRobot, Steering, Velocity
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu, wrapped
 from muster.motion.grid import Floats
@@ -18,7 +18,7 @@ _DEAF_S = 0.5
 """A robot that is told no velocity for longer goes to its way point, or stands."""
 
 
-class Body:
+class SimulatedBody:
     """One robot.
 
     Parameters
@@ -70,8 +70,8 @@ class Body:
         self._follower.hear(now, place, heading)
         aim = self._follower.aim
         arrived = aim is not None and self._follower.is_at(place, aim)
-        driven = Driven(self.robot, place, heading, (0.0, 0.0, 0.0), aim, arrived)
-        return self._steering.velocities([driven])[self.robot.id]
+        steered = SteeredRobot(self.robot, place, heading, (0.0, 0.0, 0.0), aim, arrived)
+        return self._steering.velocities([steered])[self.robot.id]
 
     def _as_inputs(self, velocity: Velocity, heading: float) -> Floats:
         ahead, left, up, turning = velocity

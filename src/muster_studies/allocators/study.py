@@ -41,7 +41,7 @@ class MissionTable:
     def table(self, effort: Effort, found: Samples) -> Table:
         cases = _cases(self.number, effort)
         rows = []
-        for allocator in ALLOCATORS:
+        for allocator in ALLOCATORS.shipped:
             best = [found[cases[allocator, objective]].best for objective in OBJECTIVES]
             rows.append((allocator, *map(_cell, best), fmean(outcome.found_s for outcome in best)))
         loaded = mission_named(self.number)
@@ -79,7 +79,7 @@ def _cases(mission: str, effort: Effort) -> dict[tuple[str, str], Case]:
             iterations=effort.iterations if allocator.anytime else None,
             time_limit=seconds if allocator.anytime and effort.iterations is None else None,
         )
-        for allocator in ALLOCATORS.values()
+        for allocator in map(ALLOCATORS.__getitem__, ALLOCATORS.shipped)
         for objective in OBJECTIVES
     }
 
@@ -94,7 +94,7 @@ def _cell(outcome: Outcome) -> Cell:
 def _summary(missions: tuple[str, ...], effort: Effort, samples: Samples) -> Table:
     """Mean excess over the best value that any allocator found, in per cent, where as many tasks are done as there."""
     rows: list[tuple[Cell, ...]] = []
-    for allocator in ALLOCATORS:
+    for allocator in ALLOCATORS.shipped:
         cells: list[Cell] = [allocator]
         seconds, fewer = [], 0
         for objective in OBJECTIVES:
@@ -103,7 +103,9 @@ def _summary(missions: tuple[str, ...], effort: Effort, samples: Samples) -> Tab
                 cases = _cases(mission, effort)
                 found = samples[cases[allocator, objective]].best
                 seconds.append(found.found_s)
-                best = min((samples[cases[other, objective]].best for other in ALLOCATORS), key=lambda o: o.rank)
+                best = min(
+                    (samples[cases[other, objective]].best for other in ALLOCATORS.shipped), key=lambda o: o.rank
+                )
                 if found.verdict.weight_completed < best.verdict.weight_completed:
                     fewer += 1
                 elif best.value > 0:

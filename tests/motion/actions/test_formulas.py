@@ -81,7 +81,7 @@ def test_typed_entries_and_exits_are_passed_and_paid_for():
 @pytest.mark.parametrize(
     ("side", "spacing", "lanes", "leaving"),
     [
-        (6, 1.5, 5, (7, 7)),  # DESIGN's example
+        (6, 1.5, 5, (7, 7)),
         (6, 2, 4, (1, 7)),
         (5, 2, 4, (1.5, 7.5)),  # the last lane lies beyond the square: 0, 2, 4, 6 of 5
         (1, 0.1, 11, (4.5, 4.5)),  # 1 / 0.1 is 10 but for rounding

@@ -52,7 +52,7 @@ class Fault:
     robot, kind
         who, and what.
     detail
-        what was said or seen, in words.
+        what was said or telemetry, in words.
     texts
         status texts of the autopilot that belong to a refusal.
     """

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from muster.bridges.discovery import topics_in
 from muster.bridges.joining import Newcomers
-from muster.bridges.ros1.parameter_descriptions import described
+from muster.bridges.ros1.parameter_descriptions import robot_from_parameters
 from muster.bridges.ros1.port import Ros1Port
 from muster.bridges.ros1.ros import rospy
 from muster.mission.model import Robot
@@ -21,7 +21,7 @@ class Ros1Newcomers(Newcomers[Ros1Port]):
             namespace,
             known,
             topics=lambda: rospy.get_published_topics(),
-            describe=lambda robot: described(topics_of(robot.id), robot),
+            describe=lambda robot: robot_from_parameters(topics_of(robot.id), robot),
             reach=reach,
             warn=rospy.logwarn,
             flat=flat,

@@ -24,7 +24,7 @@ _HANGS_S = 10.0
 """After a fault; who waits for a master that hangs would wait for ever."""
 
 
-class Children:
+class NodeProcesses:
     """A context: within it the nodes live, and a thread sees whether they and the ROS master do.
 
     Parameters
@@ -56,7 +56,7 @@ class Children:
         self.fault = ""
         """What is wrong, in a line, from when something is."""
 
-    def __enter__(self) -> Children:
+    def __enter__(self) -> NodeProcesses:
         environment = os.environ | {"ROS_MASTER_URI": self._master}
         with ctrl_c_held_back():
             for duty in DUTIES:

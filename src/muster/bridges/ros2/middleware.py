@@ -91,7 +91,7 @@ class Navigator(Protocol):
         ...
 
 
-class Wire(Protocol):
+class Middleware(Protocol):
     """Takes part in a domain of ROS 2 until it is closed. What has come is to be had after `wait`."""
 
     def writer(self, topic: str, message: type[M]) -> Writer[M]:
@@ -108,7 +108,7 @@ class Wire(Protocol):
         Raises
         ------
         ParameterError, MissingExtraError
-            where this wire has no actions, or Nav2's messages are not there.
+            where this middleware has no actions, or Nav2's messages are not there.
         """
         ...
 

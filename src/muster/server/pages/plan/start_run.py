@@ -1,4 +1,4 @@
-"""The dialog that begins to carry a plan out: in which world, how fast, and what a bridge to real robots needs."""
+"""The dialog that starts a run: its world, its speed, and the settings of real robots."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from nicegui import ui
 
 from muster.exchange.mission_control import PlanEntry
 from muster.mission.errors import ParameterError
+from muster.running.worlds import WORLDS
 from muster.server.pages.buttons import once
 from muster.server.pages.visitor import the_services, the_user
 
@@ -20,7 +21,7 @@ _SPEEDS = {
     "10": "10 times",
     "": "as fast as it goes",
 }
-_SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}
+_SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
 _AVOIDANCE = {"orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "none": "not at all"}
 _DRIVES = {"cmd_vel": "velocities (cmd_vel)", "goals": "goals (WP)"}
 _GIVES = {"goals": "goals (goal_pose)", "nav2": "Nav2's action"}
@@ -30,26 +31,27 @@ Reading = Callable[[], dict[str, Any]]
 
 
 def open_start(entry: PlanEntry, dimensions: int) -> None:
-    """Ask how a plan is to be carried out, and go to the run when it has begun."""
+    """Ask how to carry out a plan, and open the run when it has started."""
     bridges = {name: f"real robots ({name})" for name in the_services().settings.bridges}
     with ui.dialog() as dialog, ui.card().classes("making"):
         ui.label("Carry this plan out").classes("dialog-title")
-        world = _choice("In which world", _SIMULATED | bridges, "kinematic").props('id="world"')
-        speed = _choice("How fast", _SPEEDS, "1").bind_visibility_from(world, "value", _SIMULATED.__contains__)
+        simulated = {name: _SIMULATED.get(name, f"simulated ({name})") for name in WORLDS}
+        world = _choice("In which world", simulated | bridges, "kinematic").props('id="world"')
+        speed = _choice("How fast", _SPEEDS, "1").bind_visibility_from(world, "value", simulated.__contains__)
         form = ui.element("div").classes("full")
         reading: list[Reading] = []
 
         def ask() -> None:
             form.clear()
             with form:
-                reading[:] = [_FORMS[world.value](entry, dimensions)]
+                reading[:] = [_form_of(world.value)(entry, dimensions)]
 
         world.on_value_change(ask)
         ask()
 
         async def begin() -> None:
             pace = float(speed.value) if speed.value else None
-            if world.value not in _SIMULATED:
+            if world.value not in simulated:
                 pace = 1.0
             run = await the_services().runs.start(the_user(), entry.id, world.value, pace, **reading[0]())
             ui.navigate.to(f"/live/{run.id}")
@@ -73,6 +75,10 @@ def _simulated(_: PlanEntry, __: int) -> Reading:
         avoidance = _choice("How robots pass each other", _AVOIDANCE, "orca")
         seed = ui.number("Seed", value=0, min=0, precision=0).props("outlined dense").classes("full")
     return lambda: {"avoidance": avoidance.value, "seed": int(seed.value or 0)}
+
+
+def _unset(_: PlanEntry, __: int) -> Reading:
+    return dict
 
 
 def _ros1(_: PlanEntry, __: int) -> Reading:
@@ -128,3 +134,8 @@ _FORMS: Mapping[str, Callable[[PlanEntry, int], Reading]] = {
     "ros2": _ros2,
     "mavlink": _mavlink,
 }
+
+
+def _form_of(world: str) -> Callable[[PlanEntry, int], Reading]:
+    """Worlds of other packages are set as the simulated ones that ship; their fleets are set through the API."""
+    return _FORMS.get(world, _simulated if world in WORLDS else _unset)

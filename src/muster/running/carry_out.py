@@ -1,0 +1,70 @@
+"""The function `carry_out` of the package: a plan carried out by real robots. Heavy modules are imported where used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from muster.mission.model import Mission
+from muster.mission.plan import Plan
+from muster.planning.request import require_mission
+from muster.running.recorded import recorded
+
+if TYPE_CHECKING:
+    import threading
+
+    from muster.bridges.fleet import Fleet
+    from muster.execution import ExecutionEvent, Recorder, Report
+
+
+def carry_out(
+    mission: Mission,
+    plan: Plan,
+    fleet: Fleet,
+    *,
+    seed: int = 0,
+    ignore: str | Collection[str] = (),
+    record: str | Path | None = None,
+    observers: Sequence[Recorder] = (),
+    on_event: Callable[[ExecutionEvent], None] | None = None,
+    halt: threading.Event | None = None,
+) -> Report:
+    """Carry a plan out with real robots, in real time, to its end. The tasks left are planned again when robots fail.
+
+    Parameters
+    ----------
+    fleet
+        the robots, behind a bridge of `muster.bridges`; stays open.
+    seed
+        of planning again.
+    ignore
+        rules that do not hold, whatever the plan says of itself.
+    record
+        a file (.mcap) for the record of the run; needs the extra `record`.
+    observers
+        receive every event and state, such as `muster.report.live.FoxgloveServer`.
+    on_event
+        is called with each event, as it happens.
+    halt
+        when it is set, by another thread or by `on_event`, robots stop where they are, and the run ends.
+
+    Returns
+    -------
+    The report. A remark says if the record broke off, as on a full disk: the run goes on without it.
+
+    Raises
+    ------
+    ParameterError
+        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+    """
+    from muster.running.live import carry_out_live
+
+    require_mission(mission)
+    remarks: list[str] = []
+    with recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
+        report = carry_out_live(
+            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_event=on_event, halt=halt
+        )
+    return replace(report, remarks=(*report.remarks, *remarks))
