@@ -12,7 +12,7 @@ from muster.mission.errors import MissionError
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, Path, shown
-from muster.motion.actions import Doing, plan
+from muster.motion.actions import TaskMotion, plan
 from muster.motion.free_space import PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.map_world import Area, Body, World, body_of
@@ -111,7 +111,7 @@ def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Po
     own = {task.entry: ("entry",), task.exit: ("exit",), task.action.pickup: ("action", "pickup")}
     own[task.position] = ("position",)
     doings = [(body_of(robot), plan(task, robot)) for robot in allowed]
-    passed = [(body, point) for body, doing in doings if isinstance(doing, Doing) for point in doing.points]
+    passed = [(body, point) for body, doing in doings if isinstance(doing, TaskMotion) for point in doing.points]
     return dict.fromkeys((("tasks", k, *own.get(point, ("action",))), point, body) for body, point in passed)
 
 
