@@ -89,7 +89,7 @@ def armed(target: Message) -> Script:
 
 
 def disarmed(target: Message, autopilot: Autopilot) -> Script:
-    """Disarm it on the ground, without force: in the air it refuses. It gets the command to hold, too: it may take off."""
+    """Disarm it on the ground, without force: in the air it refuses. A command to hold precedes it: it may take off."""
     hold = command(target, mavlink.MAV_CMD_DO_SET_MODE, *_mode_parameters(autopilot, autopilot.hold))
     number, kind = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, Kind.COMMAND_REFUSED
     return obeyed(target, number, (0.0,), _beats(armed=False), kind, sightings=2, with_it=[hold])
