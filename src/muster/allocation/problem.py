@@ -16,7 +16,7 @@ from muster import core
 from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
-from muster.allocation.task_geometry import Doings
+from muster.allocation.task_geometry import TaskMotions
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -186,11 +186,11 @@ class Problem:
 
     def action_refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
-        return self._doings.why_impossible(i, j)
+        return self._task_motions.why_impossible(i, j)
 
     def actions_refused(self, i: int) -> frozenset[int]:
         """The tasks whose actions robot i cannot do."""
-        return self._doings.cannot_do(i)
+        return self._task_motions.cannot_do(i)
 
     @cached_property
     def allowed(self) -> Bools:
@@ -278,7 +278,7 @@ class Problem:
     def measured(self) -> Measured:
         if self.known is not None:
             return self.known
-        doings, none = self._doings, np.empty(0, dtype=np.int32)
+        doings, none = self._task_motions, np.empty(0, dtype=np.int32)
         if self.mission.travel_rule == "map":
             return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
@@ -287,8 +287,8 @@ class Problem:
         return Measured(table, doings.classes if len(table) else none, doings.costs, doings.classes)
 
     @cached_property
-    def _doings(self) -> Doings:
-        return Doings.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
+    def _task_motions(self) -> TaskMotions:
+        return TaskMotions.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
     def robot_paths(self) -> RobotPaths:
@@ -307,7 +307,7 @@ class Problem:
         from muster.allocation.map_travel import MapTravel
 
         by_body = self.mission.travel_rule == "map"
-        doings = self._doings if by_body else Doings.of(self.robots, self.tasks, by_body=True)
+        doings = self._task_motions if by_body else TaskMotions.of(self.robots, self.tasks, by_body=True)
         exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
         return MapTravel.of(robot_paths, self.robots, doings, exits, entries)
 
@@ -324,12 +324,12 @@ class Problem:
     @cached_property
     def _entries(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
-        return self._with_robots(self._doings.entries)
+        return self._with_robots(self._task_motions.entries)
 
     @cached_property
     def _exits(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
-        return self._with_robots(self._doings.exits)
+        return self._with_robots(self._task_motions.exits)
 
     def _with_robots(self, portals: Floats) -> Floats:
         places = np.array([(*p, 0.0)[:3] for p in self._robots_places], dtype=np.float64)

@@ -185,7 +185,7 @@ class Participant:
         )
         self.epoch = Epoch(own, self.rules, self.valuer, refused)
         self._restart_heard = work.epoch_due = False
-        work.unsent.clear()  # the declaration tells them
+        work.unsent.clear()  # the declaration contains them
         self._peer_progress.enter()
         self._stalled.enter(self.stage, now)
         self.counts.news += 1
@@ -276,7 +276,7 @@ class Participant:
         self._stalled.reach(self.stage, now)
         if self.stage.ended and self._peer_progress.end(self.stage):
             self.members.reset_exclusions(self.epoch.own.members)
-            self._due_s = min(self._due_s, now)  # tell it at once
+            self._due_s = min(self._due_s, now)  # report it at once
         self.counts.news += len(published)
         return [Outgoing(self._message(now, bids=(bids,), **self._last_sale())) for bids in published]
 
