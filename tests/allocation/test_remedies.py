@@ -14,7 +14,9 @@ from tests.random_missions import random_mission
 from muster.allocation import greedy
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import changed, remedies, smallest, smallest_as_is
-from muster.allocation.remedy import Before, Capacity, Score
+from muster.allocation.remedy import Before
+from muster.allocation.rules.capacity import CapacityChange
+from muster.allocation.rules.suitability import LowScore
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Rules, TravelTable
 from muster.mission.plan import Plan, Route
@@ -46,15 +48,17 @@ def works(asked, remedy, name):
     assert remedy.enough
     by_id = {one.id: one for one in asked.robots}
     abler = by_id[remedy.robot]
-    abler = replace(abler, skills=(*abler.skills, *remedy.skills))
+    abler = replace(abler, skills=(*abler.skills, *remedy.as_dict()["skills"]))
     if remedy.capacity.now is not None:
         abler = replace(abler, work_capacity=remedy.capacity.enough)
     table = asked.suitability
-    if remedy.suitability is not None:
-        low = remedy.suitability
+    low = remedy.changes.get("suitability")
+    if low is not None:
         table = {**table, low.robot_type: {**table[low.robot_type], low.task_type: low.needed}}
     freer = [
-        replace(one, only_robots=(*one.only_robots, remedy.robot)) if remedy.lock and one.id == name else one
+        replace(one, only_robots=(*one.only_robots, remedy.robot))
+        if "lock" in remedy.changes and one.id == name
+        else one
         for one in asked.tasks
     ]
     team = [abler if one.id == remedy.robot else one for one in asked.robots]
@@ -71,7 +75,7 @@ TABLE = {"beta": {"D": 0.9, "E": 0.5}, "tau": {"D": 0.3, "E": 0.8}}
 def test_the_skills_that_are_lacking():
     asked = mission([robot(skills=("camera",))], [task("lift", 1, 0, requires=("camera", "gripper", "arm"))])
     found = one_of(asked, "lift")
-    assert (found.skills, found.kinds, found.enough) == (("gripper", "arm"), ("skill",), True)
+    assert (found.changes["skill"].skills, found.kinds, found.enough) == (("gripper", "arm"), ("skill",), True)
     assert works(asked, found, "lift")
     assert one_of(asked, "lift", ignored=("skills",)).kinds == ()
 
@@ -79,7 +83,7 @@ def test_the_skills_that_are_lacking():
 def test_the_score_that_is_too_low():
     asked = replace(mission([robot(type="beta")], [task("1", 1, 0, type="E")], min_suitability=0.6), suitability=TABLE)
     found = one_of(asked, "1")
-    assert found.suitability == Score("beta", "E", 0.5, 0.6)
+    assert found.changes["suitability"] == LowScore("beta", "E", 0.5, 0.6)
     assert found.kinds == ("suitability",)
     assert works(asked, found, "1")
 
@@ -87,7 +91,7 @@ def test_the_score_that_is_too_low():
 def test_the_lock():
     asked = mission([robot("r_0"), robot("r_1")], [task("1", 1, 0, only_robots=("r_1",))])
     first, second = look(asked, "1")
-    assert (first.lock, first.kinds, second.lock) == (("r_1",), ("lock",), None)
+    assert (first.as_dict()["lock"], first.kinds, second.as_dict()["lock"]) == (("r_1",), ("lock",), None)
     assert works(asked, first, "1")
 
 
@@ -112,7 +116,7 @@ EAST, WEST = task("east", 40, 0), task("west", -40, 0)
 def test_the_capacity_for_two_tasks():
     asked = mission([robot(work_capacity=60)], [EAST, WEST])
     found = one_of(asked, "west", ["east"])
-    assert found.capacity == Capacity(now=60, as_is=120, at_least=120, enough=120)
+    assert found.capacity == CapacityChange(now=60, as_is=120, at_least=120, enough=120)
     assert works(asked, found, "west")
     assert one_of(asked, "west", ["east"], ignored=("capacity",)).kinds == ()
 
@@ -121,7 +125,7 @@ def test_the_capacity_for_two_tasks():
 def test_the_reserve_is_part_of_the_capacity(reserve, needed):
     asked = mission([robot(work_capacity=60)], [EAST, WEST], capacity_reserve=reserve)
     found = one_of(asked, "west", ["east"])
-    assert found.capacity == Capacity(now=60, as_is=needed, at_least=needed, enough=needed)
+    assert found.capacity == CapacityChange(now=60, as_is=needed, at_least=needed, enough=needed)
     assert works(asked, found, "west")
 
 
@@ -153,7 +157,7 @@ def test_less_capacity_where_tasks_can_be_moved():
 def test_a_task_that_is_done_by_another():
     asked = mission([robot("r_0", work_capacity=9), robot("r_1")], [task("a", 10, 0), task("b", -2, 0)])
     first, second = look(asked, "a", ["b"], ["a"])
-    assert first.capacity == Capacity(now=9, as_is=14, at_least=10, enough=10)
+    assert first.capacity == CapacityChange(now=9, as_is=14, at_least=10, enough=10)
     assert works(asked, first, "a")
     assert (second.kinds, second.capacity.now, second.enough) == ((), None, True)
 
@@ -163,7 +167,7 @@ def test_what_bounds_a_capacity_among_many_tasks():
     row = [task(str(k), k, 0, only_robots=("r_0",)) for k in range(15)]
     asked = mission([robot("r_0", work_capacity=20), robot("r_1")], [*row, task("back", -9, 0)])
     found = one_of(asked, "back", [str(k) for k in range(15)])
-    assert found.capacity == Capacity(now=20, as_is=32, at_least=32, enough=32)
+    assert found.capacity == CapacityChange(now=20, as_is=32, at_least=32, enough=32)
     free = [replace(one, only_robots=None) for one in row]
     found = one_of(replace(asked, tasks=(*free, task("back", -21, 0))), "back", [str(k) for k in range(15)])
     assert (found.capacity.at_least, found.capacity.enough, found.capacity.as_is) == (21, 21, 49)
@@ -177,7 +181,7 @@ def test_a_plan_that_breaks_rules_is_enough_for_nothing():
     found = one_of(asked, "a", [], ["b"])
     assert (found.enough, found.impossible, found.routes) == (False, True, ())
     short = smallest_as_is(Problem.compile(asked), [[], [1]], 0, judge)
-    assert (short.robot, short.capacity) == ("r_1", Capacity(now=5, as_is=20, enough=20))
+    assert (short.robot, short.capacity) == ("r_1", CapacityChange(now=5, as_is=20, enough=20))
 
 
 # --- prerequisites, ways ---------------------------------------------------------------------------------------------
@@ -188,7 +192,7 @@ def test_a_prerequisite_that_is_left_out():
     found = one_of(asked, "then")
     assert found.before == (Before("first", possible=True),)
     assert found.kinds == ("prerequisite", "capacity")
-    assert found.capacity == Capacity(now=10, as_is=None, at_least=12, enough=12)
+    assert found.capacity == CapacityChange(now=10, as_is=None, at_least=12, enough=12)
     assert works(asked, found, "then")
     assert smallest_as_is(Problem.compile(asked), [[]], 1, judge).kinds == ("prerequisite",)
 
@@ -219,8 +223,8 @@ def test_no_way():
     )
     found = one_of(asked, "2")
     assert (found.unreachable, found.impossible, found.enough) == (True, True, False)
-    assert found.capacity == Capacity(now=1)
-    assert one_of(asked, "1").capacity == Capacity(now=1, as_is=3, at_least=3, enough=3)
+    assert found.capacity == CapacityChange(now=1)
+    assert one_of(asked, "1").capacity == CapacityChange(now=1, as_is=3, at_least=3, enough=3)
     assert smallest_as_is(Problem.compile(asked), [[]], 1, judge) is None
 
 
@@ -307,4 +311,4 @@ def test_plans_of_nothing():
     asked = mission([robot()], [task("1", 1, 0)])
     found = one_of(asked, "1")
     assert found.routes == (Route("r_0", ("1",)),)
-    assert (found.kinds, found.capacity) == ((), Capacity(now=None, as_is=1, enough=None))
+    assert (found.kinds, found.capacity) == ((), CapacityChange(now=None, as_is=1, enough=None))

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from muster.bridges.steering import Driven, Steering
-from muster.bridges.yielding import MakingRoom
+from muster.bridges.steering import SteeredRobot, Steering
+from muster.bridges.yielding import Yielding
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu
 from muster.motion.port import Waypoint
@@ -19,19 +19,19 @@ def robot(name, **more):
 
 
 def waiting(name, place, **more):
-    return Driven(robot(name, **more), (*place, 0.0), 0.0, (0.0, 0.0, 0.0), None, False, waits=True)
+    return SteeredRobot(robot(name, **more), (*place, 0.0), 0.0, (0.0, 0.0, 0.0), None, False, waits=True)
 
 
 def going(name, place, aim, velocity=(1.0, 0.0, 0.0)):
-    return Driven(robot(name), (*place, 0.0), 0.0, velocity, Waypoint((*aim, 0.0)), False)
+    return SteeredRobot(robot(name), (*place, 0.0), 0.0, velocity, Waypoint((*aim, 0.0)), False)
 
 
 def room(**more):
-    return MakingRoom(arrival_m=0.1, **more)
+    return Yielding(arrival_m=0.1, **more)
 
 
 def aim_of(arranged, name):
-    (found,) = (driven.aim for driven in arranged if driven.robot.id == name)
+    (found,) = (steered.aim for steered in arranged if steered.robot.id == name)
     return None if found is None else found.position[:2]
 
 
@@ -54,7 +54,7 @@ def test_who_stands_where_another_goes_steps_aside_and_comes_back():
 def test_who_works_and_who_is_in_nobodys_way_is_not_moved(stands):
     one = waiting("a", (0, 0))
     waits = stands.pop("waits", True)
-    one = Driven(
+    one = SteeredRobot(
         Robot(**{"id": "a", "position": (0.0, 0.0), "radius_m": RADIUS, **stands}),
         one.position,
         0.0,
@@ -154,8 +154,8 @@ def test_one_works_where_another_waits_and_nobody_touches():
         if there and aim[0] < 1 and reached_s is None:
             reached_s = now
         team = [
-            Driven(bodies["a"], (*places["a"], 0.0), 0.0, velocities["a"], None, False, waits=True),
-            Driven(bodies["b"], (*places["b"], 0.0), 0.0, velocities["b"], Waypoint((*aim, 0.0)), there),
+            SteeredRobot(bodies["a"], (*places["a"], 0.0), 0.0, velocities["a"], None, False, waits=True),
+            SteeredRobot(bodies["b"], (*places["b"], 0.0), 0.0, velocities["b"], Waypoint((*aim, 0.0)), there),
         ]
         for name, (*body, _) in steering.velocities(it.arranged(now, team)).items():
             velocities[name] = tuple(map(float, flu_to_enu(body, 0.0)))

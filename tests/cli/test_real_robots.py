@@ -75,7 +75,7 @@ def test_who_was_interrupted_hears_what_robots_do(capsys):
 
 def test_robots_that_do_not_say_where_they_are_are_named():
     class Silent:
-        def unheard(self):
+        def robots_not_ready(self):
             return {"r_0": "nothing on /r_0/odom", "r_1": "nothing on /r_1/odom"}
 
     with pytest.raises(muster.MusterError, match=r"robot r_0: nothing on /r_0/odom within 0.1 s \(and 1 more\)"):

@@ -35,9 +35,9 @@ def test_the_table_has_every_action_with_its_keys():
 @pytest.fixture
 def forgotten():
     """What an example registers is forgotten after it."""
-    before = set(ACTIONS)
+    kept = set(ACTIONS)
     yield
-    for name in set(ACTIONS) - before:
+    for name in set(ACTIONS) - kept:
         ACTIONS.remove(name)
         ACTION_KEYS.remove(name)
 

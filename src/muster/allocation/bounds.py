@@ -14,8 +14,9 @@ from graphlib import TopologicalSorter
 
 import numpy as np
 
-from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
+from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import Ways, route_bounds
 from muster.mission.errors import MusterError
 

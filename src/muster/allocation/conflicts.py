@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.allocation.feasibility import ROUNDING, impossible
+from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
+from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.usage_bounds import FEW, UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all
 from muster.mission.clock import Clock, SystemClock

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from muster import core
 from muster.allocation.feasibility import least_usage
 from muster.allocation.problem import Problem
+from muster.allocation.rules import InPlan
 from muster.mission.auction_book import Award, Book
 from muster.mission.plan import Reason, Unassigned
 
@@ -20,14 +21,14 @@ def unassigned(
 
     From when `hurried` says so tasks come without reasons.
     """
-    inspection = core.Inspection(problem.core, [list(route) for route in routes])
-    done = {j for route in routes for j in route}
+    plan = InPlan(problem, routes)
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
-    left_out = sorted((j for j in range(len(problem.tasks)) if j not in done), key=lambda j: order[problem.tasks[j].id])
+    missing = (j for j in range(len(problem.tasks)) if j not in plan.done)
+    left_out = sorted(missing, key=lambda j: order[problem.tasks[j].id])
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
 
     def reasons(j: int) -> tuple[Reason, ...]:
-        return () if hurried() else tuple(_reason(problem, inspection, done, i, j) for i in robots)
+        return () if hurried() else tuple(_reason(problem, plan, i, j) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in left_out)
 
@@ -56,26 +57,16 @@ def _without_beginnings(reason: Reason, free: Reason) -> Reason:
     return Reason(reason.robot, "not-chosen", "fits only before tasks that stay where they are")
 
 
-def _reason(problem: Problem, inspection: core.Inspection, done: set[int], i: int, j: int) -> Reason:
+def _reason(problem: Problem, plan: InPlan, i: int, j: int) -> Reason:
     """Why robot i does not do task j, which the plan leaves out."""
-    robot = problem.robots[i].id
-    refusal = None if problem.may(i, j) else problem.refusal(i, j)
-    if refusal is not None:
-        return Reason(robot, *refusal)
-    missing = [problem.tasks[k].id for k in problem.prerequisites[j] if k not in done]
-    if missing:
-        return Reason(robot, "prerequisite", f"left out before it: {', '.join(missing)}")
-    unit = problem.usage_unit
-    insertion = inspection.cheapest_insertion(i, j)
-    if insertion is None:
-        return Reason(robot, "prerequisite", "at every place in its route the prerequisites would wait in a circle")
-    if math.isinf(insertion.usage):
-        lost = math.isinf(inspection.usages[i])
-        return Reason(robot, "unreachable", "there is no way along its route" if lost else problem.why_no_way(i, j))
-    capacity = problem.capacity[i]
-    if insertion.usage > capacity:
-        return Reason(robot, "capacity", f"at least {insertion.usage:.2f} {unit} with it, of {capacity:.2f} {unit}")
-    return Reason(robot, "not-chosen", f"fits as number {insertion.at + 1}, for {insertion.usage:.2f} {unit} in all")
+    for rule in problem.rules:
+        detail = rule.left_out(plan, i, j)
+        if detail is not None:
+            return Reason(problem.robots[i].id, rule.word, detail)
+    insertion = plan.insertion(i, j)
+    assert insertion is not None  # or a rule would have said why
+    detail = f"fits as number {insertion.at + 1}, for {insertion.usage:.2f} {problem.usage_unit} in all"
+    return Reason(problem.robots[i].id, "not-chosen", detail)
 
 
 def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...]:
@@ -93,7 +84,7 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
         if refusal is not None:
             reasons.append(Reason(robot.id, *refusal))
         elif all_named and robot.id not in bidders and math.isinf(least_usage(problem, i)[j]):
-            reasons.append(Reason(robot.id, "unreachable", problem.why_no_way(i, j)))
+            reasons.append(Reason(robot.id, "unreachable", problem.no_way_to(i, j)))
         elif all_named and robot.id not in bidders:
             reasons.append(Reason(robot.id, "capacity", "too little was left of it"))
     return tuple(reasons)
@@ -115,19 +106,15 @@ class Alternative:
 def alternatives(problem: Problem, routes: Sequence[Sequence[int]], j: int) -> tuple[Alternative, ...]:
     """For every robot, in mission order, what giving it task j instead would do, the rest of the plan as it is."""
     rest = [[k for k in route if k != j] for route in routes]
-    inspection = core.Inspection(problem.core, rest)
-    done = {k for route in rest for k in route}
+    plan = InPlan(problem, rest)
     return tuple(
-        _alternative(problem, inspection, rest, done, problem.robot_index[robot.id], j)
-        for robot in problem.mission.robots
+        _alternative(problem, plan, rest, problem.robot_index[robot.id], j) for robot in problem.mission.robots
     )
 
 
-def _alternative(
-    problem: Problem, inspection: core.Inspection, rest: list[list[int]], done: set[int], i: int, j: int
-) -> Alternative:
-    why = _reason(problem, inspection, done, i, j)
-    insertion = inspection.cheapest_insertion(i, j) if why.reason == "not-chosen" else None
+def _alternative(problem: Problem, plan: InPlan, rest: list[list[int]], i: int, j: int) -> Alternative:
+    why = _reason(problem, plan, i, j)
+    insertion = plan.insertion(i, j) if why.reason == "not-chosen" else None
     if insertion is None:
         return Alternative(why.robot, None, None, why)
     routes = [list(route) for route in rest]

@@ -8,10 +8,9 @@ import math
 import numpy as np
 
 from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.rules import Outlook
 from muster.mission.plan import Reason, Unassigned
 
-ROUNDING = 2e-9
-"""By how much a usage may be above a capacity, relative; a little more than the judge allows."""
 _MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
 
 
@@ -32,31 +31,28 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
                 waiting.append(j)
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
     order = [problem.task_index[task.id] for task in problem.mission.tasks]
-    return tuple(
-        Unassigned(problem.tasks[j].id, tuple(_reason(problem, i, j, float(least[i, j]), lost[j]) for i in robots))
-        for j in order
-        if j in lost
-    )
+
+    def reasons(j: int) -> tuple[Reason, ...]:
+        return tuple(_reason(problem, i, j, Outlook(float(least[i, j]), lost[j])) for i in robots)
+
+    return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
 
-def _reason(problem: Problem, i: int, j: int, least: float, lost_before: str) -> Reason:
-    robot, unit = problem.robots[i].id, problem.usage_unit
-    refusal = problem.refusal(i, j)
-    if refusal is not None:
-        return Reason(robot, *refusal)
-    if lost_before:
-        return Reason(robot, "prerequisite", f"{lost_before} comes before it and can never be done")
-    if math.isinf(least):
-        return Reason(robot, "unreachable", problem.why_no_way(i, j))
-    detail = f"takes at least {least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
-    return Reason(robot, "capacity", detail)
+def _reason(problem: Problem, i: int, j: int, outlook: Outlook) -> Reason:
+    """Why robot i can never do task j, which nobody can."""
+    found = ((rule.word, rule.never(problem, i, j, outlook)) for rule in problem.rules)
+    word, detail = next((word, detail) for word, detail in found if detail is not None)
+    return Reason(problem.robots[i].id, word, detail)
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
     """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
     least = least_usages(problem) if least is None else least
-    within = least <= problem.capacity[:, None] * (1 + ROUNDING)
-    return np.asarray(problem.allowed & np.isfinite(least) & within)
+    usable = problem.allowed
+    for rule in problem.rules:
+        possible = rule.possible(problem, least)
+        usable = usable if possible is None else usable & possible
+    return np.asarray(usable)
 
 
 def least_usages(problem: Problem) -> Floats:

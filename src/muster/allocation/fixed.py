@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes, admissible_routes
-from muster.allocation.feasibility import ROUNDING
 from muster.allocation.problem import Problem
+from muster.allocation.rules.rule import ROUNDING
 from muster.mission.plan import Plan
 
 

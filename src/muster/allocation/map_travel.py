@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.allocation.lengths import Measured
-from muster.allocation.task_geometry import Doings
+from muster.allocation.task_geometry import TaskMotions
 from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
@@ -39,13 +39,13 @@ class MapTravel:
 
     robot_paths: RobotPaths
     bodies: tuple[Body, ...]
-    doings: Doings
+    doings: TaskMotions
     exits: Floats
     entries: Floats
 
     @classmethod
     def of(
-        cls, robot_paths: RobotPaths, robots: Sequence[Robot], doings: Doings, exits: Floats, entries: Floats
+        cls, robot_paths: RobotPaths, robots: Sequence[Robot], doings: TaskMotions, exits: Floats, entries: Floats
     ) -> MapTravel:
         return cls(robot_paths, tuple(body_of(robots[i]) for i in doings.firsts), doings, exits, entries)
 

@@ -14,8 +14,9 @@ import numpy.typing as npt
 
 from muster import core
 from muster.allocation.lengths import Measured
+from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
-from muster.allocation.task_geometry import Doings
+from muster.allocation.task_geometry import TaskMotions
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -172,25 +173,24 @@ class Problem:
 
     def refusal(self, i: int, j: int) -> tuple[str, str] | None:
         """Why robot i may not do task j whatever its route (reason, detail); None if it may."""
-        robot, task = self.robots[i], self.tasks[j]
-        lacking = [skill for skill in task.requires if skill not in robot.skills]
-        if self.holds("skill") and lacking:
-            return "skill", f"lacks {', '.join(lacking)}"
-        unable = self.why_impossible(i, j)
-        if unable is not None:
-            return "skill", unable
-        least = self.mission.rules.min_suitability
-        if self.holds("suitability") and self.mission.suitability is not None:
-            score = self.mission.suitability[robot.type or ""].get(task.type or "", 0.0)
-            if score < least:
-                return "suitability", f"type {robot.type} scores {score:g} for {task.type}, below {least:g}"
-        if task.only_robots is not None and robot.id not in task.only_robots:
-            return "lock", f"only {', '.join(task.only_robots)} may do it"
+        for rule in self.rules:
+            detail = rule.refusal(self, i, j)
+            if detail is not None:
+                return rule.word, detail
         return None
 
-    def why_impossible(self, i: int, j: int) -> str | None:
+    @cached_property
+    def rules(self) -> tuple[Rule, ...]:
+        """The rules that hold."""
+        return tuple(rule for rule in RULES if not rule.ignorable or self.holds(rule.word))
+
+    def action_refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
-        return self._doings.why_impossible(i, j)
+        return self._task_motions.why_impossible(i, j)
+
+    def actions_refused(self, i: int) -> frozenset[int]:
+        """The tasks whose actions robot i cannot do."""
+        return self._task_motions.cannot_do(i)
 
     @cached_property
     def allowed(self) -> Bools:
@@ -219,11 +219,8 @@ class Problem:
 
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
-        locked = {name for task in self.tasks for name in task.only_robots or ()}
-        return [
-            (r.type, frozenset(r.skills), r.id if r.id in locked else None, self._doings.cannot_do(i))
-            for i, r in enumerate(self.robots)
-        ]
+        columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
+        return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:
         return np.array([self.refusal(i, j) is None for j in range(len(self.tasks))], dtype=np.bool_)
@@ -281,7 +278,7 @@ class Problem:
     def measured(self) -> Measured:
         if self.known is not None:
             return self.known
-        doings, none = self._doings, np.empty(0, dtype=np.int32)
+        doings, none = self._task_motions, np.empty(0, dtype=np.int32)
         if self.mission.travel_rule == "map":
             return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
@@ -290,8 +287,8 @@ class Problem:
         return Measured(table, doings.classes if len(table) else none, doings.costs, doings.classes)
 
     @cached_property
-    def _doings(self) -> Doings:
-        return Doings.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
+    def _task_motions(self) -> TaskMotions:
+        return TaskMotions.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
     def robot_paths(self) -> RobotPaths:
@@ -310,11 +307,11 @@ class Problem:
         from muster.allocation.map_travel import MapTravel
 
         by_body = self.mission.travel_rule == "map"
-        doings = self._doings if by_body else Doings.of(self.robots, self.tasks, by_body=True)
+        doings = self._task_motions if by_body else TaskMotions.of(self.robots, self.tasks, by_body=True)
         exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
         return MapTravel.of(robot_paths, self.robots, doings, exits, entries)
 
-    def why_no_way(self, i: int, j: int) -> str:
+    def no_way_to(self, i: int, j: int) -> str:
         """Why robot i cannot come to task j, which no way leads to, or along the way of its action."""
         if self.mission.travel_rule != "map" or self.known is not None:
             return "there is no way to it"
@@ -327,12 +324,12 @@ class Problem:
     @cached_property
     def _entries(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
-        return self._with_robots(self._doings.entries)
+        return self._with_robots(self._task_motions.entries)
 
     @cached_property
     def _exits(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
-        return self._with_robots(self._doings.exits)
+        return self._with_robots(self._task_motions.exits)
 
     def _with_robots(self, portals: Floats) -> Floats:
         places = np.array([(*p, 0.0)[:3] for p in self._robots_places], dtype=np.float64)

@@ -8,9 +8,12 @@ from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.feasibility import ROUNDING, impossible
+from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.allocation.remedy import Before, Capacity, Remedy, Score
+from muster.allocation.remedy import Before, Remedy
+from muster.allocation.rules import Change
+from muster.allocation.rules.capacity import CapacityChange
+from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.usage_bounds import FEW, UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
 from muster.mission.model import Robot, Task
@@ -75,10 +78,10 @@ def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int,
         now = None if unlimited else robot.work_capacity
         room = None if place is None else _work_capacity(problem, place[1])
         enough = room if room is None or now is None else max(room, now)
-        capacity = Capacity(now=now, as_is=room, enough=enough)
-        unable = problem.why_impossible(i, j) or ""
-        remedy = Remedy(robot=robot.id, before=before, unable=unable, capacity=capacity)
-        yield i, _barriers(problem, robot, problem.tasks[j], remedy)
+        capacity = CapacityChange(now=now, as_is=room, enough=enough)
+        unable = problem.action_refusal(i, j) or ""
+        changes = _changes(problem, robot, problem.tasks[j])
+        yield i, Remedy(robot=robot.id, changes=changes, before=before, unable=unable, capacity=capacity)
 
 
 def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:
@@ -97,31 +100,21 @@ def _work_capacity(problem: Problem, usage: float) -> float:
     return usage / (1.0 - problem.mission.rules.capacity_reserve)
 
 
-def _barriers(problem: Problem, robot: Robot, task: Task, remedy: Remedy) -> Remedy:
-    """The remedy with the skills, the score and the lock that stand between robot and task."""
-    mission = problem.mission
-    skills = tuple(skill for skill in task.requires if skill not in robot.skills) if problem.holds("skill") else ()
-    lock = task.only_robots if task.only_robots is not None and robot.id not in task.only_robots else None
-    low = None
-    if mission.suitability is not None and problem.holds("suitability"):
-        kind, wanted = robot.type or "", task.type or ""
-        score = mission.suitability[kind].get(wanted, 0.0)
-        if score < mission.rules.min_suitability:
-            low = Score(kind, wanted, score, mission.rules.min_suitability)
-    return replace(remedy, skills=skills, suitability=low, lock=lock)
+def _changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
+    """By the words of rules the changes with which the robot may do the task."""
+    found = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
+    return {word: change for word, change in found.items() if change is not None}
 
 
 def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:
-    """The problem with the remedy's skills, score, lock and capacity."""
-    robot, task = problem.robots[i], problem.tasks[j]
+    """The problem with the changes of the remedy, and its capacity."""
+    robot, task, suitability = problem.robots[i], problem.tasks[j], problem.mission.suitability
     enough = remedy.capacity.enough
     capacity = robot.work_capacity if remedy.capacity.now is None or enough is None else enough
-    abler = replace(robot, skills=(*robot.skills, *remedy.skills), work_capacity=capacity)
-    freer = task if remedy.lock is None else replace(task, only_robots=(*remedy.lock, robot.id))
-    suitability = problem.mission.suitability
-    if remedy.suitability is not None and suitability is not None:
-        low = remedy.suitability
-        suitability = {**suitability, low.robot_type: {**suitability[low.robot_type], low.task_type: low.needed}}
+    abler, freer = replace(robot, work_capacity=capacity), task
+    for change in remedy.changes.values():
+        abler, freer = change.robot(abler), change.task(freer, robot)
+        suitability = None if suitability is None else change.suitability(suitability)
     mission = replace(
         problem.mission,
         robots=tuple(abler if one.id == robot.id else one for one in problem.mission.robots),

@@ -16,8 +16,8 @@ from graphlib import CycleError, TopologicalSorter
 import numpy as np
 
 from muster.allocation.allocator import Outcome, Routes, admissible_routes, finished_plan
-from muster.allocation.feasibility import ROUNDING
 from muster.allocation.problem import Floats, Problem
+from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
 from muster.mission.plan import Plan

@@ -12,15 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Point, Robot, Task
-from muster.motion.actions import Doing, Impossible, plan
+from muster.motion.actions import Impossible, TaskMotion, plan
 
 Floats = npt.NDArray[np.float64]
 Classes = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
-class Doings:
-    """Made by `Doings.of`.
+class TaskMotions:
+    """Made by `TaskMotions.of`.
 
     Parameters
     ----------
@@ -42,12 +42,12 @@ class Doings:
     entries: Floats
     exits: Floats
     costs: Floats
-    moving: Mapping[tuple[int, int], Doing]
+    moving: Mapping[tuple[int, int], TaskMotion]
     _like: tuple[int, ...]  # for each robot the first of the same shape
     _impossible: Mapping[int, Mapping[int, str]]  # for the first robot of each shape the reasons by task
 
     @classmethod
-    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> Doings:
+    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> TaskMotions:
         """With `by_body` robots of different bodies are in different classes."""
         moving = [j for j, task in enumerate(tasks) if task.action is not None and task.action.has_geometry]
         first_of: dict[object, int] = {}
@@ -78,17 +78,17 @@ class Doings:
         return frozenset(self._impossible[self._like[i]])
 
 
-def _completed(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, Doing]]:
+def _completed(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> dict[int, dict[int, TaskMotion]]:
     """How each robot does each task that some robot can do; one that cannot is said to do it as the first that can."""
-    able = {i: {j: own for j, own in row.items() if isinstance(own, Doing)} for i, row in found.items()}
-    usual: dict[int, Doing] = {}
+    able = {i: {j: own for j, own in row.items() if isinstance(own, TaskMotion)} for i, row in found.items()}
+    usual: dict[int, TaskMotion] = {}
     for row in able.values():
         usual = row | usual
     order = sorted(usual)
     return {i: {j: row.get(j, usual[j]) for j in order} for i, row in able.items()}
 
 
-def _reasons(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, str]]:
+def _reasons(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> dict[int, dict[int, str]]:
     return {i: {j: own.reason for j, own in row.items() if isinstance(own, Impossible)} for i, row in found.items()}
 
 

@@ -14,8 +14,9 @@ from functools import cached_property
 
 import numpy as np
 
-from muster.allocation.feasibility import ROUNDING, least_usages, usable_pairs
+from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import spanning_tree
 from muster.allocation.witness_plans import closed
 

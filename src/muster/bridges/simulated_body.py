@@ -1,4 +1,4 @@
-"""The body of a simulated robot behind a bridge: it moves exactly by its kinematics, as it is told on whatever wire."""
+"""The body of a simulated robot behind a bridge: it moves exactly by its kinematics, as it is commanded."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from muster.bridges.follower import Follower
-from muster.bridges.steering import STILL, Driven, Steering, Velocity
+from muster.bridges.steering import STILL, SteeredRobot, Steering, Velocity
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu, wrapped
 from muster.motion.grid import Floats
@@ -15,10 +15,10 @@ from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.port import Place, Waypoint
 
 _DEAF_S = 0.5
-"""A robot that is told no velocity for longer goes to its way point, or stands."""
+"""A robot that gets no velocity command for longer goes to its way point, or stands."""
 
 
-class Body:
+class SimulatedBody:
     """One robot.
 
     Parameters
@@ -47,13 +47,13 @@ class Body:
         return (x, y, z), float(wrapped(heading))
 
     def drive(self, velocity: Velocity, now: float) -> None:
-        """It is told how to move; its way point is forgotten."""
+        """Take a velocity command; the way point is dropped."""
         if all(map(math.isfinite, velocity)):
             self._told, self._told_s = velocity, now
             self._follower.take(())
 
     def go_to(self, place: Place, heading: float) -> None:
-        """It is told where to go."""
+        """Take a way point."""
         self._follower.take([Waypoint(place, heading)])
 
     def step(self, now: float, dt: float) -> Floats:
@@ -70,8 +70,8 @@ class Body:
         self._follower.hear(now, place, heading)
         aim = self._follower.aim
         arrived = aim is not None and self._follower.is_at(place, aim)
-        driven = Driven(self.robot, place, heading, (0.0, 0.0, 0.0), aim, arrived)
-        return self._steering.velocities([driven])[self.robot.id]
+        steered = SteeredRobot(self.robot, place, heading, (0.0, 0.0, 0.0), aim, arrived)
+        return self._steering.velocities([steered])[self.robot.id]
 
     def _as_inputs(self, velocity: Velocity, heading: float) -> Floats:
         ahead, left, up, turning = velocity

@@ -27,7 +27,7 @@ _TO_THE_RIGHT = math.radians(1.0)
 SETTLES_S = 0.4
 """How fast robots come to their way points at the end: several times the delay from a pose to what is done about it."""
 _STANDS = 1e9
-"""Priority of who stands: the others go around."""
+"""Priority of a robot that stands: the others go around it."""
 
 Velocity = tuple[float, float, float, float]
 """Ahead, left, up in m/s, and yaw rate in rad/s: of a body."""
@@ -35,7 +35,7 @@ STILL: Velocity = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Driven:
+class SteeredRobot:
     """A robot, where it is, and where it is to go.
 
     Parameters
@@ -64,7 +64,7 @@ class Driven:
 
 
 class Steering:
-    """Remembers what robots were told last, which limits what they can be told next.
+    """Keeps the last inputs of each robot, which limit the next ones.
 
     Parameters
     ----------
@@ -83,11 +83,11 @@ class Steering:
         self._orca = Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0))
         self._before: dict[str, Floats] = {}
 
-    def velocities(self, team: Sequence[Driven]) -> dict[str, Velocity]:
+    def velocities(self, team: Sequence[SteeredRobot]) -> dict[str, Velocity]:
         """What each robot is to do in the next interval, by its id."""
         told: dict[str, Velocity] = {}
         for kind in ("ground", "air"):
-            crowd = [driven for driven in team if driven.robot.kind == kind]
+            crowd = [steered for steered in team if steered.robot.kind == kind]
             if crowd:
                 chosen = self._chosen(crowd, 3 if kind == "air" and self._space else 2)
                 told |= {one.robot.id: self._told(one, velocity) for one, velocity in zip(crowd, chosen, strict=True)}
@@ -97,37 +97,39 @@ class Steering:
         """It stands: it begins from rest."""
         self._before.pop(robot, None)
 
-    def _chosen(self, crowd: Sequence[Driven], size: int) -> Floats:
+    def _chosen(self, crowd: Sequence[SteeredRobot], size: int) -> Floats:
         """Velocities (n, 3) on which nobody meets anybody.
 
         ORCA starts from what robots would do, not from what they do ([berg2011], section 5.2): the latter
         lags behind, and where a robot alone must give way it would forbid it to brake beside one that is far away.
         """
-        preferred = np.array([self._preferred(driven, size) for driven in crowd])
+        preferred = np.array([self._preferred(steered, size) for steered in crowd])
         agents = Agents(
-            positions=np.array([driven.position[:size] for driven in crowd]),
+            positions=np.array([steered.position[:size] for steered in crowd]),
             velocities=np.where(
-                [[driven.goes] for driven in crowd], preferred, np.array([driven.velocity[:size] for driven in crowd])
+                [[steered.goes] for steered in crowd],
+                preferred,
+                np.array([steered.velocity[:size] for steered in crowd]),
             ),
             preferred=preferred,
-            radii=np.array([self._radius(driven.robot) for driven in crowd]),
-            max_speeds=np.array([driven.robot.speed_mps for driven in crowd]),
-            priorities=np.array([driven.robot.avoidance_priority if driven.goes else _STANDS for driven in crowd]),
+            radii=np.array([self._radius(steered.robot) for steered in crowd]),
+            max_speeds=np.array([steered.robot.speed_mps for steered in crowd]),
+            priorities=np.array([steered.robot.avoidance_priority if steered.goes else _STANDS for steered in crowd]),
         )
         chosen = np.zeros((len(crowd), 3))
         chosen[:, :size] = self._orca.velocities(agents, dt=self._interval_s)
-        chosen[[not driven.goes for driven in crowd]] = 0.0
+        chosen[[not steered.goes for steered in crowd]] = 0.0
         return chosen
 
     def _radius(self, robot: Robot) -> float:
         return robot.radius_m + self._margin_m if robot.radius_m > 0 else 0.0
 
-    def _preferred(self, driven: Driven, size: int) -> Floats:
+    def _preferred(self, steered: SteeredRobot, size: int) -> Floats:
         """Straight to the aim, so slow that it can stop there."""
-        if driven.aim is None or driven.arrived:
+        if steered.aim is None or steered.arrived:
             return np.zeros(size)
-        limits = limits_of(driven.robot)
-        offset = np.subtract(driven.aim.position[:size], driven.position[:size])
+        limits = limits_of(steered.robot)
+        offset = np.subtract(steered.aim.position[:size], steered.position[:size])
         far = float(np.linalg.norm(offset))
         if far == 0:
             return np.zeros(size)
@@ -137,17 +139,17 @@ class Steering:
         wanted[:2] = (c * wanted[0] + s * wanted[1], c * wanted[1] - s * wanted[0])
         return np.asarray(wanted)
 
-    def _told(self, driven: Driven, velocity: Floats) -> Velocity:
-        if driven.aim is None:
-            self.forget(driven.robot.id)
+    def _told(self, steered: SteeredRobot, velocity: Floats) -> Velocity:
+        if steered.aim is None:
+            self.forget(steered.robot.id)
             return STILL
-        kinematics, limits = kinematics_named(driven.robot.kinematics), limits_of(driven.robot)
-        states = np.array([[*driven.position, driven.heading]])
-        heading = None if driven.aim.heading is None else np.array([driven.aim.heading])
+        kinematics, limits = kinematics_named(steered.robot.kinematics), limits_of(steered.robot)
+        states = np.array([[*steered.position, steered.heading]])
+        heading = None if steered.aim.heading is None else np.array([steered.aim.heading])
         wanted = kinematics.inputs(states, velocity[None], heading, limits)
-        before = self._before.get(driven.robot.id, np.zeros_like(wanted))
+        before = self._before.get(steered.robot.id, np.zeros_like(wanted))
         inputs = kinematics.limited(wanted, limits, before, self._interval_s)
-        self._before[driven.robot.id] = inputs
+        self._before[steered.robot.id] = inputs
         rates = kinematics.velocities(states, inputs)[0]
-        ahead, left, up = map(float, enu_to_flu(rates[:3], driven.heading))
+        ahead, left, up = map(float, enu_to_flu(rates[:3], steered.heading))
         return ahead, left, up, float(rates[3])

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from muster.bridges.steering import Driven
+from muster.bridges.steering import SteeredRobot
 from muster.mission.model import Robot
 from muster.motion.port import Place, Waypoint
 
@@ -20,7 +20,7 @@ _HELD_UP_S = 1.0
 _SLOW = 0.1
 """Share of its speed below which a robot hardly goes."""
 _AHEAD_M = 3.0
-"""So far ahead of one that is held up, those are asked who stand there."""
+"""Metres ahead of a robot that is held up, within which robots that stand yield."""
 _DIRECTIONS, _RINGS = 24, 8
 _STRAYS_M = 0.5
 """Farther beside its way, and its body's breadth, a robot was moved by somebody else; nearer it goes around others."""
@@ -46,8 +46,8 @@ class _Trip:
     end: Place
 
 
-class MakingRoom:
-    """Remembers where those who wait belong, and who is held up since when.
+class Yielding:
+    """Keeps where waiting robots belong, and which robots are held up since when.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class MakingRoom:
         self._trips: dict[str, _Trip] = {}  # of those that are on their way aside, there, or on their way back
         self._slow_since: dict[str, float] = {}
 
-    def arranged(self, now: float, team: Sequence[Driven]) -> list[Driven]:
+    def arranged(self, now: float, team: Sequence[SteeredRobot]) -> list[SteeredRobot]:
         """The team with aims for those that wait and are in the way, or are to come back.
 
         Parameters
@@ -79,75 +79,75 @@ class MakingRoom:
         now
             seconds of any clock that does not go back.
         """
-        claims = [claim for driven in team if driven.aim is not None for claim in self._claims(now, driven)]
-        return [self._moved(driven, team, claims) if driven.waits else self._busy(driven) for driven in team]
+        claims = [claim for steered in team if steered.aim is not None for claim in self._claims(now, steered)]
+        return [self._moved(steered, team, claims) if steered.waits else self._busy(steered) for steered in team]
 
-    def _busy(self, driven: Driven) -> Driven:
-        self._forget(driven)
-        return driven
+    def _busy(self, steered: SteeredRobot) -> SteeredRobot:
+        self._forget(steered)
+        return steered
 
-    def _forget(self, driven: Driven) -> None:
-        self._posts.pop(driven.robot.id, None)
-        self._trips.pop(driven.robot.id, None)
+    def _forget(self, steered: SteeredRobot) -> None:
+        self._posts.pop(steered.robot.id, None)
+        self._trips.pop(steered.robot.id, None)
 
-    def _claims(self, now: float, driven: Driven) -> Iterator[_Claim]:
+    def _claims(self, now: float, steered: SteeredRobot) -> Iterator[_Claim]:
         """Where it is to go, and if it is held up the ground before it."""
-        robot = driven.robot
-        assert driven.aim is not None
-        yield _Claim(robot, driven.aim.position, driven.aim.position)
-        if not driven.goes or math.hypot(*driven.velocity[:2]) > _SLOW * robot.speed_mps:
+        robot = steered.robot
+        assert steered.aim is not None
+        yield _Claim(robot, steered.aim.position, steered.aim.position)
+        if not steered.goes or math.hypot(*steered.velocity[:2]) > _SLOW * robot.speed_mps:
             self._slow_since.pop(robot.id, None)
         elif now - self._slow_since.setdefault(robot.id, now) >= _HELD_UP_S:
-            far = math.dist(driven.position[:2], driven.aim.position[:2])
+            far = math.dist(steered.position[:2], steered.aim.position[:2])
             share = min(1.0, _AHEAD_M / far) if far > 0 else 1.0
-            x, y = (a + share * (b - a) for a, b in zip(driven.position[:2], driven.aim.position[:2], strict=True))
-            yield _Claim(robot, driven.position, (x, y, driven.position[2]))
+            x, y = (a + share * (b - a) for a, b in zip(steered.position[:2], steered.aim.position[:2], strict=True))
+            yield _Claim(robot, steered.position, (x, y, steered.position[2]))
 
-    def _moved(self, driven: Driven, team: Sequence[Driven], claims: Sequence[_Claim]) -> Driven:
-        name = driven.robot.id
-        if self._strays(driven):
-            self._forget(driven)
-        trip, post = self._trips.get(name), self._posts.get(name, driven.position)
-        if not self._in_the_way(driven, post, claims):
-            return driven if trip is None else self._back(driven, trip, post)
-        if trip is None or self._in_the_way(driven, trip.end, claims):
-            aside = self._place_for(driven, post, team, claims)
+    def _moved(self, steered: SteeredRobot, team: Sequence[SteeredRobot], claims: Sequence[_Claim]) -> SteeredRobot:
+        name = steered.robot.id
+        if self._strays(steered):
+            self._forget(steered)
+        trip, post = self._trips.get(name), self._posts.get(name, steered.position)
+        if not self._in_the_way(steered, post, claims):
+            return steered if trip is None else self._back(steered, trip, post)
+        if trip is None or self._in_the_way(steered, trip.end, claims):
+            aside = self._place_for(steered, post, team, claims)
             if aside is None:
-                return driven
-            trip = _Trip(driven.position, aside)
+                return steered
+            trip = _Trip(steered.position, aside)
             self._posts[name], self._trips[name] = post, trip
-        arrived = self._is_at(driven, trip.end, self._arrival_m)
+        arrived = self._is_at(steered, trip.end, self._arrival_m)
         if arrived:
             self._trips[name] = _Trip(trip.end, trip.end)
-        return replace(driven, aim=Waypoint(trip.end), arrived=arrived)
+        return replace(steered, aim=Waypoint(trip.end), arrived=arrived)
 
-    def _back(self, driven: Driven, trip: _Trip, post: Place) -> Driven:
+    def _back(self, steered: SteeredRobot, trip: _Trip, post: Place) -> SteeredRobot:
         """On its way back, to its post; it stays where others have led it from where there is no straight way."""
-        name = driven.robot.id
-        if self._is_at(driven, post, self._arrival_m):
+        name = steered.robot.id
+        if self._is_at(steered, post, self._arrival_m):
             del self._trips[name]
-            return driven
+            return steered
         if trip.end != post:
-            if not self._may_go(driven.robot, driven.position, post):
-                self._forget(driven)
-                return driven
-            self._trips[name] = _Trip(driven.position, post)
-        return replace(driven, aim=Waypoint(post))
+            if not self._may_go(steered.robot, steered.position, post):
+                self._forget(steered)
+                return steered
+            self._trips[name] = _Trip(steered.position, post)
+        return replace(steered, aim=Waypoint(post))
 
-    def _strays(self, driven: Driven) -> bool:
+    def _strays(self, steered: SteeredRobot) -> bool:
         """Whether it is where nothing here has sent it."""
-        name = driven.robot.id
+        name = steered.robot.id
         trip, post = self._trips.get(name), self._posts.get(name)
         if trip is not None and trip.begin != trip.end:
-            return _distance_m(driven.position, trip.begin, trip.end) > 2 * driven.robot.radius_m + _STRAYS_M
+            return _distance_m(steered.position, trip.begin, trip.end) > 2 * steered.robot.radius_m + _STRAYS_M
         stands = post if trip is None else trip.end
-        return stands is not None and not self._is_at(driven, stands, 2 * self._arrival_m)
+        return stands is not None and not self._is_at(steered, stands, 2 * self._arrival_m)
 
-    def _is_at(self, driven: Driven, place: Place, within_m: float) -> bool:
-        return math.dist(driven.position[:2], place[:2]) <= within_m
+    def _is_at(self, steered: SteeredRobot, place: Place, within_m: float) -> bool:
+        return math.dist(steered.position[:2], place[:2]) <= within_m
 
-    def _in_the_way(self, driven: Driven, place: Place, claims: Sequence[_Claim]) -> bool:
-        return any(claim.distance_m(place) < self._apart_m(driven.robot, claim.robot) for claim in claims)
+    def _in_the_way(self, steered: SteeredRobot, place: Place, claims: Sequence[_Claim]) -> bool:
+        return any(claim.distance_m(place) < self._apart_m(steered.robot, claim.robot) for claim in claims)
 
     def _apart_m(self, one: Robot, other: Robot) -> float:
         """What two bodies need; one without a body is in nobody's way, nor is one on the ground in that of a drone."""
@@ -155,28 +155,30 @@ class MakingRoom:
             return 0.0
         return one.radius_m + other.radius_m + self._margin_m
 
-    def _place_for(self, driven: Driven, post: Place, team: Sequence[Driven], claims: Sequence[_Claim]) -> Place | None:
+    def _place_for(
+        self, steered: SteeredRobot, post: Place, team: Sequence[SteeredRobot], claims: Sequence[_Claim]
+    ) -> Place | None:
         """The nearest place at which it is in nobody's way, and from which it can come back; None if none is near."""
-        x, y, z = driven.position
-        step = driven.robot.radius_m + self._margin_m
+        x, y, z = steered.position
+        step = steered.robot.radius_m + self._margin_m
         for ring in range(1, _RINGS + 1):
             for k in range(_DIRECTIONS):
                 angle = 2 * math.pi * k / _DIRECTIONS
                 place = (x + ring * step * math.cos(angle), y + ring * step * math.sin(angle), z)
                 if (
-                    not self._in_the_way(driven, place, claims)
-                    and self._is_free(driven, place, team)
-                    and self._may_go(driven.robot, driven.position, place)
-                    and self._may_go(driven.robot, place, post)
+                    not self._in_the_way(steered, place, claims)
+                    and self._is_free(steered, place, team)
+                    and self._may_go(steered.robot, steered.position, place)
+                    and self._may_go(steered.robot, place, post)
                 ):
                     return place
         return None
 
-    def _is_free(self, driven: Driven, place: Place, team: Sequence[Driven]) -> bool:
+    def _is_free(self, steered: SteeredRobot, place: Place, team: Sequence[SteeredRobot]) -> bool:
         """Whether no other body is there, or is to come back there."""
-        others = [other for other in team if other.robot.id != driven.robot.id]
+        others = [other for other in team if other.robot.id != steered.robot.id]
         return all(
-            math.dist(place[:2], taken[:2]) >= self._apart_m(driven.robot, other.robot)
+            math.dist(place[:2], taken[:2]) >= self._apart_m(steered.robot, other.robot)
             for other in others
             for taken in (other.position, self._posts.get(other.robot.id, other.position))
         )

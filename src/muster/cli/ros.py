@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
-    from muster.bridges.ros1.node_processes import Children
+    from muster.bridges.ros1.node_processes import NodeProcesses
     from muster.execution import Report
 
 _LEFT = "the robots were told to stand"
@@ -140,7 +140,7 @@ def _with_nodes(
     """
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
-    from muster.bridges.ros1.node_processes import Children
+    from muster.bridges.ros1.node_processes import NodeProcesses
 
     controller = Controller()
     if mission is not None:
@@ -150,7 +150,7 @@ def _with_nodes(
     elif not work.options.quiet:
         click.echo("waits for command_interface/load and start", err=True)
     with ctrl_c_halts(TO_END) as asked:
-        children = Children(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        children = NodeProcesses(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
         with children:
             code = _one(controller, work, children)
             while work.stay and not controller.ending.is_set():
@@ -160,7 +160,7 @@ def _with_nodes(
         return INTERRUPTED if controller.ending.is_set() else code
 
 
-def _one(controller: Controller, work: _Work, children: Children) -> int:
+def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
     """Wait for one mission and carry it out; returns the exit code.
 
     Raises
@@ -187,7 +187,7 @@ def _one(controller: Controller, work: _Work, children: Children) -> int:
 
 
 def _through(
-    mission: Mission, controller: Controller, work: _Work, children: Children
+    mission: Mission, controller: Controller, work: _Work, children: NodeProcesses
 ) -> tuple[Report, list[FinalState]] | None:
     """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
     from muster.bridges.final_state import final_states_by_telemetry
@@ -203,7 +203,7 @@ def _through(
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        report = carried_out(there, plan, fleet, options, controller.halt, [controller.board])
+        report = carried_out(there, plan, fleet, options, controller.halt, [controller.mission_topics])
         return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()

@@ -35,7 +35,9 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
     help="How robots are told where to go: goal_pose, or Nav2's navigate_to_pose.",
 )
 @click.option(
-    "--by", type=click.Choice(["dds", "rclpy"]), help="The wire.  [default: rclpy where it can be imported, or dds]"
+    "--by",
+    type=click.Choice(["dds", "rclpy"]),
+    help="The middleware.  [default: rclpy if it can be imported, or dds]",
 )
 @click.option(
     "--arrival", type=Finite(0.001, 100.0), default=0.25, show_default=True, metavar="M", help="From a way point."
@@ -60,7 +62,7 @@ def command(
     """
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.open_wire import open_wire
+    from muster.bridges.ros2.open_middleware import open_middleware
     from muster.bridges.ros2.port import Arrival
     from muster.running.live import wait_for_robots
 
@@ -71,7 +73,7 @@ def command(
     with ctrl_c_halts(TO_END) as halt:
         fleet = Ros2Fleet(
             loaded,
-            wire=open_wire(by, domain),
+            middleware=open_middleware(by, domain),
             give=give,
             namespace=namespace,
             arrival=Arrival(near_m=arrival),

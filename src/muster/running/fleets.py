@@ -41,7 +41,7 @@ FLEETS: Registry[OpenFleet] = Registry(
 def fleet_ready(
     world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
 ) -> Opened:
-    """The robots of a mission, heard and ready; and what they are told when all is done.
+    """The robots of a mission, ready to go; and the function to call when all is done.
 
     Parameters
     ----------
@@ -75,12 +75,12 @@ def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
 
 def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros2.fleet import Ros2Fleet
-    from muster.bridges.ros2.open_wire import open_wire
+    from muster.bridges.ros2.open_middleware import open_middleware
     from muster.bridges.ros2.port import Arrival
 
     fleet = Ros2Fleet(
         mission,
-        wire=open_wire(settings.get("by"), settings.get("domain")),
+        middleware=open_middleware(settings.get("by"), settings.get("domain")),
         arrival=Arrival(near_m=settings.get("arrival_m", 0.25)),
         joins=not settings.get("known_only", False),
         **_some(settings, "give", "namespace"),

@@ -64,9 +64,9 @@ def carry_out_live(
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
-        is told all that happens, and where robots say that they are.
+        receives all events, and the positions that robots report.
     on_event
-        is told what happens, as it happens.
+        receives every event when it happens.
 
     Raises
     ------
@@ -105,7 +105,7 @@ class Live:
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
-        is told all that happens, and where robots say that they are.
+        receives all events, and the positions that robots report.
     past, begin_s
         what was done before, of a mission that goes on, and up to when.
 
@@ -202,7 +202,7 @@ class Live:
 
 
 class _Heard(Protocol):
-    def unheard(self) -> Mapping[str, str]:
+    def robots_not_ready(self) -> Mapping[str, str]:
         """Robots of the mission that have not said where they are, and what is missing."""
         ...
 
@@ -216,10 +216,10 @@ def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed:
         if something is, when the time is over.
     """
     until = time.monotonic() + wait_s
-    while (unheard := fleet.unheard()) and not halt.is_set():
+    while (robots_not_ready := fleet.robots_not_ready()) and not halt.is_set():
         if time.monotonic() > until:
-            robot, why = next(iter(unheard.items()))
-            more = f" (and {len(unheard) - 1} more)" if len(unheard) > 1 else ""
+            robot, why = next(iter(robots_not_ready.items()))
+            more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
             raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
         time.sleep(0.05)
 

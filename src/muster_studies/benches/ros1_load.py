@@ -113,7 +113,7 @@ def bridge(count: int, windows: int, window_s: float) -> None:
     become_node("muster")
     heard = Heard()
     fleet = Ros1Fleet(Mission(robots=team, tasks=()), on_pose=heard.note, rate_hz=20.0)
-    while fleet.unheard():
+    while fleet.robots_not_ready():
         time.sleep(0.05)
     rounds = math.ceil((windows + 1) * (window_s + 1) * SPEED_MPS / (4 * SIDE_M)) + 1
     corners = ((SIDE_M, 0.0), (SIDE_M, SIDE_M), (0.0, SIDE_M), (0.0, 0.0))
@@ -123,7 +123,7 @@ def bridge(count: int, windows: int, window_s: float) -> None:
     time.sleep(2.0)  # all have set out
     for _ in range(windows):
         heard.taken()
-        driven, cpu, begun = _driven(fleet), time.process_time(), time.monotonic()
+        steered, cpu, begun = _driven(fleet), time.process_time(), time.monotonic()
         time.sleep(window_s)
         took, cpu = time.monotonic() - begun, time.process_time() - cpu
         latencies, lost = heard.taken()
@@ -133,7 +133,7 @@ def bridge(count: int, windows: int, window_s: float) -> None:
             "median_ms": 1000 * latencies[len(latencies) // 2],
             "late_ms": 1000 * latencies[len(latencies) * 99 // 100],
             "processor": cpu / took,
-            "driven_m": (_driven(fleet) - driven) / count,
+            "driven_m": (_driven(fleet) - steered) / count,
         }
         sys.stdout.write(json.dumps(found) + "\n")
         sys.stdout.flush()

@@ -2,12 +2,12 @@
 
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.dialect import mavlink
-from muster.bridges.mavlink.drone import Craft
+from muster.bridges.mavlink.drone import Drone
 from muster.bridges.mavlink.fence import no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.telemetry import Seen
+from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.model import Origin, Robot
 from muster.motion.port import Waypoint
 
@@ -50,8 +50,8 @@ class Talk:
 
     def __init__(self, kind=PX4, **settings):
         robot = Robot(id="r_0", position=(0.0, 0.0, 0.0), kind="air", speed_mps=4.0)
-        seen = Seen((0.0, 0.0, 0.0), GlobalFrame(ORIGIN, (0.0, 0.0, 0.0)))
-        self.session = Session(Craft(robot, seen, Settings(**{"arm": True, **settings}), None), no_fence)
+        telemetry = DroneTelemetry((0.0, 0.0, 0.0), GlobalFrame(ORIGIN, (0.0, 0.0, 0.0)))
+        self.session = Session(Drone(robot, telemetry, Settings(**{"arm": True, **settings}), None), no_fence)
         self.kind, self.now = kind, 0.0
         self.say(heartbeat(kind), position())
 

@@ -36,8 +36,8 @@ def test_while_it_is_not_heard_it_is_told_nothing_and_in_the_end_that_is_said():
     talk = lost()
     talk.session.hold(talk.now)
     assert talk.taken() == []
-    talk.session.admit()
-    talk.session.admit()
+    talk.session.note_missing_hold()
+    talk.session.note_missing_hold()
     assert talk.session.fault.detail == "no heartbeat for 6.0 s; not told to hover"
 
 
@@ -56,7 +56,7 @@ def test_whom_somebody_flies_when_the_link_is_back_is_left_to_them(mode):
     talk = lost()
     assert talk.say(heartbeat(mode=mode, armed=True)) == []
     talk.session.hold(talk.now)
-    talk.session.admit()
+    talk.session.note_missing_hold()
     assert talk.taken() == []
     assert "not told" not in talk.session.fault.detail
 

@@ -85,16 +85,16 @@ def state(drone, kind):
     return names.get(drone.mode, "flies on")
 
 
-def confuse(seen):
+def confuse(telemetry):
     """From when it is in the air its attitude raises an error."""
-    take = seen.hear
+    take = telemetry.hear
 
     def hear(message, now):
-        if seen.was_up and message.get_type() == "ATTITUDE":
+        if telemetry.was_up and message.get_type() == "ATTITUDE":
             raise KeyError(9)
         take(message, now)
 
-    seen.hear = hear
+    telemetry.hear = hear
 
 
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
@@ -106,7 +106,7 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     if case.fenced:
         fleet.sessions["r_0"].fence = lambda here, waypoints: "way to (1, 2); expected none"
     if case.confusing:
-        confuse(fleet.sessions["r_0"].craft.seen)
+        confuse(fleet.sessions["r_0"].drone.telemetry)
     report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_event=heard.append)
     fleet.advance(fleet.time_s + 5.0)
     fleet.close()

@@ -28,7 +28,7 @@ def test_home_is_at_height_0(origin, start):
 
 @given(PLACES, PLACES, PLACES)
 def test_the_local_frame_and_back(place, ned, other):
-    frame = LocalFrame.seen(place, ned)
+    frame = LocalFrame.matched(place, ned)
     assert frame.to_map(ned) == pytest.approx(place, abs=1e-6)
     assert frame.to_map(frame.to_drone(other)) == pytest.approx(other, abs=1e-6)
 

@@ -26,8 +26,8 @@ def fleet():
 
 
 def test_it_says_who_and_where_it_is(fleet):
-    craft = fleet.sessions["r_0"].craft
-    assert craft.kind.name in ("PX4", "ArduPilot")
+    drone = fleet.sessions["r_0"].drone
+    assert drone.kind.name in ("PX4", "ArduPilot")
     first = fleet.ports["r_0"].telemetry()
     fleet.advance(fleet.time_s + 3.0)
     last = fleet.ports["r_0"].telemetry()
@@ -37,9 +37,9 @@ def test_it_says_who_and_where_it_is(fleet):
 
 
 def test_without_leave_its_mode_and_its_arming_stay_as_they_are(fleet):
-    seen = fleet.sessions["r_0"].craft.seen
-    before = seen.mode, seen.armed
+    telemetry = fleet.sessions["r_0"].drone.telemetry
+    before = telemetry.mode, telemetry.armed
     fleet.stop()
     fleet.end("return")
     fleet.end("land")
-    assert (seen.mode, seen.armed) == before
+    assert (telemetry.mode, telemetry.armed) == before

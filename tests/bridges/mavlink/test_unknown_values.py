@@ -35,7 +35,7 @@ def test_results_that_are_unknown():
 
 def test_numbers_that_are_none_are_no_place_and_no_heading():
     talk = Talk(offboard=True)
-    talk.session.craft.seen.earth = None
+    talk.session.drone.telemetry.earth = None
     good = from_drone(M.MAVLink_local_position_ned_message(0, 1.0, 2.0, -3.0, 0, 0, 0))
     bad = from_drone(M.MAVLink_local_position_ned_message(0, math.nan, 2.0, -3.0, 0, 0, 0))
     talk.say(good, from_drone(M.MAVLink_attitude_message(0, 0, 0, 0.5, 0, 0, 0)))
@@ -58,7 +58,7 @@ def test_an_error_over_one_drone_ends_its_part_alone_and_all_hover(verb):
         raise KeyError(9)
 
     one = fleet.sessions["r_0"]
-    where = {"hear": (one.craft.seen, "hear"), "tick": (one._watch, "look_at_clock"), "hold": (one, "_take_order")}
+    where = {"hear": (one.drone.telemetry, "hear"), "tick": (one._watch, "check_clock"), "hold": (one, "_take_order")}
     setattr(*where[verb], fails)
     if verb != "hold":
         assert [event.robot_fails for event in fleet.advance(fleet.time_s + 2.0)] == ["r_0"]

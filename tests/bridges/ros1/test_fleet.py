@@ -37,7 +37,7 @@ class Port:
             raise OSError("no route to host")
         self.told.append(what)
 
-    def driven(self, **_):
+    def steered(self, **_):
         if not self.steerable:
             raise ArithmeticError("steering is broken")
 
@@ -93,7 +93,7 @@ def test_robots_stand_at_once_when_steering_fails_and_who_waits_for_poses_is_tol
         time.sleep(0.01)
     assert told(fleet) == {"r_0": ["stand"], "r_1": [], "r_2": ["stand"]}
     with pytest.raises(ArithmeticError):
-        fleet.unheard()
+        fleet.robots_not_ready()
     with pytest.raises(ArithmeticError):
         fleet.advance(fleet.time_s + 0.1)
 
@@ -103,14 +103,14 @@ def test_a_robot_that_the_network_hid_is_met_later(rospy_there, monkeypatch):
 
     faults = [OSError("refused"), RuntimeError("fault of the master"), None]
 
-    def described(_, robot):
+    def robot_from_parameters(_, robot):
         fault = faults.pop(0)
         if fault is not None:
             raise fault
         return robot
 
     topics, said = [["/r_9/odom", "nav_msgs/Odometry"], ["/r_0/odom", "nav_msgs/Odometry"]], []
-    monkeypatch.setattr(joining, "described", described)
+    monkeypatch.setattr(joining, "robot_from_parameters", robot_from_parameters)
     monkeypatch.setattr(joining.rospy, "get_published_topics", lambda: topics)
 
     def reach(robot):
@@ -200,7 +200,7 @@ def test_who_was_never_sent_anywhere_is_not_even_told_to_stand(port_of, hear, dr
     hear["/r_0/odom"](0.0)
     port.stand()
     port.cancel()
-    port.speak(port.driven(within_s=9, paused=False), STILL)
+    port.speak(port.steered(within_s=9, paused=False), STILL)
     assert told == []
     port.send([Waypoint((1.0, 0.0, 0.0))])
     port.stand()
@@ -212,7 +212,7 @@ def test_who_has_made_room_by_goals_stands_where_that_ends(port_of, hear):
 
     def speak(**aim):
         del told[:]
-        port.speak(replace(port.driven(within_s=9, paused=False), **aim), STILL)
+        port.speak(replace(port.steered(within_s=9, paused=False), **aim), STILL)
         return list(told)
 
     hear["/r_0/odom"](0.0)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from muster.bridges.discovery import robots_in
 from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import Forward, MissionClock
-from muster.bridges.steering import STILL, Driven, Steering
+from muster.bridges.steering import STILL, SteeredRobot, Steering
 from muster.mission.model import Robot
 from muster.motion.frames import flu_to_enu
 from muster.motion.kinematics.registry import KINEMATICS
@@ -130,7 +130,7 @@ def drive(robots, goals, steps):
     velocities = np.zeros((len(robots), 3))
     for _ in range(steps):
         team = [
-            Driven(robot, tuple(state[:3]), state[3], tuple(v), None if goal is None else Waypoint(goal), False)
+            SteeredRobot(robot, tuple(state[:3]), state[3], tuple(v), None if goal is None else Waypoint(goal), False)
             for robot, state, v, goal in zip(robots, states, velocities, goals, strict=True)
         ]
         told = steering.velocities(team)

@@ -13,7 +13,7 @@ from muster.running.live import carry_out_live
 
 pytest.importorskip("cyclonedds")
 
-from muster.bridges.ros2.dds import Participant
+from muster.bridges.ros2.dds import DdsMiddleware
 from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
 from muster.bridges.ros2.message_types import MESSAGES, PoseStamped
@@ -46,7 +46,7 @@ def until(fleet, true, most_s=15.0):
 @pytest.mark.parametrize("says", ["pose", "odom"])
 def test_a_robot_follows_way_points(says, robots):
     robots("r_0", 1, 0, says)
-    fleet = Ros2Fleet(mission("r_0"), wire=Participant())
+    fleet = Ros2Fleet(mission("r_0"), middleware=DdsMiddleware())
     port = fleet.ports["r_0"]
     assert port.telemetry() is None
     until(fleet, lambda: port.telemetry() is not None)
@@ -65,7 +65,7 @@ def test_a_robot_follows_way_points(says, robots):
 
 def test_cancelled_it_stays_and_silent_its_time_stands_still(robots):
     process = robots("r_0", 0, 0, "pose")
-    fleet = Ros2Fleet(mission("r_0"), wire=Participant())
+    fleet = Ros2Fleet(mission("r_0"), middleware=DdsMiddleware())
     port = fleet.ports["r_0"]
     until(fleet, lambda: port.telemetry() is not None)
     port.send([Waypoint((400.0, 0.0, 0.0))])
@@ -89,7 +89,7 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     there = mission("r_0", "r_1")
     robots("r_0", 0, 0, "pose")
     robots("r_1", 0, 3, "odom")
-    fleet = Ros2Fleet(there, wire=Participant())
+    fleet = Ros2Fleet(there, middleware=DdsMiddleware())
     until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
     report = carry_out_live(there, muster.solve(there, "greedy"), fleet)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2"}
@@ -114,7 +114,7 @@ def test_what_cannot_be_written_is_one_line():
     def fails(_):
         raise DDSException(DDSException.DDS_RETCODE_TIMEOUT, "Occurred while writing")
 
-    writer = Participant().writer("/r_0/goal_pose", PoseStamped)
+    writer = DdsMiddleware().writer("/r_0/goal_pose", PoseStamped)
     writer._writer.write = fails
     with pytest.raises(NetworkError, match=r"^/r_0/goal_pose: DDS: \[DDS_RETCODE_TIMEOUT\] .*writing$"):
         writer.write(PoseStamped())
@@ -123,9 +123,9 @@ def test_what_cannot_be_written_is_one_line():
 def test_bad_domains_and_no_extra(monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", "many")
     with pytest.raises(ParameterError, match="ROS_DOMAIN_ID: 'many'; expected a number from 0 to 232"):
-        Participant()
+        DdsMiddleware()
     with pytest.raises(ParameterError, match="domain: '-1'; expected a number from 0 to 232"):
-        Participant(-1)
+        DdsMiddleware(-1)
     monkeypatch.setitem(sys.modules, "cyclonedds", None)
     with pytest.raises(MissingExtraError, match=r"muster-robotics\[ros2\]"):
-        Participant(1)
+        DdsMiddleware(1)

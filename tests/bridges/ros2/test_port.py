@@ -1,9 +1,9 @@
-"""The port of a robot on ROS 2, with the test's own time and wire: what it hears, and what it tells the robot."""
+"""The port of a robot on ROS 2, with the test's own time and middleware: what it hears, and what it tells the robot."""
 
 import math
 
 import pytest
-from tests.bridges.ros2.fake_wire import Navigator, Told, Wire, moved, posed
+from tests.bridges.ros2.fake_middleware import Middleware, Navigator, Told, moved, posed
 
 from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
 from muster.bridges.ros2.middleware import Outcome
@@ -17,13 +17,13 @@ class There:
     """A port, and what the robot says on its topics."""
 
     def __init__(self, goals):
-        self.wire = wire = Wire()
+        self.middleware = middleware = Middleware()
         robot = Robot(id="r", position=(0.0, 0.0))
-        self.port = Ros2Port(robot, wire, "/r", goals, Arrival(), flat=True, clock=wire.now)
-        self.poses, self.odometry = wire.heard["/r/pose"], wire.heard["/r/odom"]
+        self.port = Ros2Port(robot, middleware, "/r", goals, Arrival(), flat=True, clock=middleware.now)
+        self.poses, self.odometry = middleware.heard["/r/pose"], middleware.heard["/r/odom"]
 
     def hear(self, now):
-        self.wire.now_s = now
+        self.middleware.now_s = now
         return self.port.hear()
 
 

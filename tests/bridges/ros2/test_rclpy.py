@@ -9,8 +9,8 @@ from tests.bridges.ros2 import fake_rclpy
 from muster.bridges.ros2.description import from_foreign, to_foreign
 from muster.bridges.ros2.fleet import Ros2Fleet
 from muster.bridges.ros2.message_types import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
-from muster.bridges.ros2.open_wire import open_wire
-from muster.bridges.ros2.rclpy_middleware import RclpyWire, _class_of
+from muster.bridges.ros2.open_middleware import open_middleware
+from muster.bridges.ros2.rclpy_middleware import RclpyMiddleware, _class_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
@@ -30,8 +30,8 @@ def mission(*ids, tasks=((2.0, 0.0), (2.0, 1.5))):
 
 
 def navigated(there, **how):
-    fleet = Ros2Fleet(there, wire=RclpyWire(), give="nav2", **how)
-    until(fleet, lambda: not fleet.unheard())
+    fleet = Ros2Fleet(there, middleware=RclpyMiddleware(), give="nav2", **how)
+    until(fleet, lambda: not fleet.robots_not_ready())
     return fleet
 
 
@@ -59,15 +59,15 @@ def test_messages_in_messages_are_ours(graph):
 
 
 def test_by_itself_it_is_rclpy_where_that_is_and_in_the_domain_asked_for(graph):
-    wire = open_wire(domain=7)
-    assert isinstance(wire, RclpyWire)
+    middleware = open_middleware(domain=7)
+    assert isinstance(middleware, RclpyMiddleware)
     assert [context.domain for context in graph.contexts] == [7]
-    wire.close()
+    middleware.close()
     assert not graph.contexts[0].up
 
 
 def test_topics_are_written_heard_and_found(graph):
-    one, other = RclpyWire(1), RclpyWire(1)
+    one, other = RclpyMiddleware(1), RclpyMiddleware(1)
     writer, reader = one.writer("/r_0/pose", PoseStamped), other.reader("/r_0/pose", PoseStamped)
     other.reader("/r_1/odom", Odometry)
     assert list(other.topics()) == [("/r_0/pose", "geometry_msgs/PoseStamped")]  # what is only heard is not published
@@ -196,7 +196,7 @@ def test_where_nav2_ends_the_goal_waits_for_another(graph):
     fleet.advance(fleet.time_s + 0.1)
     del graph.servers["/r_0/navigate_to_pose"], graph.robots[0]
     fleet.advance(fleet.time_s + 0.1)
-    assert fleet.unheard() == {"r_0": "no server of /r_0/navigate_to_pose"}
+    assert fleet.robots_not_ready() == {"r_0": "no server of /r_0/navigate_to_pose"}
     fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0))
     until(fleet, lambda: fleet.ports["r_0"].telemetry().passed == 1)
 
@@ -232,9 +232,9 @@ def test_all_is_called_in_the_thread_that_waits(graph):
 
 def test_a_robot_that_is_found_joins_with_what_it_says(graph):
     fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0))
-    fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire())
+    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware())
     fake_rclpy.Nav2(graph, "r_7", (4.0, 5.0))
-    words = RclpyWire().writer("/r_7/muster", String)
+    words = RclpyMiddleware().writer("/r_7/muster", String)
     joined = []
     while not joined:
         words.write(String('{"speed_mps": 3.0, "id": "other"}'))
@@ -246,9 +246,9 @@ def test_a_robot_that_is_found_joins_with_what_it_says(graph):
 
 def test_one_that_says_what_is_wrong_does_not_join(graph, caplog):
     fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0))
-    fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire())
+    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware())
     fake_rclpy.Nav2(graph, "r_7", (4.0, 5.0))
-    words = RclpyWire().writer("/r_7/muster", String)
+    words = RclpyMiddleware().writer("/r_7/muster", String)
     end = fleet.time_s + 10
     while not caplog.records and fleet.time_s < end:
         words.write(String('{"speed_mps": -3.0}'))
@@ -261,10 +261,10 @@ def test_one_that_says_what_is_wrong_does_not_join(graph, caplog):
 
 def test_in_a_namespace_it_is_found_and_named_there(graph, caplog):
     fake_rclpy.Nav2(graph, "team/r_0", (0.0, 0.0))
-    fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire(), namespace="/team/")
-    until(fleet, lambda: not fleet.unheard())
+    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), namespace="/team/")
+    until(fleet, lambda: not fleet.robots_not_ready())
     fake_rclpy.Nav2(graph, "team/r_7", (4.0, 5.0))
-    words = RclpyWire().writer("/team/r_7/muster", String)
+    words = RclpyMiddleware().writer("/team/r_7/muster", String)
     end = fleet.time_s + 10
     while not caplog.records and fleet.time_s < end:
         words.write(String("[]"))
@@ -273,7 +273,7 @@ def test_in_a_namespace_it_is_found_and_named_there(graph, caplog):
 
 
 def test_known_only_nobody_joins(graph):
-    fleet = Ros2Fleet(mission("r_0"), wire=RclpyWire(), joins=False)
+    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), joins=False)
     fake_rclpy.Nav2(graph, "r_7", (4.0, 5.0))
     assert fleet.advance(fleet.time_s + 1.0) == []
 
@@ -281,14 +281,14 @@ def test_known_only_nobody_joins(graph):
 def test_what_is_missing_is_one_line(graph, monkeypatch):
     monkeypatch.setitem(sys.modules, "nav2_msgs.action", None)
     with pytest.raises(MissingExtraError, match="install nav2_msgs"):
-        Ros2Fleet(mission("r_0"), wire=RclpyWire(), give="nav2")
+        Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), give="nav2")
     assert not graph.contexts[0].up
     monkeypatch.setitem(sys.modules, "rclpy.node", None)
     with pytest.raises(MissingExtraError, match=r"source the setup file .*, or use DDS") as caught:
-        RclpyWire()
+        RclpyMiddleware()
     assert "\n" not in str(caught.value)
     with pytest.raises(ParameterError, match="domain: '233'; expected a number from 0 to 232"):
-        RclpyWire(233)
+        RclpyMiddleware(233)
 
 
 def test_a_node_that_cannot_be_leaves_nothing_open(graph, monkeypatch):
@@ -297,13 +297,13 @@ def test_a_node_that_cannot_be_leaves_nothing_open(graph, monkeypatch):
 
     monkeypatch.setattr(fake_rclpy.MODULES["rclpy.node"], "Node", fails)
     with pytest.raises(NetworkError, match="ROS 2 domain 3: no middleware; see RMW_IMPLEMENTATION"):
-        RclpyWire(3)
+        RclpyMiddleware(3)
     assert [context.up for context in graph.contexts] == [False]
 
 
 def test_what_cannot_be_published_is_one_line(graph):
-    wire = RclpyWire(3)
-    writer = wire.writer("/r_0/goal_pose", PoseStamped)
+    middleware = RclpyMiddleware(3)
+    writer = middleware.writer("/r_0/goal_pose", PoseStamped)
 
     def fails(_):
         raise RuntimeError("context\nis shut down")

@@ -12,7 +12,7 @@ from muster.cli.main import run
 
 pytest.importorskip("cyclonedds")
 
-from muster.bridges.ros2.dds import Participant
+from muster.bridges.ros2.dds import DdsMiddleware
 from muster.bridges.ros2.message_types import Odometry, PoseStamped
 
 pytestmark = pytest.mark.usefixtures("loopback")
@@ -100,7 +100,7 @@ def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
     _, err = carried.communicate(timeout=20)
     assert carried.returncode == 130
     assert "told to stay where they are" in err
-    listens = Participant()
+    listens = DdsMiddleware()
     heard = listens.reader("/r_0/odom", Odometry)
     time.sleep(1.0)  # by when they stand
     before = newest(listens, heard)
@@ -112,7 +112,7 @@ def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
 
 
 def test_what_is_published_is_known_until_its_publisher_leaves():
-    one, other = Participant(), Participant()
+    one, other = DdsMiddleware(), DdsMiddleware()
     writers = [one.writer("/there/pose", PoseStamped), one.writer("/there/odom", Odometry)]
     known = {("/there/pose", "geometry_msgs/PoseStamped"), ("/there/odom", "nav_msgs/Odometry")}
     until = time.monotonic() + 10

@@ -1,4 +1,4 @@
-"""One drone as Muster works with it: who it is, what it said, and what is wanted of it."""
+"""Working state of one drone: its robot, its telemetry, its orders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message
 from muster.bridges.mavlink.mission_items import Route
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.telemetry import Seen
+from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
 
@@ -21,7 +21,7 @@ _HOME_M = 3.0
 
 
 @dataclass
-class Craft:
+class Drone:
     """Working state of one drone.
 
     Parameters
@@ -37,7 +37,7 @@ class Craft:
     """
 
     robot: Robot
-    seen: Seen
+    telemetry: DroneTelemetry
     settings: Settings
     height_m: float | None
     autopilot: Autopilot | None = None  # once it was heard
@@ -51,30 +51,30 @@ class Craft:
 
     @property
     def kind(self) -> Autopilot:
-        """Its autopilot, which was heard."""
+        """Its autopilot; a heartbeat must have arrived."""
         assert self.autopilot is not None
         return self.autopilot
 
     @property
     def target(self) -> Message:
-        """A message of it, which says to whom answers go."""
-        assert self.seen.heartbeat is not None
-        return self.seen.heartbeat
+        """A message of the drone; its sender is the target of commands."""
+        assert self.telemetry.heartbeat is not None
+        return self.telemetry.heartbeat
 
     @property
     def located(self) -> bool:
-        """Whether it has said where it is, in all frames in which it is to be told where to go."""
-        return self.seen.place is not None and not (self.settings.offboard and self.seen.local is None)
+        """Whether its position is known in all frames in which it gets way points."""
+        return self.telemetry.place is not None and not (self.settings.offboard and self.telemetry.local is None)
 
     @property
     def stands(self) -> bool:
         """Whether it was asked to arm, and was not seen in the air since: it may be armed, or be so soon."""
-        return self.asked_to_arm and not self.seen.was_up
+        return self.asked_to_arm and not self.telemetry.was_up
 
     @property
     def ours(self) -> bool:
         """Whether it flies, in a mode into which Muster brought it."""
-        return self.asked_to_arm and self.seen.armed and self.seen.mode in self.kind.own_modes
+        return self.asked_to_arm and self.telemetry.armed and self.telemetry.mode in self.kind.own_modes
 
     def forget_order(self) -> None:
         """It has no way points any more."""
@@ -82,7 +82,7 @@ class Craft:
 
     def flown(self, waypoints: Sequence[Waypoint]) -> list[Waypoint]:
         """Way points at the height at which they are flown."""
-        ground = self.seen.start[2]
+        ground = self.telemetry.start[2]
         lowest = ground + self.settings.lowest_m
         flat = None if self.height_m is None else ground + self.height_m
 
@@ -93,23 +93,23 @@ class Craft:
         return [at_height(waypoint) for waypoint in waypoints]
 
 
-def final_state_of(drone: Craft, now: float) -> FinalState:
+def final_state_of(drone: Drone, now: float) -> FinalState:
     """Where a drone is at the end and what it does; one that is armed counts as flying."""
-    seen, does = drone.seen, _activity(drone)
-    silent_s = now - seen.heartbeat_s
+    telemetry, does = drone.telemetry, _activity(drone)
+    silent_s = now - telemetry.heartbeat_s
     state = does if silent_s <= drone.settings.link_lost_s else f"not answering for {silent_s:.0f} s; last seen: {does}"
-    return FinalState(drone.robot.id, state, seen.place, moving=seen.armed)
+    return FinalState(drone.robot.id, state, telemetry.place, moving=telemetry.armed)
 
 
-def _activity(drone: Craft) -> str:
-    seen, kind = drone.seen, drone.kind
-    if not seen.armed:
-        if not seen.was_up:
+def _activity(drone: Drone) -> str:
+    telemetry, kind = drone.telemetry, drone.kind
+    if not telemetry.armed:
+        if not telemetry.was_up:
             return "did not fly, not armed"
-        home = seen.place is not None and math.dist(seen.place, seen.start) <= _HOME_M
+        home = telemetry.place is not None and math.dist(telemetry.place, telemetry.start) <= _HOME_M
         return "returned, landed, not armed" if home else "landed, not armed"
-    if not seen.up:
+    if not telemetry.up:
         return "on the ground, armed"
     names = {kind.hold: "hovers", kind.back: "returns", kind.land: "lands"}
-    default = "flies" if seen.mode in kind.own_modes else "flies under a pilot or a failsafe"
-    return f"{names.get(seen.mode, default)}, armed"
+    default = "flies" if telemetry.mode in kind.own_modes else "flies under a pilot or a failsafe"
+    return f"{names.get(telemetry.mode, default)}, armed"

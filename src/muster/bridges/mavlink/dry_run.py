@@ -1,4 +1,4 @@
-"""What drones would be told, if all went as planned: way points of routes, checked against the fence."""
+"""The way points that would be sent if all went as planned, checked against the fence."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet, way: Way) -> lis
 
 def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -> Iterator[Line]:
     session = fleet.sessions[robot.id]
-    here = session.craft.seen.start
+    here = session.drone.telemetry.start
     for task in tasks:
         doing = actions.plan(task, robot)
         if isinstance(doing, Impossible):
@@ -69,7 +69,7 @@ def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -
                 raise ParameterError(f"plan: {robot.id} does {task.id}; there is no way for it")
             waypoints += [*map(Waypoint, places[:-1]), waypoint]
             here = waypoint.position
-        flown = session.craft.flown(waypoints)
+        flown = session.drone.flown(waypoints)
         refusal = session.fence(flown[0].position, flown)
         if refusal:
             raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")
@@ -77,8 +77,8 @@ def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -
 
 
 def _line(robot: str, task: str, waypoint: Waypoint, session: Session) -> Line:
-    earth = session.craft.seen.earth
+    earth = session.drone.telemetry.earth
     if earth is None:
-        return Line(robot, task, None, None, waypoint.position[2] - session.craft.seen.start[2], waypoint.hold_s)
+        return Line(robot, task, None, None, waypoint.position[2] - session.drone.telemetry.start[2], waypoint.hold_s)
     lat, lon, above = earth.to_drone(waypoint.position)
     return Line(robot, task, lat / DEGREES_E7, lon / DEGREES_E7, above, waypoint.hold_s)

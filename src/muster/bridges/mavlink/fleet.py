@@ -14,14 +14,14 @@ from collections.abc import Callable, Mapping, Sequence
 from muster.bridges.final_state import FinalState
 from muster.bridges.fleet import Failure
 from muster.bridges.mavlink.autopilots import AtEnd
-from muster.bridges.mavlink.drone import Craft, final_state_of
+from muster.bridges.mavlink.drone import Drone, final_state_of
 from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.links import Link, links_of
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
-from muster.bridges.mavlink.telemetry import Seen
+from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
@@ -30,7 +30,7 @@ from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
-"""For how long it is spoken at the least, and at the most, to drones that are told how to end, or are not heard."""
+"""Seconds, at least and at most, for which final commands are sent to drones that do not confirm, or are silent."""
 _STANDSTILL_S, _MOVED_M = 20.0, 3.0
 """A drone that returns or lands and moves less in this time is waited for no longer."""
 
@@ -80,8 +80,8 @@ class MavlinkFleet:
         fences = fences_of(mission)
         self.sessions: dict[str, Session] = {}
         for robot in mission.robots:
-            craft = Craft(robot, _seen_of(mission, robot), self._settings, height_m)
-            self.sessions[robot.id] = Session(craft, fences.get(robot.id, no_fence))
+            drone = Drone(robot, _telemetry_of(mission, robot), self._settings, height_m)
+            self.sessions[robot.id] = Session(drone, fences.get(robot.id, no_fence))
         self._link_of: dict[str, Link] = links_of(endpoints)
         self._links = list({id(link): link for link in self._link_of.values()}.values())
         self._ports = {
@@ -104,7 +104,7 @@ class MavlinkFleet:
         return sorted(found, key=lambda fault: fault.at_s)
 
     def connect(self, within_s: float = 10.0) -> None:
-        """Wait until every drone has said who and where it is.
+        """Wait until every drone has sent a heartbeat and its position.
 
         Raises
         ------
@@ -114,20 +114,20 @@ class MavlinkFleet:
             if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
         until = self.time_s + within_s
-        while self.time_s < until and not all(session.craft.located for session in self.sessions.values()):
+        while self.time_s < until and not all(session.drone.located for session in self.sessions.values()):
             self._go_on()
         for name, session in self.sessions.items():
             self._require_one(name, within_s)
-            if not session.craft.located:
+            if not session.drone.located:
                 raise NetworkError(
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
-            self._require_near(session.craft)
+            self._require_near(session.drone)
         if self._speaker is not None:
             self._speaker.start()
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """Hear and speak; a drone that cannot go on is told once (`robot_fails`). Raises what has ended the thread."""
+        """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""
         while True:
             self._go_on()
             if self._failure is not None:
@@ -142,7 +142,7 @@ class MavlinkFleet:
         self._speak_last_words()
         with self._lock:
             for session in self.sessions.values():
-                session.admit()
+                session.note_missing_hold()
 
     def end(self, at_end: AtEnd) -> None:
         """Let every drone that flies, and answers, end its flight: also those that take no part any more."""
@@ -158,16 +158,16 @@ class MavlinkFleet:
         places: dict[str, Place | None] = {}
         moved_s = self.time_s
         while not halted() and self.time_s < moved_s + _STANDSTILL_S and (ending := self._ending_flights()):
-            for craft in ending:
-                place, before = craft.seen.place, places.get(craft.robot.id)
+            for drone in ending:
+                place, before = drone.telemetry.place, places.get(drone.robot.id)
                 if before is None or (place is not None and math.dist(place, before) > _MOVED_M):
-                    places[craft.robot.id], moved_s = place, self.time_s
+                    places[drone.robot.id], moved_s = place, self.time_s
             self._go_on()
 
     def final_states(self) -> list[FinalState]:
         """Where each drone is now, and what it does."""
         with self._lock:
-            return [final_state_of(session.craft, self.time_s) for session in self.sessions.values()]
+            return [final_state_of(session.drone, self.time_s) for session in self.sessions.values()]
 
     def close(self) -> None:
         self._closed.set()
@@ -177,7 +177,7 @@ class MavlinkFleet:
             link.close()
 
     def _new_faults(self) -> list[Fault]:
-        """The first fault of each drone that was not reported yet, as soon as all is heard that belongs to it."""
+        """The first fault of each drone that was not reported yet, once its status texts are complete."""
         first = [session.fault for session in self.sessions.values() if session.fault is not None]
         ready = [fault for fault in first if fault.robot not in self._told and not fault.awaits_texts(self.time_s)]
         return sorted(ready, key=lambda fault: fault.at_s)
@@ -186,15 +186,15 @@ class MavlinkFleet:
         self._told.add(fault.robot)
         return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=fault.reason)
 
-    def _ending_flights(self) -> list[Craft]:
-        """The drones that return or land, and were heard lately."""
-        crafts = [session.craft for session in self.sessions.values() if session.craft.autopilot is not None]
+    def _ending_flights(self) -> list[Drone]:
+        """The drones that return or land and have sent a heartbeat lately."""
+        drones = [session.drone for session in self.sessions.values() if session.drone.autopilot is not None]
         return [
-            craft
-            for craft in crafts
-            if craft.seen.armed
-            and craft.seen.mode in (craft.kind.back, craft.kind.land)
-            and self.time_s < craft.seen.heartbeat_s + _STANDSTILL_S
+            drone
+            for drone in drones
+            if drone.telemetry.armed
+            and drone.telemetry.mode in (drone.kind.back, drone.kind.land)
+            and self.time_s < drone.telemetry.heartbeat_s + _STANDSTILL_S
         ]
 
     def _tell_all(self, what: Callable[[Session, float], object]) -> None:
@@ -214,7 +214,7 @@ class MavlinkFleet:
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
         while self.time_s < least or (
-            self.time_s < most and any(session.busy or session.adrift for session in self.sessions.values())
+            self.time_s < most and any(session.busy or session.hold_pending for session in self.sessions.values())
         ):
             self._go_on()
 
@@ -246,19 +246,19 @@ class MavlinkFleet:
 
     def _require_one(self, name: str, within_s: float) -> None:
         link = self._link_of[name]
-        if self.sessions[name].craft.autopilot is None:
+        if self.sessions[name].drone.autopilot is None:
             raise NetworkError(f"{name}: no heartbeat within {within_s:g} s; expected a drone at its endpoint")
         if link.others:
             found = " and ".join(map(str, [link.system_of(name), *sorted(link.others)]))
             raise ParameterError(f"{name}: systems {found} on {link.name}; expected one, or which: {link.name}#1")
 
-    def _require_near(self, craft: Craft) -> None:
-        place, start = craft.seen.place, craft.seen.start
+    def _require_near(self, drone: Drone) -> None:
+        place, start = drone.telemetry.place, drone.telemetry.start
         assert place is not None
         metres = ((place[0] - start[0]) ** 2 + (place[1] - start[1]) ** 2) ** 0.5
         if metres > self._settings.far_m:
             raise ParameterError(
-                f"{craft.robot.id}: stands {metres:.1f} m from its start in the mission; "
+                f"{drone.robot.id}: stands {metres:.1f} m from its start in the mission; "
                 f"expected at most {self._settings.far_m:g} m: check origin_wgs84 and its position"
             )
 
@@ -271,7 +271,7 @@ class Port:
 
     @property
     def robot(self) -> str:
-        return self._session.craft.robot.id
+        return self._session.drone.robot.id
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         with self._lock:
@@ -286,9 +286,9 @@ class Port:
             return self._session.telemetry()
 
 
-def _seen_of(mission: Mission, robot: Robot) -> Seen:
+def _telemetry_of(mission: Mission, robot: Robot) -> DroneTelemetry:
     start: Place = (robot.position[0], robot.position[1], robot.position[2] if len(robot.position) > 2 else 0.0)
-    return Seen(start, None if mission.origin_wgs84 is None else GlobalFrame(mission.origin_wgs84, start))
+    return DroneTelemetry(start, None if mission.origin_wgs84 is None else GlobalFrame(mission.origin_wgs84, start))
 
 
 def _check(mission: Mission, endpoints: Mapping[str, str], settings: Settings, height_m: float | None) -> None:

@@ -68,7 +68,7 @@ class LocalFrame:
     zero: Place
 
     @classmethod
-    def seen(cls, place: Sequence[float], local: Sequence[float]) -> LocalFrame:
+    def matched(cls, place: Sequence[float], local: Sequence[float]) -> LocalFrame:
         """The local frame of a drone that is at `place` in the map frame and says that it is at `local` (NED)."""
         east, north, up = enu_to_ned(local).tolist()
         return cls((place[0] - east, place[1] - north, place[2] - up))

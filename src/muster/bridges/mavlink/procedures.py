@@ -13,7 +13,7 @@ from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.bridges.mavlink.faults import FaultError, Kind
 from muster.bridges.mavlink.mission_items import Item, Route
-from muster.bridges.mavlink.requests import Ask, Script, pause
+from muster.bridges.mavlink.requests import Request, Script, pause
 
 _AGAIN = 3
 """How often a command is given that is refused for the moment."""
@@ -36,7 +36,7 @@ def obeyed(
     sightings: int = 1,
     with_it: Sequence[Message] = (),
 ) -> Script:
-    """Give a command until what is heard shows that it was obeyed. That it is acknowledged does not.
+    """Repeat a command until telemetry shows its effect. An acknowledgement does not show that.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def obeyed(
 
     name = name_of("MAV_CMD", number)
     for _ in range(_AGAIN):
-        said = yield Ask([*with_it, command(target, number, *params)], answer, name)
+        said = yield Request([*with_it, command(target, number, *params)], answer, name)
         if said.get_type() != "COMMAND_ACK":
             return
         if said.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
@@ -71,7 +71,7 @@ def obeyed(
 
 
 def _result(acknowledgement: Message) -> str:
-    """What an acknowledgement says, with the number that details it if there is one."""
+    """The result of an acknowledgement, with its second parameter if there is one."""
     name, detail = name_of("MAV_RESULT", acknowledgement.result), acknowledgement.result_param2
     return f"{name}, {detail}" if detail else name
 
@@ -89,7 +89,7 @@ def armed(target: Message) -> Script:
 
 
 def disarmed(target: Message, autopilot: Autopilot) -> Script:
-    """Disarm it on the ground: not forced, so that in the air it refuses; told to hold too, in case it takes off."""
+    """Disarm it on the ground, without force: in the air it refuses. A command to hold precedes it: it may take off."""
     hold = command(target, mavlink.MAV_CMD_DO_SET_MODE, *_mode_parameters(autopilot, autopilot.hold))
     number, kind = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, Kind.COMMAND_REFUSED
     return obeyed(target, number, (0.0,), _beats(armed=False), kind, sightings=2, with_it=[hold])
@@ -118,7 +118,7 @@ def started(target: Message, autopilot: Autopilot, first: int) -> Script:
     def at_first(message: Message) -> Message | None:
         return message if message.get_type() == "MISSION_CURRENT" and message.seq == first else None
 
-    yield Ask([mavlink.MAVLink_mission_set_current_message(*to, first)], at_first, "MISSION_SET_CURRENT")
+    yield Request([mavlink.MAVLink_mission_set_current_message(*to, first)], at_first, "MISSION_SET_CURRENT")
     flies = _beats(mode=autopilot.mission)
 
     def under_way(message: Message) -> bool:  # a short mission may be over before the next heartbeat
@@ -142,12 +142,12 @@ def upload(target: Message, route: Route) -> Script:
         late = message if name == "MISSION_ACK" else None  # an acknowledgement of the mission before may come late
         return late if late and (last_sent or late.type != mavlink.MAV_MISSION_ACCEPTED) else None
 
-    said = yield Ask([mavlink.MAVLink_mission_count_message(*to, count)], answer, "MISSION_COUNT")
+    said = yield Request([mavlink.MAVLink_mission_count_message(*to, count)], answer, "MISSION_COUNT")
     seq = 0
     while said.get_type() != "MISSION_ACK":
         seq = said.seq
         last_sent = last_sent or seq == count - 1
-        said = yield Ask([_message(to, seq, route.items[seq])], answer, f"MISSION_ITEM_INT {seq}")
+        said = yield Request([_message(to, seq, route.items[seq])], answer, f"MISSION_ITEM_INT {seq}")
     if said.type != mavlink.MAV_MISSION_ACCEPTED:
         raise FaultError(Kind.ITEM_REJECTED, f"item {seq}: {name_of('MAV_MISSION_RESULT', said.type)}")
 
@@ -171,6 +171,6 @@ def climb(target: Message, above_home_m: float) -> Script:
         return message if refused and message.result not in _NO_REFUSAL else None
 
     climbing = command(target, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, 0, 0, above_home_m)
-    said = yield Ask([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
+    said = yield Request([climbing], answer, "MAV_CMD_NAV_TAKEOFF", within_s=30.0, tries=2)
     if said.get_type() == "COMMAND_ACK":
         raise FaultError(Kind.COMMAND_REFUSED, f"MAV_CMD_NAV_TAKEOFF: {_result(said)}")

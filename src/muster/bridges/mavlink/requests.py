@@ -14,7 +14,7 @@ from muster.bridges.mavlink.faults import FaultError, Kind
 
 
 @dataclass(frozen=True)
-class Ask:
+class Request:
     """Something that is said until it is answered.
 
     Parameters
@@ -39,15 +39,15 @@ class Ask:
     may_fail: bool = False
 
 
-Script = Generator[Ask, Any, None]
+Script = Generator[Request, Any, None]
 
 
-def pause(seconds: float) -> Ask:
+def pause(seconds: float) -> Request:
     """Say nothing for a while."""
-    return Ask((), lambda message: None, "", seconds, 1, may_fail=True)
+    return Request((), lambda message: None, "", seconds, 1, may_fail=True)
 
 
-class Conversation:
+class RequestSequence:
     """A script that is under way.
 
     Parameters
@@ -62,7 +62,7 @@ class Conversation:
 
     def __init__(self, script: Script, say: Callable[[Message], None], now: float) -> None:
         self._script, self._say = script, say
-        self._ask: Ask | None = None
+        self._ask: Request | None = None
         self._tries, self._due_s = 0, now
         self._go_on(None, now)
 

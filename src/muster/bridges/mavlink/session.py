@@ -8,14 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from muster.bridges.mavlink import commands, procedures
 from muster.bridges.mavlink.autopilots import AtEnd, autopilot_of
+from muster.bridges.mavlink.commands import guided, into, mission, stand_down
 from muster.bridges.mavlink.dialect import Message, mavlink
-from muster.bridges.mavlink.drone import Craft
-from muster.bridges.mavlink.fault_detection import Watch
+from muster.bridges.mavlink.drone import Drone
+from muster.bridges.mavlink.fault_detection import FaultDetector
 from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
 from muster.bridges.mavlink.position_targets import EVERY_S, position_target
-from muster.bridges.mavlink.requests import Conversation, Script
+from muster.bridges.mavlink.procedures import command
+from muster.bridges.mavlink.requests import RequestSequence, Script
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
 
@@ -26,30 +27,30 @@ _TELEMETRY = (30, 32, 33, 147, 1, 42, 162)  # ATTITUDE, the two places, the two 
 _TELEMETRY_US = 100_000
 _ASK_AGAIN_S = 5.0
 _LET_GO = Kind.TAKEN_OVER, Kind.DISARMED
-"""Faults after which Muster says nothing more, whatever is heard."""
+"""Faults after which Muster sends no command any more."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
 
 
 class Session:
-    """What is said to one drone and heard from it.
+    """The connection to one drone.
 
     Parameters
     ----------
-    craft
+    drone
         who it is, and what is known of it.
     fence
         says where it may go.
     """
 
-    def __init__(self, craft: Craft, fence: Fence) -> None:
-        self.craft, self.fence = craft, fence
+    def __init__(self, drone: Drone, fence: Fence) -> None:
+        self.drone, self.fence = drone, fence
         self.faults: list[Fault] = []  # after the first, refusals of what it was told because of that, or at the end
         self._at_end: AtEnd = "hold"  # what a drone that is out is told when it answers
-        self.adrift = False  # whether its link was lost, and it was not told to hold since
+        self.hold_pending = False  # whether its link was lost, and it was not told to hold since
         self._order = 0
         self._outbox: list[Message] = []
-        self._talk: Conversation | None = None
-        self._watch = Watch(craft)
+        self._requests: RequestSequence | None = None
+        self._fault_detector = FaultDetector(drone)
         self._said_s = self._asked_s = self._streamed_s = float("-inf")
 
     @property
@@ -59,8 +60,8 @@ class Session:
 
     @property
     def busy(self) -> bool:
-        """Whether something that it was told is not answered yet."""
-        return self._talk is not None
+        """Whether a request is not answered yet."""
+        return self._requests is not None
 
     def take(self) -> list[Message]:
         """What is to be sent, which it forgets."""
@@ -69,19 +70,19 @@ class Session:
 
     def telemetry(self) -> Telemetry | None:
         """As a port has it; None before it has said where it is."""
-        craft, seen = self.craft, self.craft.seen
-        if seen.place is None:
+        drone, telemetry = self.drone, self.drone.telemetry
+        if telemetry.place is None:
             return None
-        place = seen.place if craft.height_m is None else (*seen.place[:2], 0.0)
+        place = telemetry.place if drone.height_m is None else (*telemetry.place[:2], 0.0)
         return Telemetry(
-            seen.place_s,
+            telemetry.place_s,
             place,
-            seen.heading,
-            seen.velocity,
-            seen.odometry_m,
+            telemetry.heading,
+            telemetry.velocity,
+            telemetry.odometry_m,
             self._order,
-            craft.passed,
-            charge=seen.battery,
+            drone.passed,
+            charge=telemetry.battery,
         )
 
     def follow(self, waypoints: Sequence[Waypoint], now: float) -> int:
@@ -92,11 +93,11 @@ class Session:
         ParameterError
             if it may not arm.
         """
-        if not self.craft.settings.arm:
-            raise ParameterError(f"{self.craft.robot.id}: way points; expected none without leave to arm")
+        if not self.drone.settings.arm:
+            raise ParameterError(f"{self.drone.robot.id}: way points; expected none without leave to arm")
         self._take_order()
         if self.fault is None:
-            self._try(lambda: self._set_out(self.craft.flown(waypoints), now), now)
+            self._try(lambda: self._set_out(self.drone.flown(waypoints), now), now)
         return self._order
 
     def hold(self, now: float) -> int:
@@ -111,20 +112,20 @@ class Session:
         A drone that is out is told so as soon as it answers.
         """
         self._at_end = at_end
-        if self.craft.autopilot is None:
+        if self.drone.autopilot is None:
             return
         if self.fault is None:
-            self._talk = None
+            self._requests = None
             self._try(lambda: self._end_flight(self._final_mode, now), now)
         elif self._hears(now) and self._may_interrupt(self.fault):
-            self._talk = None
+            self._requests = None
             self._try(lambda: self._call_back(now), now)
 
-    def admit(self) -> None:
-        """Let its fault say so if it was not told to hover: it may fly on."""
-        if self.fault is not None and self.adrift and self._is_left_to_us:
+    def note_missing_hold(self) -> None:
+        """Add to its fault that it did not get the command to hover: it may fly on."""
+        if self.fault is not None and self.hold_pending and self._is_left_to_us:
             self.faults[0] = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
-            self.adrift = False
+            self.hold_pending = False
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message.
@@ -134,11 +135,11 @@ class Session:
         ParameterError
             at the first heartbeat, if Muster cannot fly such a drone.
         """
-        if message.get_type() == "HEARTBEAT" and self.craft.autopilot is None:
-            self.craft.autopilot = autopilot_of(message, self.craft.robot.id)
-        if self.craft.autopilot is None:
+        if message.get_type() == "HEARTBEAT" and self.drone.autopilot is None:
+            self.drone.autopilot = autopilot_of(message, self.drone.robot.id)
+        if self.drone.autopilot is None:
             return
-        self.craft.seen.hear(message, now)
+        self.drone.telemetry.hear(message, now)
         if message.get_type() == "STATUSTEXT":
             self._explain_refusal(now)
         self._try(lambda: self._answer(message, now), now)
@@ -149,150 +150,152 @@ class Session:
             self._said_s = now
             kind = mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID
             self._say(mavlink.MAVLink_heartbeat_message(*kind, 0, 0, mavlink.MAV_STATE_ACTIVE, 3))
-        if self.craft.autopilot is None:
+        if self.drone.autopilot is None:
             return
-        silent = now - max(self.craft.seen.place_s, self._asked_s) >= _ASK_AGAIN_S
+        silent = now - max(self.drone.telemetry.place_s, self._asked_s) >= _ASK_AGAIN_S
         if silent or self._asked_s < 0:
             self._ask_for_telemetry(now)
         self._try(lambda: self._go_on(now), now)
 
     def fail(self, kind: Kind, detail: str, now: float) -> None:
-        """Take no part any more, for good, and react as the kind of fault says."""
-        texts = self.craft.seen.texts if kind.is_refusal else ()
-        fault = Fault(now, self.craft.robot.id, kind, detail, texts)
+        """Take no part any more, for good, and react by the kind of fault."""
+        texts = self.drone.telemetry.texts if kind.is_refusal else ()
+        fault = Fault(now, self.drone.robot.id, kind, detail, texts)
         if self.fault is not None:
-            self.adrift = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
+            self.hold_pending = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
             self.faults += [fault] if kind is Kind.COMMAND_REFUSED else []
             return
         self.faults.append(fault)
-        self.adrift = kind is Kind.LINK_LOST
-        self.craft.forget_order()
-        self._talk = self.craft.mode = None
-        reactions = {Reaction.HOLD: self.craft.kind.hold, Reaction.RETURN: self.craft.kind.back}
+        self.hold_pending = kind is Kind.LINK_LOST
+        self.drone.forget_order()
+        self._requests = self.drone.mode = None
+        reactions = {Reaction.HOLD: self.drone.kind.hold, Reaction.RETURN: self.drone.kind.back}
         if kind.reaction in reactions:
             self._end_flight(reactions[kind.reaction], now)
 
     def _explain_refusal(self, now: float) -> None:
-        """The status text that says why something was refused may come after the refusal."""
+        """Add a status text that arrives shortly after a refusal to its fault."""
         if self.faults and self.faults[-1].awaits_texts(now):
-            self.faults[-1] = replace(self.faults[-1], texts=self.craft.seen.texts)
+            self.faults[-1] = replace(self.faults[-1], texts=self.drone.telemetry.texts)
 
     def _take_order(self) -> None:
         self._order += 1
-        self.craft.forget_order()
+        self.drone.forget_order()
 
     def _set_out(self, waypoints: Sequence[Waypoint], now: float) -> None:
-        here = self.craft.seen.place
-        if here is None or not self.craft.located:
+        here = self.drone.telemetry.place
+        if here is None or not self.drone.located:
             raise FaultError(Kind.NO_ANSWER, "it has not said where it is")
-        self._watch.require_nobody_flies_it()
+        self._fault_detector.require_nobody_flies_it()
         refusal = self.fence(here, waypoints)
         if refusal:
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:
             return
-        self._watch.require_charge()
-        way = commands.guided if self.craft.settings.offboard else commands.mission
-        self._begin(way(self.craft, waypoints), now)
+        self._fault_detector.require_charge()
+        way = guided if self.drone.settings.offboard else mission
+        self._begin(way(self.drone, waypoints), now)
 
     @property
     def _final_mode(self) -> int:
-        return self.craft.kind.final_mode(self._at_end)
+        return self.drone.kind.final_mode(self._at_end)
 
     def _may_interrupt(self, fault: Fault) -> bool:
         """Whether the reaction to a fault may be broken off: to hover in favour of an end, to return never."""
-        return self._talk is None or (self._at_end != "hold" and fault.kind.reaction is not Reaction.RETURN)
+        return self._requests is None or (self._at_end != "hold" and fault.kind.reaction is not Reaction.RETURN)
 
     def _end_flight(self, mode: int, now: float) -> None:
         """Into a mode if it flies under Muster; on the ground it stands down instead."""
-        if self.craft.stands:
-            self._begin(commands.stand_down(self.craft), now)
-        elif self.craft.ours:
-            self._begin(commands.into(self.craft, mode), now)
+        if self.drone.stands:
+            self._begin(stand_down(self.drone), now)
+        elif self.drone.ours:
+            self._begin(into(self.drone, mode), now)
 
     @property
     def _is_left_to_us(self) -> bool:
         """Whether nobody flies it but Muster: no pilot, and no failsafe of its autopilot."""
-        craft = self.craft
-        return craft.ours or (craft.stands and (not craft.seen.armed or craft.seen.mode in craft.kind.own_modes))
+        drone = self.drone
+        return drone.ours or (
+            drone.stands and (not drone.telemetry.armed or drone.telemetry.mode in drone.kind.own_modes)
+        )
 
     def _hears(self, now: float) -> bool:
-        return now - self.craft.seen.heartbeat_s <= self.craft.settings.link_lost_s
+        return now - self.drone.telemetry.heartbeat_s <= self.drone.settings.link_lost_s
 
     def _call_back(self, now: float) -> None:
         """Let one that has failed end its flight, or stand down: it may still fly what others fly now."""
-        self.adrift = False
+        self.hold_pending = False
         if self.fault is not None and self.fault.kind not in _LET_GO and self._is_left_to_us:
             self._end_flight(self._final_mode, now)
 
     def _begin(self, script: Script, now: float) -> None:
-        self._watch.astray = 0
+        self._fault_detector.astray = 0
         if not (self.faults and self.faults[-1].awaits_texts(now)):
-            self.craft.seen.texts = ()
-        self._talk = Conversation(script, self._say, now)
+            self.drone.telemetry.texts = ()
+        self._requests = RequestSequence(script, self._say, now)
 
     def _answer(self, message: Message, now: float) -> None:
-        beats = message.get_type() == "HEARTBEAT" and self.craft.asked_to_arm
-        if self._talk is not None:
+        beats = message.get_type() == "HEARTBEAT" and self.drone.asked_to_arm
+        if self._requests is not None:
             if beats:
-                self._watch.look_meanwhile()
-            self._talk.hear(message, now)
-            self._talk = None if self._talk.done else self._talk
+                self._fault_detector.check_heartbeat_meanwhile()
+            self._requests.hear(message, now)
+            self._requests = None if self._requests.done else self._requests
         elif beats and self.fault is None:
-            self._watch.look_at_heartbeat()
-        elif beats and self.adrift:
+            self._fault_detector.check_heartbeat()
+        elif beats and self.hold_pending:
             self._call_back(now)
         self._see_progress(message)
 
     def _see_progress(self, message: Message) -> None:
         """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
-        craft = self.craft
-        if craft.route is None:
+        drone = self.drone
+        if drone.route is None:
             return
         if message.get_type() == "MISSION_ITEM_REACHED":
-            craft.passed = max(craft.passed, craft.route.passed(message.seq))
+            drone.passed = max(drone.passed, drone.route.passed(message.seq))
         elif message.get_type() == "MISSION_CURRENT":
             over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
-            craft.passed = max(craft.passed, craft.route.passed(len(craft.route.items) if over else message.seq - 1))
+            drone.passed = max(drone.passed, drone.route.passed(len(drone.route.items) if over else message.seq - 1))
 
     def _go_on(self, now: float) -> None:
-        if self._talk is not None:
-            self._talk.tick(now)
-            if self._talk.done:
-                self._talk = None
+        if self._requests is not None:
+            self._requests.tick(now)
+            if self._requests.done:
+                self._requests = None
         if self.fault is None:
-            self._watch.look_at_clock(now)
+            self._fault_detector.check_clock(now)
             self._lead(now)
 
     def _lead(self, now: float) -> None:
         """Say where it is to be, if it is led by way points that are said one by one."""
-        craft, seen = self.craft, self.craft.seen
-        if craft.follower is None or seen.place is None:
+        drone, telemetry = self.drone, self.drone.telemetry
+        if drone.follower is None or telemetry.place is None:
             return
-        craft.follower.hear(now, seen.place, seen.heading)
-        craft.passed = craft.follower.passed
-        if now >= self._streamed_s + EVERY_S and seen.local is not None:
+        drone.follower.hear(now, telemetry.place, telemetry.heading)
+        drone.passed = drone.follower.passed
+        if now >= self._streamed_s + EVERY_S and telemetry.local is not None:
             self._streamed_s = now
-            self._say(position_target(craft.follower.target, craft.target, seen.local, now))
+            self._say(position_target(drone.follower.target, drone.target, telemetry.local, now))
 
     def _try(self, what: Callable[[], None], now: float) -> None:
         """Do something that a fault may end; a second fault, of the reaction to the first, ends that alone."""
         try:
             what()
         except FaultError as error:
-            self._talk = None
+            self._requests = None
             self.fail(error.kind, error.detail, now)
 
     def _ask_for_telemetry(self, now: float) -> None:
         self._asked_s = now
         for number in _TELEMETRY:
             rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
-            self._say(procedures.command(self.craft.target, *rate))
+            self._say(command(self.drone.target, *rate))
 
     def _say(self, message: Message) -> None:
         """The one way out."""
         harmless = message.get_type() == "HEARTBEAT" or getattr(message, "command", None) in _REQUESTS
-        if not harmless and not self.craft.settings.arm:
-            name = f"{self.craft.robot.id}: {message.get_type()}"
+        if not harmless and not self.drone.settings.arm:
+            name = f"{self.drone.robot.id}: {message.get_type()}"
             raise ParameterError(f"{name}; expected nothing of the kind without leave to arm")
         self._outbox.append(message)

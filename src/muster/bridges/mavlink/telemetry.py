@@ -16,7 +16,7 @@ _TEXTS = 3  # so many status texts are kept
 
 
 @dataclass
-class Seen:
+class DroneTelemetry:
     """Working state of one drone.
 
     Parameters
@@ -78,7 +78,7 @@ class Seen:
         place = self.earth.to_map(message.lat, message.lon, message.relative_alt / 1000)
         self._is_at(place, (message.vx / 100, message.vy / 100, message.vz / 100), now)
         if self._ned is not None and (self.local is None or not self.armed):
-            self.local = LocalFrame.seen(place, self._ned)
+            self.local = LocalFrame.matched(place, self._ned)
 
     def _hear_local_position_ned(self, message: Message, now: float) -> None:
         ned, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)

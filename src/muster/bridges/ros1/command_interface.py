@@ -11,7 +11,7 @@ from typing import Any
 
 from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, packed
 from muster.bridges.ros1.node import hear
-from muster.bridges.ros1.requests import COMMANDS, Asker
+from muster.bridges.ros1.requests import COMMANDS, RequestClient
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 
@@ -30,7 +30,7 @@ class CommandInterface:
 
     def __init__(self, load: Load) -> None:
         self._load = load
-        self._controller = Asker(COMMANDS)
+        self._controller = RequestClient(COMMANDS)
         self._tasks = hear("/command_interface/add_task", String, self._add_task, queue_size=100)
         self._services = [
             rospy.Service(f"/command_interface/{verb}", Trigger, self._service(do))

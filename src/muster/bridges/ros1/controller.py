@@ -12,10 +12,10 @@ from typing import Any, Literal
 
 from muster.bridges.discovery import NAME
 from muster.bridges.ros1.fleet import Ros1Fleet
-from muster.bridges.ros1.mission_topics import Board
+from muster.bridges.ros1.mission_topics import MissionTopics
 from muster.bridges.ros1.mission_transfer import packed, unpacked
 from muster.bridges.ros1.parameter_descriptions import task_of
-from muster.bridges.ros1.requests import COMMANDS, PLANNING, Answerer, Asker, Data
+from muster.bridges.ros1.requests import COMMANDS, PLANNING, Data, RequestClient, RequestServer
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Task
@@ -44,7 +44,7 @@ class Controller:
     """
 
     def __init__(self) -> None:
-        self.board = Board()
+        self.mission_topics = MissionTopics()
         self.halt = threading.Event()
         self.ending = threading.Event()
         self._lock = threading.RLock()
@@ -54,8 +54,8 @@ class Controller:
         self._extra: list[Task] = []  # that were added before the mission begins
         self._become("empty")
         rospy.on_shutdown(self._stand)
-        self._planning = Asker(PLANNING)
-        self._answers = Answerer(COMMANDS, self._answer)
+        self._planning = RequestClient(PLANNING)
+        self._answers = RequestServer(COMMANDS, self._answer)
 
     def load(self, mission: Mission) -> str:
         """Have a mission wait for its start.
@@ -73,7 +73,7 @@ class Controller:
                     expected = "a name for ROS: a letter, then letters, digits, _"
                     raise ParameterError(f"robot {shown(robot.id)}; expected {expected}")
             self._mission, self._extra = mission, []
-            self.board.show_mission(mission)
+            self.mission_topics.publish_mission(mission)
             self._become("waiting")
         return f"mission {mission.name}: {len(mission.robots)} robots, {len(mission.tasks)} tasks; start begins it"
 
@@ -186,7 +186,7 @@ class Controller:
                 if self._state not in (*_BUSY, "waiting"):
                     raise MusterError(f"add_task: task {shown(task.id)}: {self._what}; expected one for it")
             except MusterError as error:
-                self.board.refuse(str(error))
+                self.mission_topics.refuse(str(error))
                 raise
             if self._fleet is None:
                 self._extra.append(task)
@@ -212,5 +212,5 @@ class Controller:
     def _become(self, state: State, reason: str = "") -> None:
         with self._lock:
             self._state = state
-            now = None if self._fleet is None else self.board.now_s
-            self.board.show_status(state, self._name, now, reason)
+            now = None if self._fleet is None else self.mission_topics.now_s
+            self.mission_topics.publish_status(state, self._name, now, reason)

@@ -21,7 +21,7 @@ from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
 from muster.bridges.steering import STILL, Steering
-from muster.bridges.yielding import MakingRoom
+from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
@@ -31,7 +31,7 @@ from muster.motion.robot_paths import RobotPaths
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
-"""A robot that was not heard for longer is told to stand."""
+"""A robot that is silent for longer gets the command to stand."""
 _TICK_S = 0.01
 """Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
 
@@ -90,7 +90,7 @@ class Ros1Fleet:
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
-        self._room = MakingRoom(arrival_m=arrival_m, may_go=_free_ways(mission))
+        self._yielding = Yielding(arrival_m=arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
@@ -155,7 +155,7 @@ class Ros1Fleet:
         with self._lock:
             self.clock.resume()
 
-    def unheard(self) -> dict[str, str]:
+    def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that have not said where they are, and why that may be.
 
         Raises
@@ -260,15 +260,15 @@ class Ros1Fleet:
                     self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
-        drivens = [port.driven(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
-        present = [driven for driven in drivens if driven is not None]
-        team = self._room.arranged(self.clock.unpaused_s, present)
+        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
+        present = [steered for steered in steered_robots if steered is not None]
+        team = self._yielding.arranged(self.clock.unpaused_s, present)
         told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
-        for driven in team:
-            self._ports[driven.robot.id].speak(driven, told.get(driven.robot.id, STILL))
+        for steered in team:
+            self._ports[steered.robot.id].speak(steered, told.get(steered.robot.id, STILL))
 
     def _look_on(self) -> None:
-        """Look for robots that nobody knows, again and again; those who have said where they are join."""
+        """Look for unknown robots, again and again; robots whose position is known join."""
         while not self._closed.wait(_LOOK_S):
             for port in self._newcomers.look():
                 with self._lock:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from muster.bridges.discovery import topics_in
 from muster.bridges.joining import Newcomers
-from muster.bridges.ros1.parameter_descriptions import described
+from muster.bridges.ros1.parameter_descriptions import robot_from_parameters
 from muster.bridges.ros1.port import Ros1Port
 from muster.bridges.ros1.ros import rospy
 from muster.mission.model import Robot
@@ -21,14 +21,14 @@ class Ros1Newcomers(Newcomers[Ros1Port]):
             namespace,
             known,
             topics=lambda: rospy.get_published_topics(),
-            describe=lambda robot: described(topics_of(robot.id), robot),
+            describe=lambda robot: robot_from_parameters(topics_of(robot.id), robot),
             reach=reach,
             warn=rospy.logwarn,
             flat=flat,
         )
 
     def look(self) -> list[Ros1Port]:
-        """The ports of robots that have said where they are since; while the master does not answer, none is found."""
+        """The ports of robots whose position is known by now; while the master does not answer, none is found."""
         try:
             self.discover()
         except Exception as error:  # rospy raises whatever the network does; who watches the master tells of it
@@ -36,6 +36,6 @@ class Ros1Newcomers(Newcomers[Ros1Port]):
         return self.located()
 
     def close(self) -> None:
-        """Close the ports of robots that have not said where they are."""
+        """Close the ports of robots that have not joined."""
         for port in self.ports.values():
             port.close()

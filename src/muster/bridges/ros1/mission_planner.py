@@ -16,7 +16,7 @@ from typing import Any
 from muster.bridges.ros1.message_conversion import text_of
 from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, unpacked
 from muster.bridges.ros1.node import hear, publish
-from muster.bridges.ros1.requests import PLANNING, Answerer, Data
+from muster.bridges.ros1.requests import PLANNING, Data, RequestServer
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
@@ -53,7 +53,7 @@ class MissionPlanner:
             hear(topic, String, self._hear, callback_args=topic, queue_size=10)
             for topic in ("/muster/mission", "/muster/status", "/system_monitor/robots", "/muster/plan")
         ]
-        self._answers = Answerer(PLANNING, self._answer)
+        self._answers = RequestServer(PLANNING, self._answer)
         self._service = rospy.Service("/mission_planner/plan", Trigger, self._plan_for_user)
 
     def _hear(self, message: Any, topic: str) -> None:

@@ -1,4 +1,4 @@
-"""What the controller says to other nodes while a mission is carried out: all of it JSON in std_msgs/String.
+"""Topics that the controller publishes for other nodes: all of it JSON in std_msgs/String.
 
 `/muster/status`, `/muster/mission`, `/muster/plan` and `/muster/robots` are latched, for nodes that come late.
 """
@@ -38,7 +38,7 @@ _STATUS_EVERY_S = 1.0
 """Seconds of the mission's clock after which the status is published again."""
 
 
-class Board:
+class MissionTopics:
     """A `Recorder`, and the place of the latched topics.
 
     Attributes
@@ -57,14 +57,14 @@ class Board:
         self._status_s = -math.inf  # when it was published last, by the mission's clock
         self._robots: dict[str, dict[str, str]] = {}
 
-    def show_mission(self, mission: Mission) -> None:
+    def publish_mission(self, mission: Mission) -> None:
         """Tell which is to be carried out next."""
         self._say("mission", packed(mission))
         self.now_s, self._done, self._status_s = 0.0, 0, -math.inf
         self._robots = {robot.id: {"activity": "idle"} for robot in mission.robots}
         self._say("robots", self._robots)
 
-    def show_status(self, state: str, mission: str, time_s: float | None, reason: str = "") -> None:
+    def publish_status(self, state: str, mission: str, time_s: float | None, reason: str = "") -> None:
         """What the whole is doing, since when on the mission's clock, and why if something is wrong."""
         self._status = {"state": state, "mission": mission}
         if time_s is not None:
@@ -74,7 +74,7 @@ class Board:
         self._publish_status()
 
     def refuse(self, reason: str) -> None:
-        """Tell whoever hears events that something asked for was refused."""
+        """Publish the event that a request was refused."""
         self._say("events", {"kind": "event_refused", "reason": reason})
 
     def on_plan(self, now: float, plan: Plan) -> None:
@@ -95,7 +95,7 @@ class Board:
             self._advance_status(now)
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        """See `Observer`: the system monitor hears robots itself."""
+        """See `Observer`: the system monitor subscribes to robots itself."""
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`: where robots are is in what they say."""

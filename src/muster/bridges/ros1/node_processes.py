@@ -21,10 +21,10 @@ _PATIENCE_S = 3.0
 _MASTER_GONE_S = 5.0
 """Topics live on without their master: for so long it is waited for, or for another in its place."""
 _HANGS_S = 10.0
-"""After a fault; who waits for a master that hangs would wait for ever."""
+"""After a fault; a master that hangs would be waited for without end."""
 
 
-class Children:
+class NodeProcesses:
     """A context: within it the nodes live, and a thread sees whether they and the ROS master do.
 
     Parameters
@@ -56,7 +56,7 @@ class Children:
         self.fault = ""
         """What is wrong, in a line, from when something is."""
 
-    def __enter__(self) -> Children:
+    def __enter__(self) -> NodeProcesses:
         environment = os.environ | {"ROS_MASTER_URI": self._master}
         with ctrl_c_held_back():
             for duty in DUTIES:

@@ -1,16 +1,16 @@
-"""What a robot says of itself on the parameter server, and what is asked for in JSON: as in a mission file."""
+"""Robots described on the parameter server and tasks given in JSON, with the keys of mission files."""
 
 from __future__ import annotations
 
 import json
 
-from muster.bridges.descriptions import read_as, robot_as_said
+from muster.bridges.descriptions import read_as, robot_from_description
 from muster.bridges.ros1.ros import rospy
 from muster.mission.model import Robot, Task
 
 
-def described(topics: str, robot: Robot) -> Robot:
-    """A robot with what its parameter `muster` says: keys of a robot in a mission file, such as speed_mps.
+def robot_from_parameters(topics: str, robot: Robot) -> Robot:
+    """A robot with its parameter `muster`: keys of a robot in a mission file, such as speed_mps.
 
     Raises
     ------
@@ -18,7 +18,7 @@ def described(topics: str, robot: Robot) -> Robot:
         if something there is wrong.
     """
     name = f"{topics}/muster"
-    return robot_as_said(rospy.get_param(name, {}), robot, name)
+    return robot_from_description(rospy.get_param(name, {}), robot, name)
 
 
 def task_of(text: str) -> Task:

@@ -1,4 +1,4 @@
-"""The port of a robot on ROS 1: it hears poses, and gives goals or velocities ([tcf-thesis], section 5.2, Figure 5.6).
+"""The port of a robot on ROS 1: receives poses, sends goals or velocities ([tcf-thesis], section 5.2, Figure 5.6).
 
 A robot only says where it is: whether it has passed a way point the port itself finds out (`follower`).
 """
@@ -18,20 +18,20 @@ from muster.bridges.ros1.message_conversion import place_and_heading, pose_stamp
 from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
-from muster.bridges.steering import STILL, Driven, Velocity
+from muster.bridges.steering import STILL, SteeredRobot, Velocity
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
 
 Drive = Literal["cmd_vel", "goals"]
 _TOLD_STILL_S = 1.0
-"""For how long a robot without way points is told to stand; after that a person may drive it."""
+"""Seconds for which a robot without way points gets zero velocities; after that a person may drive it."""
 _AGAIN_S = 1.0
 """After which a goal is given again, for those that did not hear it."""
 
 
 class Ros1Port:
-    """One robot: a `RobotPort`. Before it was sent anywhere it is told nothing: somebody else may drive it.
+    """One robot: a `RobotPort`. Before its first way points it gets no commands: somebody else may drive it.
 
     Parameters
     ----------
@@ -113,8 +113,8 @@ class Ros1Port:
         """See `RobotPort`."""
         return self._last_word
 
-    def driven(self, *, within_s: float, paused: bool) -> Driven | None:
-        """How it is to be steered; None if nothing is known of it. One that was not heard for a while stands."""
+    def steered(self, *, within_s: float, paused: bool) -> SteeredRobot | None:
+        """How it is to be steered; None if nothing is known of it. A robot that is silent for a while stands."""
         said = self._last_word
         if said is None:
             return None
@@ -122,21 +122,21 @@ class Ros1Port:
         aim = None if stands else self._follower.aim
         arrived = aim is not None and self._follower.is_at(said.position, aim)
         waits = self._follower.waits and not stands
-        return Driven(self.body, said.position, said.heading, said.velocity, aim, arrived, waits)
+        return SteeredRobot(self.body, said.position, said.heading, said.velocity, aim, arrived, waits)
 
-    def speak(self, driven: Driven, velocity: Velocity) -> None:
+    def speak(self, steered: SteeredRobot, velocity: Velocity) -> None:
         """Tell the robot what it is to do now, and others where it goes."""
         now = self._clock.unpaused_s
-        if driven.aim is not None:
+        if steered.aim is not None:
             self._stood_s = now
         if self._drive == "cmd_vel":
             if now - self._stood_s <= _TOLD_STILL_S:
                 publish(self._velocities, twist_of(velocity))
-        elif driven.aim is None:
+        elif steered.aim is None:
             if self._given is not None and (self._follower.aim is not None or self._given == self._next):
                 self._stand_still()  # paused, or not heard; or it has made room, and is back
         elif self._given != self._next or now - self._given_s > _AGAIN_S:
-            self._give(driven.aim, now)
+            self._give(steered.aim, now)
 
     def frames(self) -> list[Any]:
         """For tf: where the robot is, and its next way point."""

@@ -25,8 +25,8 @@ Data = Mapping[str, Any]
 _LOOK_S = 0.1
 
 
-class Asker:
-    """Asks on `<name>/question`, and hears answers on `<name>/answer`."""
+class RequestClient:
+    """Sends requests on `<name>/question`, and receives answers on `<name>/answer`."""
 
     def __init__(self, name: str) -> None:
         self._one_at_a_time = threading.Lock()
@@ -54,8 +54,8 @@ class Asker:
             self._heard.notify_all()
 
 
-class Answerer:
-    """Answers what an `Asker` of the same name asks; a question that comes twice, by a link renewed, is answered once.
+class RequestServer:
+    """Answers the requests of a `RequestClient` of the same name; a repeated one is answered once.
 
     Parameters
     ----------

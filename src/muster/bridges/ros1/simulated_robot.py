@@ -17,7 +17,7 @@ import click
 from muster.bridges.ros1.message_conversion import fill_pose, matrix_of, place_and_heading, tf_of, velocity_of
 from muster.bridges.ros1.node import become_node, hear, publish, time_of_ros
 from muster.bridges.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
-from muster.bridges.simulated_body import Body
+from muster.bridges.simulated_body import SimulatedBody
 from muster.bridges.simulated_program import Wanted, robot_options, run, wanted
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
@@ -34,7 +34,7 @@ class SimulatedRobot:
         self._frame, self._rate_hz, self._body = (
             f"{topics.strip('/')}/base_link",
             it.rate_hz,
-            Body(it.robot, it.rate_hz),
+            SimulatedBody(it.robot, it.rate_hz),
         )
         self._now = time_of_ros()
         self._lock = threading.Lock()

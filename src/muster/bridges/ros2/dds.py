@@ -21,8 +21,8 @@ from muster.mission.errors import MissingExtraError, NetworkError, ParameterErro
 M = TypeVar("M", bound=Message)
 
 
-class Participant:
-    """Takes part in a domain until it is closed: a `Wire`.
+class DdsMiddleware:
+    """Takes part in a domain until it is closed: a `Middleware`.
 
     Raises
     ------
@@ -45,11 +45,11 @@ class Participant:
         self._published: dict[Any, tuple[str, str]] = {}  # by the writers' keys
 
     def writer(self, topic: str, message: type[M]) -> DdsWriter[M]:
-        """See `Wire`."""
+        """See `Middleware`."""
         return DdsWriter(self._dds, self._participant, topic, message)
 
     def reader(self, topic: str, message: type[M]) -> DdsReader[M]:
-        """See `Wire`."""
+        """See `Middleware`."""
         return DdsReader(self._dds, self._participant, topic, message)
 
     def navigator(self, action: str) -> Navigator:
@@ -58,7 +58,7 @@ class Participant:
         raise ParameterError(f"{action}: an action, by DDS; expected {expected}")
 
     def topics(self) -> Iterable[tuple[str, str]]:
-        """See `Wire`."""
+        """See `Middleware`."""
         while samples := self._publications.take(KEPT):
             for sample in samples:
                 if sample.topic_name is None:  # its writer has ended
@@ -71,16 +71,16 @@ class Participant:
                 yield topic.removeprefix(_TOPICS), f"{name[1]}/{name[2]}"
 
     def wait(self, seconds: float) -> None:
-        """See `Wire`: Cyclone DDS hears by itself."""
+        """See `Middleware`: Cyclone DDS receives in threads of its own."""
         time.sleep(seconds)
 
     def close(self) -> None:
-        """See `Wire`."""
+        """See `Middleware`."""
         self._participant = self._publications = None
 
 
 class DdsWriter(Generic[M]):
-    """See `wire.Writer`."""
+    """See `middleware.Writer`."""
 
     def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
         self._topic, self._error = topic, dds.error
@@ -98,7 +98,7 @@ class DdsWriter(Generic[M]):
 
 
 class DdsReader(Generic[M]):
-    """See `wire.Reader`."""
+    """See `middleware.Reader`."""
 
     def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
         self._message = message

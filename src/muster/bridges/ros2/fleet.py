@@ -16,9 +16,9 @@ from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Ros2Newcomers
 from muster.bridges.ros2.message_types import PoseStamped
-from muster.bridges.ros2.middleware import Wire
+from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.names import ros_names
-from muster.bridges.ros2.open_wire import open_wire
+from muster.bridges.ros2.open_middleware import open_middleware
 from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
@@ -39,8 +39,8 @@ class Ros2Fleet:
     ----------
     mission
         robot `r_0` is at `/r_0/pose` or `/r_0/odom`.
-    wire
-        by which they are reached, closed with the fleet; None: as `open_wire()` does.
+    middleware
+        by which they are reached, closed with the fleet; None: as `open_middleware()` does.
     give
         `goals`: poses on a topic; `nav2`: Nav2's action.
     namespace
@@ -53,14 +53,14 @@ class Ros2Fleet:
     Raises
     ------
     MissingExtraError, NetworkError, ParameterError
-        as of `open_wire` and `Wire.navigator`; if two robots have the same name in ROS.
+        as of `open_middleware` and `Middleware.navigator`; if two robots have the same name in ROS.
     """
 
     def __init__(
         self,
         mission: Mission,
         *,
-        wire: Wire | None = None,
+        middleware: Middleware | None = None,
         give: Give = "goals",
         namespace: str = "",
         arrival: Arrival | None = None,
@@ -72,14 +72,14 @@ class Ros2Fleet:
         self._namespace, self._topics = namespace, topics_in(namespace)
         self._give, self._arrival = give, arrival or Arrival()
         self._flat = mission.dimensions == 2
-        self._wire = open_wire() if wire is None else wire
+        self._middleware = open_middleware() if middleware is None else middleware
         self._ports: dict[str, Ros2Port] = {}
         try:
             names = ros_names(robot.id for robot in mission.robots)
             for robot in mission.robots:
                 self._ports[robot.id] = self._reached(robot, names[robot.id])
         except BaseException:
-            self._wire.close()
+            self._middleware.close()
             raise
         self._newcomers = self._looks(names) if joins else None
 
@@ -96,13 +96,13 @@ class Ros2Fleet:
     def advance(self, until_s: float) -> Sequence[Event]:
         """See `Fleet`: returns before, where a way point is passed or a robot joins."""
         while True:
-            self._wire.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
+            self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
             passed = [port.hear() for port in self._ports.values()]
             events = self._joined()
             if events or any(passed) or self.time_s >= until_s:
                 return events
 
-    def unheard(self) -> dict[str, str]:
+    def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that cannot be sent anywhere yet, and what is missing, by what has come until now."""
         self._hear_for(0.0)
         return {name: port.missing for name, port in self._ports.items() if port.missing}
@@ -116,12 +116,12 @@ class Ros2Fleet:
             if a robot could not be told; all others were.
         """
         failed: dict[str, Exception] = {}
-        _try(failed, "", partial(self._wire.wait, 0.0))
+        _try(failed, "", partial(self._middleware.wait, 0.0))
         for name, port in self._ports.items():
             _try(failed, name, port.cancel)
         until, wait_s = self.time_s + _STOPS_WITHIN_S, _LAST_WORDS_S
         while True:
-            _try(failed, "", partial(self._wire.wait, wait_s))
+            _try(failed, "", partial(self._middleware.wait, wait_s))
             for name, port in self._ports.items():
                 _try(failed, name, port.hear)
             if self.time_s >= until or all(port.at_rest for port in self._ports.values()):
@@ -145,15 +145,15 @@ class Ros2Fleet:
 
     @property
     def not_told(self) -> list[str]:
-        """Robots that are to stay where they are and could not be told so."""
+        """Robots that did not get the command to stay where they are."""
         return [name for name, port in self._ports.items() if port.is_to_stay]
 
     def close(self) -> None:
         """See `Fleet`."""
-        self._wire.close()
+        self._middleware.close()
 
     def _hear_for(self, seconds: float) -> None:
-        self._wire.wait(seconds)
+        self._middleware.wait(seconds)
         for port in self._ports.values():
             port.hear()
 
@@ -166,23 +166,29 @@ class Ros2Fleet:
     def _reached(self, robot: Robot, name: str) -> Ros2Port:
         topics = self._topics(name)
         return Ros2Port(
-            robot, self._wire, topics, self._goals(topics), self._arrival, flat=self._flat, clock=lambda: self.time_s
+            robot,
+            self._middleware,
+            topics,
+            self._goals(topics),
+            self._arrival,
+            flat=self._flat,
+            clock=lambda: self.time_s,
         )
 
     def _goals(self, topics: str) -> Goals:
         if self._give == "nav2":
-            return Nav2Goals(self._wire.navigator(f"{topics}/navigate_to_pose"))
-        return PoseGoals(self._wire.writer(f"{topics}/goal_pose", PoseStamped))
+            return Nav2Goals(self._middleware.navigator(f"{topics}/navigate_to_pose"))
+        return PoseGoals(self._middleware.writer(f"{topics}/goal_pose", PoseStamped))
 
     def _looks(self, names: Mapping[str, str]) -> Ros2Newcomers:
         def reach(robot: Robot) -> Ros2Port:
             return self._reached(robot, robot.id)
 
-        return Ros2Newcomers(self._wire, self._namespace, names.values(), reach, flat=self._flat)
+        return Ros2Newcomers(self._middleware, self._namespace, names.values(), reach, flat=self._flat)
 
 
 def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:
-    """Act, and go on where that fails, whatever the reason: others are still to be told."""
+    """Act, and note an error of any kind: other robots are still to get the command."""
     try:
         act()
     except Exception as error:

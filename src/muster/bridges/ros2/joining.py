@@ -9,11 +9,11 @@ import json
 import logging
 from collections.abc import Callable, Iterable
 
-from muster.bridges.descriptions import robot_as_said
+from muster.bridges.descriptions import robot_from_description
 from muster.bridges.discovery import topics_in
 from muster.bridges.joining import Newcomers
 from muster.bridges.ros2.message_types import String
-from muster.bridges.ros2.middleware import Reader, Wire
+from muster.bridges.ros2.middleware import Middleware, Reader
 from muster.bridges.ros2.port import Ros2Port
 from muster.mission.model import Robot
 
@@ -27,15 +27,21 @@ class Ros2Newcomers(Newcomers[Ros2Port]):
     """See `Newcomers`."""
 
     def __init__(
-        self, wire: Wire, namespace: str, known: Iterable[str], reach: Callable[[Robot], Ros2Port], *, flat: bool
+        self,
+        middleware: Middleware,
+        namespace: str,
+        known: Iterable[str],
+        reach: Callable[[Robot], Ros2Port],
+        *,
+        flat: bool,
     ) -> None:
-        self._wire, self._topics_of = wire, topics_in(namespace)
+        self._middleware, self._topics_of = middleware, topics_in(namespace)
         self._descriptions: dict[str, tuple[Reader[String], float]] = {}  # until when they are waited for
         self._now = self._look_s = 0.0
         super().__init__(
             namespace,
             known,
-            topics=wire.topics,
+            topics=middleware.topics,
             describe=self._described,
             reach=reach,
             warn=_log.warning,
@@ -43,7 +49,7 @@ class Ros2Newcomers(Newcomers[Ros2Port]):
         )
 
     def look(self, now: float) -> list[Ros2Port]:
-        """The ports of robots that have said where they are since."""
+        """The ports of robots whose position is known by now."""
         if now >= self._look_s:
             self._now, self._look_s = now, now + _LOOK_S
             self.discover()
@@ -54,12 +60,12 @@ class Ros2Newcomers(Newcomers[Ros2Port]):
     def _described(self, robot: Robot) -> Robot | None:
         topic = f"{self._topics_of(robot.id)}/muster"
         if robot.id not in self._descriptions:
-            self._descriptions[robot.id] = self._wire.reader(topic, String), self._now + _SAYS_WITHIN_S
+            self._descriptions[robot.id] = self._middleware.reader(topic, String), self._now + _SAYS_WITHIN_S
         reader, until_s = self._descriptions[robot.id]
         said = [message.data for message in reader.take()]
         if not said and self._now < until_s:
             return None
-        return robot_as_said(_as_data(said), robot, topic)
+        return robot_from_description(_as_data(said), robot, topic)
 
 
 def _as_data(said: list[str]) -> object:

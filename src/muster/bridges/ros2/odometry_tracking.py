@@ -12,7 +12,7 @@ POSES_LAST_S = 1.0
 """Who gave a pose on the map so short a time ago does not go by odometry."""
 
 
-class Reckoning:
+class OdometryTracking:
     """Ties the frame of a robot's odometry to the map; until a pose came they are taken for one. Metres, radians."""
 
     def __init__(self) -> None:

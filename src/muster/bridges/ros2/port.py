@@ -1,4 +1,4 @@
-"""The port of a robot on ROS 2: hears where it is, and gives it one goal after the other.
+"""The port of a robot on ROS 2: receives its poses and sends one goal after the other.
 
 | topic | type | |
 |---|---|---|
@@ -19,8 +19,8 @@ from muster.bridges.follower import Follower
 from muster.bridges.pose_port import goal_heading, require_finite, velocity_by
 from muster.bridges.ros2.goals import Goals
 from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
-from muster.bridges.ros2.middleware import Wire
-from muster.bridges.ros2.odometry_tracking import Reckoning
+from muster.bridges.ros2.middleware import Middleware
+from muster.bridges.ros2.odometry_tracking import OdometryTracking
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import angles, flu_to_enu, quaternion_rotation
@@ -68,7 +68,7 @@ class Ros2Port:
     def __init__(
         self,
         robot: Robot,
-        wire: Wire,
+        middleware: Middleware,
         topics: str,
         goals: Goals,
         arrival: Arrival,
@@ -79,10 +79,10 @@ class Ros2Port:
         self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
         near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
         self._follower = Follower(**near, flat=flat or robot.kind == "ground")
-        self._poses = wire.reader(f"{topics}/pose", PoseStamped)
-        self._odometry = wire.reader(f"{topics}/odom", Odometry)
+        self._poses = middleware.reader(f"{topics}/pose", PoseStamped)
+        self._odometry = middleware.reader(f"{topics}/odom", Odometry)
         self._said: Telemetry | None = None
-        self._reckoning = Reckoning()
+        self._odometry_tracking = OdometryTracking()
         self._height = 0.0
         self._refused = ""
         self.is_to_stay = False  # and was not told yet
@@ -100,7 +100,7 @@ class Ros2Port:
 
     @property
     def at_rest(self) -> bool:
-        """Whether it was told all, and nothing is under way, as far as that is said."""
+        """Whether all was sent, and no goal is known to be under way."""
         return self.goals.at_rest and not self.is_to_stay
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
@@ -150,7 +150,7 @@ class Ros2Port:
         return passed
 
     def _let_stay(self) -> None:
-        """Where it is; one that is not heard keeps its goal until it is."""
+        """Make its position its goal; a silent robot keeps its goal until a pose arrives."""
         said = self._said
         lost = said is None or self._clock() - said.time_s > _FRESH_S
         here = None if said is None or lost else self._stamped(said.position, said.heading)
@@ -166,13 +166,13 @@ class Ros2Port:
         found = _place_and_heading(pose.pose)
         if found is None or pose.header.frame_id.lstrip("/") != MAP_FRAME:
             return False
-        self._reckoning.tie(now, *found)
+        self._odometry_tracking.tie(now, *found)
         return self._is_at(*found, now, None)
 
     def _take_odometry(self, odometry: Odometry, now: float) -> bool:
         """Who is localised does not go by odometry, as long as that lasts."""
         found = _place_and_heading(odometry.pose.pose)
-        there = None if found is None else self._reckoning.reckon(now, *found)
+        there = None if found is None else self._odometry_tracking.reckon(now, *found)
         if there is None:
             return False
         linear = odometry.twist.twist.linear

@@ -1,4 +1,4 @@
-"""rclpy as a wire: a node in the ROS 2 installation whose environment this is, with Nav2's action.
+"""rclpy as a middleware: a node in the ROS 2 installation whose environment this is, with Nav2's action.
 
 Polled: a single-threaded executor spins in the thread that waits (docs.ros.org, "rclpy": Executor.spin_once). A
 context of our own leaves Ctrl-C to us. By the documentation of rclpy and Nav2; tested against neither: docs/ros2.md.
@@ -25,8 +25,8 @@ _STATUS = {4: "succeeded", 5: "canceled", 6: "aborted"}  # action_msgs/GoalStatu
 _HOW = "source the setup file of a ROS 2 installation of this Python"
 
 
-class RclpyWire:
-    """A node named `muster` in a domain: a `Wire`.
+class RclpyMiddleware:
+    """A node named `muster` in a domain: a `Middleware`.
 
     Raises
     ------
@@ -55,42 +55,42 @@ class RclpyWire:
         self._any = qos.QoSProfile(depth=KEPT, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
 
     def writer(self, topic: str, message: type[M]) -> RclpyWriter[M]:
-        """See `Wire`."""
+        """See `Middleware`."""
         return RclpyWriter(topic, self._node.create_publisher(_class_of(message), topic, self._reliable))
 
     def reader(self, topic: str, message: type[M]) -> RclpyReader[M]:
-        """See `Wire`."""
+        """See `Middleware`."""
         reader = RclpyReader(message)
         self._node.create_subscription(_class_of(message), topic, reader.hear, self._any)
         return reader
 
     def navigator(self, action: str) -> RclpyNavigator:
-        """See `Wire`."""
+        """See `Middleware`."""
         kind = _module("nav2_msgs.action", "install nav2_msgs").NavigateToPose
         return RclpyNavigator(_module("rclpy.action").ActionClient(self._node, kind, action), kind)
 
     def topics(self) -> Iterable[tuple[str, str]]:
-        """See `Wire`."""
+        """See `Middleware`."""
         for topic, kinds in self._node.get_topic_names_and_types():
             if self._node.count_publishers(topic):
                 for kind in kinds:
                     yield topic, kind.replace("/msg/", "/")
 
     def wait(self, seconds: float) -> None:
-        """See `Wire`."""
+        """See `Middleware`."""
         until = time.monotonic() + max(seconds, _LEAST_S)
         while (rest := until - time.monotonic()) > 0:
             self._executor.spin_once(timeout_sec=rest)
 
     def close(self) -> None:
-        """See `Wire`."""
+        """See `Middleware`."""
         self._executor.shutdown()
         self._node.destroy_node()
         self._context.try_shutdown()
 
 
 class RclpyWriter(Generic[M]):
-    """See `wire.Writer`."""
+    """See `middleware.Writer`."""
 
     def __init__(self, topic: str, publisher: Any) -> None:
         self._topic, self._publisher = topic, publisher
@@ -107,7 +107,7 @@ class RclpyWriter(Generic[M]):
 
 
 class RclpyReader(Generic[M]):
-    """See `wire.Reader`."""
+    """See `middleware.Reader`."""
 
     def __init__(self, message: type[M]) -> None:
         self._message = message
@@ -124,7 +124,7 @@ class RclpyReader(Generic[M]):
 
 
 class RclpyNavigator:
-    """See `wire.Navigator`."""
+    """See `middleware.Navigator`."""
 
     def __init__(self, client: Any, kind: Any) -> None:
         self._client, self._kind = client, kind
@@ -141,7 +141,7 @@ class RclpyNavigator:
 
 
 class _Navigation:
-    """See `wire.Navigation`: two answers are awaited, that the goal is accepted and how it ended."""
+    """See `middleware.Navigation`: two answers are awaited, that the goal is accepted and how it ended."""
 
     def __init__(self, client: Any, goal: Any) -> None:
         self.outcome: Outcome | None = None
@@ -181,7 +181,7 @@ class _Navigation:
             self._ask_to_cancel()
 
     def _end(self, future: Any) -> None:
-        """Nav2 says why by a number since ROS 2 Iron, in words since Kilted."""
+        """Nav2 gives the reason as a number since ROS 2 Iron, as text since Kilted."""
         with self._failing():
             answer = future.result()
             code, words = getattr(answer.result, "error_code", 0), getattr(answer.result, "error_msg", "")

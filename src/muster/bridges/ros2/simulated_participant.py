@@ -28,11 +28,11 @@ from muster.bridges.ros2.message_types import (
     TwistWithCovariance,
     Vector3,
 )
-from muster.bridges.ros2.middleware import Wire
+from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.names import ros_name
-from muster.bridges.ros2.open_wire import open_wire
+from muster.bridges.ros2.open_middleware import open_middleware
 from muster.bridges.ros2.port import MAP_FRAME, yaw_of
-from muster.bridges.simulated_body import Body
+from muster.bridges.simulated_body import SimulatedBody
 from muster.bridges.simulated_program import Wanted, robot_options, run, wanted
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
@@ -41,23 +41,23 @@ _SAYS_S = 1.0
 
 
 class SimulatedRobot:
-    """One robot on a wire."""
+    """One robot on a middleware."""
 
-    def __init__(self, it: Wanted, wire: Wire) -> None:
+    def __init__(self, it: Wanted, middleware: Middleware) -> None:
         topics = it.topics(ros_name(it.robot.id))
-        self._frame, self._wire = f"{topics.strip('/')}/base_link", wire
-        self._rate_hz, self._body = it.rate_hz, Body(it.robot, it.rate_hz)
-        self._goals = wire.reader(f"{topics}/goal_pose", PoseStamped)
-        self._velocities = wire.reader(f"{topics}/cmd_vel", Twist)
-        self._poses = wire.writer(f"{topics}/odom", Odometry)
-        self._words = wire.writer(f"{topics}/muster", String)
+        self._frame, self._middleware = f"{topics.strip('/')}/base_link", middleware
+        self._rate_hz, self._body = it.rate_hz, SimulatedBody(it.robot, it.rate_hz)
+        self._goals = middleware.reader(f"{topics}/goal_pose", PoseStamped)
+        self._velocities = middleware.reader(f"{topics}/cmd_vel", Twist)
+        self._poses = middleware.writer(f"{topics}/odom", Odometry)
+        self._words = middleware.writer(f"{topics}/muster", String)
         self._says, self._said_s = String(json.dumps(it.says)), -math.inf
 
     def run(self) -> None:
         """Move and say so, for ever."""
         last = time.monotonic()
         while True:
-            self._wire.wait(1 / self._rate_hz)
+            self._middleware.wait(1 / self._rate_hz)
             now = time.monotonic()
             self._hear(now)
             self._say(now, self._body.step(now, now - last))
@@ -92,7 +92,7 @@ class SimulatedRobot:
 @robot_options
 def command(domain: int | None, by: Any, **asked: Any) -> None:
     """Let a simulated ROBOT take part on ROS 2, until Ctrl-C."""
-    SimulatedRobot(wanted(**asked), open_wire(by, domain)).run()
+    SimulatedRobot(wanted(**asked), open_middleware(by, domain)).run()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

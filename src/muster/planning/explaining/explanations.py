@@ -152,4 +152,4 @@ def admits(mission: Mission, plan: Plan, ignored: tuple[str, ...]) -> bool:
 
 
 def _plain(remedy: Remedy | None) -> dict[str, Any] | None:
-    return None if remedy is None else {**asdict(remedy), "kinds": remedy.kinds}
+    return None if remedy is None else remedy.as_dict()

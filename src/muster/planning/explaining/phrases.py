@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from muster.allocation.explanations import Alternative, without_bid
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import smallest
-from muster.allocation.remedy import Capacity, Remedy
+from muster.allocation.remedy import Remedy
 from muster.mission.auction_book import Award, Book
 from muster.planning.explaining.explanations import OneTask
 
@@ -78,30 +77,18 @@ def reserve(problem: Problem) -> str:
 
 def short(problem: Problem, remedy: Remedy) -> str:
     """The changes, in short."""
-    parts = [f"skill {', '.join(remedy.skills)}"] if remedy.skills else []
-    if remedy.suitability is not None:
-        low = remedy.suitability
-        parts.append(f"suitability {low.needed:g} of {low.robot_type} for {low.task_type}, not {low.score:g}")
-    if remedy.lock is not None:
-        parts.append("a place in the lock")
+    parts = [change.short for change in remedy.changes.values()]
     if remedy.before:
-        parts.append(f"first {', '.join(before.task for before in remedy.before)}, left out as well")
-    capacity = remedy.capacity
-    if capacity.grows and capacity.enough is not None and capacity.now is not None:
-        parts.append(f"capacity {_up(capacity.enough)} {problem.usage_unit}, not {capacity.now:g}")
-    return "; ".join(parts) or "none is needed"
+        parts.append(_first(remedy))
+    capacity = remedy.capacity.short(problem.usage_unit)
+    return "; ".join([*parts, *([capacity] if capacity else [])]) or "none is needed"
 
 
 def lines(problem: Problem, remedy: Remedy) -> list[str]:
     """What a robot would need, a line for each kind of change."""
-    lines = [f"skill {', '.join(remedy.skills)}"] if remedy.skills else []
-    if remedy.suitability is not None:
-        low = remedy.suitability
-        lines.append(f"suitability {low.needed:g}: {low.robot_type} scores {low.score:g} for {low.task_type}")
-    if remedy.lock is not None:
-        lines.append(f"a place in the lock: only {', '.join(remedy.lock)} may do it")
+    lines = [change.line for change in remedy.changes.values()]
     if remedy.before:
-        lines.append(f"first {', '.join(before.task for before in remedy.before)}, left out as well")
+        lines.append(_first(remedy))
         lines += [
             f"but {before.task} can never be done: --task {before.task} says more"
             for before in remedy.before
@@ -112,7 +99,7 @@ def lines(problem: Problem, remedy: Remedy) -> list[str]:
     if remedy.unreachable:
         return [*lines, "a way to it: there is none, and no other change helps"]
     if remedy.capacity.grows:
-        lines += _capacity_lines(remedy.capacity, problem.usage_unit)
+        lines += remedy.capacity.lines(problem.usage_unit)
     elif remedy.enough:
         capacity = remedy.capacity
         fits = capacity.as_is is not None and (capacity.now is None or capacity.as_is <= capacity.now * (1 + 1e-9))
@@ -126,27 +113,5 @@ def lines(problem: Problem, remedy: Remedy) -> list[str]:
     return lines
 
 
-def _capacity_lines(capacity: Capacity, unit: str) -> list[str]:
-    least, enough = capacity.at_least, capacity.enough
-    proven = least is not None and capacity.now is not None and least > capacity.now
-    parts = []
-    if proven and enough is not None and least is not None and _down(least) == _up(enough):
-        parts.append(f"{_up(enough)} {unit} is needed (proven) and enough (a plan was found)")
-    else:
-        parts += [f"needs at least {_down(least)} {unit} (proven)"] if proven and least is not None else []
-        parts += [f"{_up(enough)} {unit} is enough (a plan was found)"] if enough is not None else []
-        parts += ["whether less is enough is not known"] if not proven else []
-    lines = [f"capacity: {', '.join(parts)}; it has {capacity.now:g}"]
-    if capacity.as_is is not None:
-        lines.append(f"capacity with the rest of the plan as it is: {_up(capacity.as_is)} {unit}")
-    return lines
-
-
-def _up(value: float) -> str:
-    """A figure rounded up, so that a sufficient value stays sufficient."""
-    return f"{math.ceil(value * 100 * (1 - 1e-10)) / 100:.2f}"
-
-
-def _down(value: float) -> str:
-    """A figure rounded down, so that a least value stays one."""
-    return f"{math.floor(value * 100 * (1 + 1e-10)) / 100:.2f}"
+def _first(remedy: Remedy) -> str:
+    return f"first {', '.join(before.task for before in remedy.before)}, left out as well"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import importlib.util
 
-from muster.bridges.ros2.middleware import By, Wire
+from muster.bridges.ros2.middleware import By, Middleware
 
 
-def open_wire(by: By | None = None, domain: int | None = None) -> Wire:
+def open_middleware(by: By | None = None, domain: int | None = None) -> Middleware:
     """Take part in a domain, by rclpy where it can be imported and by DDS elsewhere, or as `by` says.
 
     Parameters
@@ -25,9 +25,9 @@ def open_wire(by: By | None = None, domain: int | None = None) -> Wire:
         if the network cannot be used.
     """
     if by == "rclpy" or (by is None and importlib.util.find_spec("rclpy") is not None):
-        from muster.bridges.ros2.rclpy_middleware import RclpyWire
+        from muster.bridges.ros2.rclpy_middleware import RclpyMiddleware
 
-        return RclpyWire(domain)
-    from muster.bridges.ros2.dds import Participant
+        return RclpyMiddleware(domain)
+    from muster.bridges.ros2.dds import DdsMiddleware
 
-    return Participant(domain)
+    return DdsMiddleware(domain)

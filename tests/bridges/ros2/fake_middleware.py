@@ -25,7 +25,7 @@ class Heard(list):
         return taken
 
 
-class Wire:
+class Middleware:
     """Readers by their topics, to which a test appends; what was told on topics. Time goes on by waiting alone."""
 
     def __init__(self):

@@ -1,0 +1,21 @@
+"""The rules of a mission, one a file, in the order in which reasons are looked for.
+
+A rule says what it refuses, what it proves impossible, why a task is left out of a plan, what change would lift it, and
+says that change in words. A rule is added to `RULES`; problems, proofs of impossibility, reasons, remedies and their
+phrases are loops over these. What a search has to know of a rule in its hot loop is in the core.
+"""
+
+from __future__ import annotations
+
+from muster.allocation.rules.action import Action
+from muster.allocation.rules.capacity import Capacity
+from muster.allocation.rules.lock import Lock
+from muster.allocation.rules.prerequisite import Prerequisite
+from muster.allocation.rules.rule import Change, InPlan, Outlook, Rule
+from muster.allocation.rules.skill import Skill
+from muster.allocation.rules.suitability import Suitability
+from muster.allocation.rules.unreachable import Unreachable
+
+__all__ = ["RULES", "Change", "InPlan", "Outlook", "Rule"]
+
+RULES: tuple[Rule, ...] = (Skill(), Action(), Suitability(), Lock(), Prerequisite(), Unreachable(), Capacity())

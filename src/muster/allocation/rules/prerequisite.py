@@ -1,0 +1,24 @@
+"""A task is in the plan only together with its prerequisites, and nothing waits in a circle."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from muster.allocation.rules.rule import InPlan, Outlook, Question, Rule, listed
+
+
+class Prerequisite(Rule):
+    """All prerequisites of a task are in the plan, and can be done before it."""
+
+    word: ClassVar[str] = "prerequisite"
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        return f"{outlook.lost_before} comes before it and can never be done" if outlook.lost_before else None
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        missing = [plan.problem.tasks[k].id for k in plan.problem.prerequisites[j] if k not in plan.done]
+        if missing:
+            return f"left out before it: {listed(missing)}"
+        if plan.insertion(i, j) is None:
+            return "at every place in its route the prerequisites would wait in a circle"
+        return None
