@@ -9,7 +9,7 @@ from muster.mission.action_keys import ACTION_KEYS
 from muster.motion.actions import ACTIONS
 
 DOCS = Path(__file__).parents[2] / "docs"
-BLOCK = re.compile(r"```python\n(.*?)```(?:\s*<!-- docs-check: output -->\n```\n(.*?)```)?", re.DOTALL)
+BLOCK = re.compile(r"```python\n(.*?)```(?:\s*<!-- docs-check: output -->\n```text\n(.*?)```)?", re.DOTALL)
 BLOCKS = [
     pytest.param(*block.groups(), id=f"{page}-{k}")
     for page in ("python-api", "extending")

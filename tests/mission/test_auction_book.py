@@ -85,4 +85,4 @@ def test_a_disk_without_room(plan):
 
 
 def test_books_are_equal_if_their_awards_are():
-    assert Book(rounds=1, awards=(), recite=print) == Book(rounds=1, awards=())
+    assert Book(rounds=1, awards=(), for_each_bid=print) == Book(rounds=1, awards=())

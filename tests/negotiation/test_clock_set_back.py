@@ -71,13 +71,39 @@ def test_a_process_of_this_name_that_lives_is_not_outdone():
     assert node.incarnation == 3
 
 
-def test_a_robot_that_the_others_have_accepted_does_not_rise_but_falls_silent():
+def heartbeats_of_r_1(net, *heartbeats):
+    """A message of r_1 with these heartbeats."""
+    return Message("r_1", 1, 10**6, net.nodes["r_1"].stage, heartbeats=heartbeats)
+
+
+def test_a_robot_that_the_others_have_accepted_falls_silent_when_it_hears_of_a_later_process():
     net = settled_team(line_mission())
     node = net.nodes["r_0"]
-    stage = net.nodes["r_1"].stage
-    node.handle(Message("r_1", 1, 10**6, stage, heartbeats=(Heartbeat("r_0", 7, 1),)), net.now)
+    node.handle(heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**6), Heartbeat("r_0", 7, 1)), net.now)
     assert node.superseded
     assert node.incarnation == 1
+
+
+def test_a_robot_that_some_have_accepted_rises_when_another_tells_that_the_later_process_is_silent():
+    net = settled_team(line_mission())
+    node = net.nodes["r_0"]
+    node.handle(heartbeats_of_r_1(net, Heartbeat("r_0", 7, 1)), net.now)
+    assert not node.superseded
+    assert node.incarnation == 8
+    agree(net)
+    assert all(len(robots) == 1 for robots in owners(net).values())
+
+
+def test_a_sender_of_a_past_life_is_told_nothing_while_the_later_process_is_heard():
+    net = settled_team(line_mission())
+    net.crash("r_0")
+    net.start(["r_0"], incarnation=9)
+    agree(net)
+    old = Message("r_0", 3, 5, Stage(1), heartbeats=(Heartbeat("r_0", 3, 5),))
+    assert net.nodes["r_1"].handle(old, net.now) == []
+    (answer,) = net.nodes["r_1"].handle(old, net.now + 3.0)
+    assert answer.to == "r_0"
+    assert answer.message.heartbeats[0].incarnation == 9
 
 
 def test_what_it_keeps_on_disk_holds_the_incarnation_that_it_took(tmp_path):

@@ -22,7 +22,7 @@ def book_of(problem: Problem, rounds: int, sales: Sales, hold: Hold) -> Book:
     The sales were kept. Every bid of every round would fill the memory: to tell them, the auction is held again.
     """
 
-    def recite(take: TakeBid) -> None:
+    def for_each_bid(take: TakeBid) -> None:
         stop = Stop()
 
         def tell(auctioneer: Auctioneer, sale: Sale) -> None:
@@ -34,7 +34,7 @@ def book_of(problem: Problem, rounds: int, sales: Sales, hold: Hold) -> Book:
         if rounds:
             hold(stop, tell)
 
-    return Book(rounds=rounds, awards=tuple(_awards(problem, sales)), recite=recite)
+    return Book(rounds=rounds, awards=tuple(_awards(problem, sales)), for_each_bid=for_each_bid)
 
 
 def bids_of_round(problem: Problem, auctioneer: Auctioneer, sale: Sale, robots: Iterable[int]) -> Iterator[Bid]:

@@ -173,7 +173,7 @@ class Ledger:
             number, _, i, bid = self._rows[row]
             return Award.of(number, tasks[j], robots[i], score(bid), bids)
 
-        def recite(take: TakeBid) -> None:
+        def for_each_bid(take: TakeBid) -> None:
             for number, j, i, bid in self._rows:
                 row = sold.get((number, j))
                 won_by = None if row is None else robots[self._rows[row][2]]
@@ -182,7 +182,7 @@ class Ledger:
 
         messages = self.rounds * sum(map(len, network))
         awards = tuple(award(row, j) for row, j in sorted(won.items()))
-        return Book(rounds=self.rounds, messages=messages, awards=awards, recite=recite)
+        return Book(rounds=self.rounds, messages=messages, awards=awards, for_each_bid=for_each_bid)
 
 
 def score(bid: float) -> float:

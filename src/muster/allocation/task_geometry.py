@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Point, Robot, Task
-from muster.motion.actions import Doing, Impossible, plan
+from muster.motion.actions import Impossible, TaskMotion, plan
 
 Floats = npt.NDArray[np.float64]
 Classes = npt.NDArray[np.int32]
@@ -42,7 +42,7 @@ class TaskGeometry:
     entries: Floats
     exits: Floats
     costs: Floats
-    moving: Mapping[tuple[int, int], Doing]
+    moving: Mapping[tuple[int, int], TaskMotion]
     _like: tuple[int, ...]  # for each robot the first of the same shape
     _impossible: Mapping[int, Mapping[int, str]]  # for the first robot of each shape the reasons by task
 
@@ -78,17 +78,17 @@ class TaskGeometry:
         return frozenset(self._impossible[self._like[i]])
 
 
-def _completed(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, Doing]]:
+def _completed(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> dict[int, dict[int, TaskMotion]]:
     """How each robot does each task that some robot can do; one that cannot is said to do it as the first that can."""
-    able = {i: {j: own for j, own in row.items() if isinstance(own, Doing)} for i, row in found.items()}
-    usual: dict[int, Doing] = {}
+    able = {i: {j: own for j, own in row.items() if isinstance(own, TaskMotion)} for i, row in found.items()}
+    usual: dict[int, TaskMotion] = {}
     for row in able.values():
         usual = row | usual
     order = sorted(usual)
     return {i: {j: row.get(j, usual[j]) for j in order} for i, row in able.items()}
 
 
-def _reasons(found: Mapping[int, Mapping[int, Doing | Impossible]]) -> dict[int, dict[int, str]]:
+def _reasons(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> dict[int, dict[int, str]]:
     return {i: {j: own.reason for j, own in row.items() if isinstance(own, Impossible)} for i, row in found.items()}
 
 

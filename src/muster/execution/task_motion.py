@@ -9,10 +9,10 @@ from functools import cached_property
 from itertools import pairwise
 
 from muster.mission.model import Point, Robot, Task
-from muster.motion.actions import Doing, Impossible, duration_of
+from muster.motion.actions import Impossible, TaskMotion, duration_of
 from muster.motion.port import Place, Waypoint
 
-MotionPlanner = Callable[[Task, Robot], Doing | Impossible]
+MotionPlanner = Callable[[Task, Robot], TaskMotion | Impossible]
 """What a task makes a robot do, or why the robot cannot do it."""
 
 Way = Callable[[Robot, Place, Place], Sequence[Place] | None]

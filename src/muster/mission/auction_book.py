@@ -61,19 +61,19 @@ class Book:
 
     `awards` holds the tasks of the plan, in the order in which they were won for good. `messages` is None where nothing
     is sent. `done_twice` lists, for each task that several robots have begun, these robots; only robots that agree
-    without a centre do that. `recite` tells every bid of the auction in order; None in a book that was read from a plan
-    file.
+    without a centre do that. `for_each_bid` calls a function with every bid of the auction in order; it is None in a
+    book that was read from a plan file.
     """
 
     rounds: int
     messages: int | None = None
     awards: tuple[Award, ...]
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    recite: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
+    for_each_bid: Callable[[TakeBid], None] | None = field(default=None, compare=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: as in a plan file, the awards and not every bid."""
-        return {**self.__dict__, "recite": None}
+        return {**self.__dict__, "for_each_bid": None}
 
     @property
     def central(self) -> bool:
@@ -93,19 +93,21 @@ class Book:
 
     def save(self, path: str | Path) -> None:
         """Write every bid as CSV, a line each, with the columns COLUMNS."""
-        recite = self._every_bid()
+        for_each_bid = self._every_bid()
         try:
             with Path(path).open("w", encoding="utf-8", newline="") as file:
                 writer = csv.writer(file, lineterminator="\n")
                 writer.writerow(COLUMNS)
-                recite(lambda b: writer.writerow((b.round, b.task, b.robot, b.bid, b.winner or "", _text(b.price))))
+                for_each_bid(
+                    lambda b: writer.writerow((b.round, b.task, b.robot, b.bid, b.winner or "", _text(b.price)))
+                )
         except OSError as error:
             raise OSError(error.errno, error.strerror, str(path)) from None
 
     def _every_bid(self) -> Callable[[TakeBid], None]:
-        if self.recite is None:
+        if self.for_each_bid is None:
             raise MusterError("book: read from a plan file; expected that of a plan just made, which holds every bid")
-        return self.recite
+        return self.for_each_bid
 
 
 def _text(price: float | None) -> str:

@@ -93,7 +93,7 @@ class World:
     _made: dict[object, object] = field(default_factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: the map, and nothing of what can be made again."""
+        """What is pickled: the map; spaces are made again."""
         return {**self.__dict__, "_made": {}}
 
     @classmethod

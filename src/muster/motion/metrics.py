@@ -1,4 +1,4 @@
-"""How good a motion was: length, error, risk, distance of robots, smoothness, time ([market-paper], section 4.2)."""
+"""Quality measures of a motion: length, error, risk, distance, smoothness, time ([market-paper], section 4.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the search for a way answers: a path, or why there is none. No path is a value, not an error."""
+"""The result of a path search: a path, or the reason why there is none. No path is a value, not an error."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from muster.mission.errors import MissionError
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, Path, shown
-from muster.motion.actions import Doing, plan
+from muster.motion.actions import TaskMotion, plan
 from muster.motion.free_space import PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.map_world import Area, Body, World, body_of
@@ -103,7 +103,7 @@ def _places_of_robot(k: int, robot: Robot) -> Iterator[tuple[Path, Point]]:
 
 
 def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Point, Body], None]:
-    """Where robots have to be for a task, those of an action by robot, each once and in order."""
+    """The places that robots visit for a task, those of an action by robot, each once and in order."""
     allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
     if task.action is None or not task.action.has_geometry:
         bodies = dict.fromkeys(map(body_of, allowed))
@@ -111,7 +111,7 @@ def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Po
     own = {task.entry: ("entry",), task.exit: ("exit",), task.action.pickup: ("action", "pickup")}
     own[task.position] = ("position",)
     doings = [(body_of(robot), plan(task, robot)) for robot in allowed]
-    passed = [(body, point) for body, doing in doings if isinstance(doing, Doing) for point in doing.points]
+    passed = [(body, point) for body, doing in doings if isinstance(doing, TaskMotion) for point in doing.points]
     return dict.fromkeys((("tasks", k, *own.get(point, ("action",))), point, body) for body, point in passed)
 
 

@@ -33,7 +33,7 @@ from muster.negotiation.plain_values import (
     rows,
 )
 
-PROTOCOL = 2
+PROTOCOL = 3
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 

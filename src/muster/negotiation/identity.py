@@ -22,7 +22,8 @@ class Identity:
     superseded
         whether one of them is later. A superseded process sends nothing and owns nothing.
     may_renumber
-        whether this process may still take a higher incarnation, once, when it hears of a later one.
+        whether this process may take a higher incarnation when it hears of a later one: once before others have
+        accepted it, and whenever the others tell that the later one is silent.
     """
 
     robot: str

@@ -70,7 +70,7 @@ class MemoryNetwork:
         self._dead_links: Collection[tuple[str, str]] = ()
         self._order = itertools.count()
         self._next_wake: dict[str, float] = {}
-        self._queue: list[tuple[float, int, list[str], Message | None]] = []  # what comes, to whom; None: time to tick
+        self._queue: list[tuple[float, int, list[str], Message | None]] = []  # arrivals and receivers; None: a tick
         self.incarnations: Counter[str] = Counter()  # the highest of each robot
         self._later: list[tuple[float, int, Callable[[], None]]] = []
 

@@ -185,7 +185,7 @@ class Participant:
         )
         self.epoch = Epoch(own, self.rules, self.valuer, refused)
         self._restart_heard = work.epoch_due = False
-        work.unsent.clear()  # the declaration tells them
+        work.unsent.clear()  # the declaration contains them
         self._peer_progress.enter()
         self._stalled.enter(self.stage, now)
         self.counts.news += 1
@@ -200,6 +200,8 @@ class Participant:
             return False
         if self.members.hear_from(message, now):
             self._note_restart(message.sender)
+        if message.heartbeats and message.heartbeats[0].robot == self.robot:  # of `_correct`: no rival lives
+            self._identity.may_renumber = True
         for heartbeat in message.heartbeats:
             self._hear_of(heartbeat, now)
         for said in message.declarations:
@@ -215,11 +217,14 @@ class Participant:
     def _correct(self, message: Message, now: float) -> list[Outgoing]:
         """Tell a sender with an outdated incarnation which incarnation is known.
 
-        It may have started without memory after its clock was set back. It then takes a higher incarnation.
+        It may have started without memory after its clock was set back. It then takes a higher incarnation. While the
+        known incarnation is heard, another process has the id, and nobody is told.
         """
         last = self.members.last_heartbeat(message.sender)
-        is_past = last is not None and last.incarnation > message.incarnation
-        if last is None or not (is_past and message.heartbeats and self._repairs.may_answer(message, now)):
+        if last is None or last.incarnation <= message.incarnation or not message.heartbeats:
+            return []
+        is_silent = self.members.silent_s(message.sender, now) >= self.timeouts.suspect_s / 2
+        if not is_silent or not self._repairs.may_answer(message, now):
             return []
         self.counts.repairs += 1
         return [Outgoing(self._message(None, heartbeats=(last,)), message.sender)]
@@ -271,7 +276,7 @@ class Participant:
         self._stalled.reach(self.stage, now)
         if self.stage.ended and self._peer_progress.end(self.stage):
             self.members.reset_exclusions(self.epoch.own.members)
-            self._due_s = min(self._due_s, now)  # tell it at once
+            self._due_s = min(self._due_s, now)  # report it at once
         self.counts.news += len(published)
         return [Outgoing(self._message(now, bids=(bids,), **self._last_sale())) for bids in published]
 

@@ -1,4 +1,4 @@
-"""How far the other members are: which of them have found this robot's base, and which have ended with it."""
+"""The progress of the other members: which of them have found this robot's base, and which have ended with it."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class Repairs:
 
     def answer(self, message: Message, epoch: Epoch, known: Knowledge, now: float) -> dict[str, Any] | None:
         """The fields of a message that answers a heartbeat; None: no answer."""
-        if not message.heartbeats:  # who has news is not waiting; if it is, its next heartbeat tells so
+        if not message.heartbeats:  # a sender of news does not wait, or its next heartbeat says so
             return None
         what = self._lacking(message, epoch)
         if message.known != known.digest and known.facts and self._helps(message):

@@ -38,7 +38,7 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     """
     auctions = view.auctions
 
-    def recite(take: TakeBid) -> None:
+    def for_each_bid(take: TakeBid) -> None:
         def tell(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
             for bid in bids_of_round(problem, auctioneer, sale, members):
                 take(bid)
@@ -48,7 +48,11 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     whole = all(len(held.members) == len(problem.robots) for held in auctions)
     awards = tuple(_awards(problem, terms, auctions, view.claims))
     return Book(
-        rounds=view.rounds, messages=None if whole else view.sent, awards=awards, done_twice=view.twice, recite=recite
+        rounds=view.rounds,
+        messages=None if whole else view.sent,
+        awards=awards,
+        done_twice=view.twice,
+        for_each_bid=for_each_bid,
     )
 
 

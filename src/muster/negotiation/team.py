@@ -99,7 +99,7 @@ class Team:
         if kind is not None:
             self._kill_all()
         for pipe in (*self._pipes.values(), *self._spare_pipes.values(), self._factory_pipe):
-            pipe.close()  # who has not ended yet hears that
+            pipe.close()  # ends processes that still run
         try:
             self._factory.wait(_ENDING_S)
         except subprocess.TimeoutExpired:
@@ -218,7 +218,7 @@ class Team:
         try:
             report = self._pipes[robot].recv()
         except (EOFError, OSError):
-            self._pipes.pop(robot).close()  # why, the nursery tells
+            self._pipes.pop(robot).close()  # the factory reports the reason
             return
         if isinstance(report, Ready):
             self._ready.add(robot)
@@ -236,7 +236,7 @@ class Team:
                 self.kill(robot)
 
     def _note_end(self, robot: str, why: str) -> None:
-        self._take_reports(robot)  # its last words may tell more than its end
+        self._take_reports(robot)  # its last reports may contain more than the exit code
         self.ended[robot] = why
         pipe = self._pipes.pop(robot, None)
         if pipe is not None:

@@ -30,7 +30,7 @@ _BUFFER = 4 * 1024 * 1024  # for bursts while the robot thinks; the machine may 
 _AT_ONCE = 4096
 
 _TO_ALL = bytes(4)
-_FOR = len(_TO_ALL)  # bytes at the front of what goes to a group: for whom it is
+_FOR = len(_TO_ALL)  # bytes at the front of a datagram to a group: its addressee
 
 _Sockaddr = tuple[Any, ...]
 
@@ -176,7 +176,7 @@ class UdpTransport:
                 self.bytes_sent += len(data)
 
     def receive(self, wait_s: float) -> list[bytes]:
-        """All that has come, at most some thousand at once."""
+        """All datagrams that have arrived, at most some thousand at once."""
         came: list[bytes] = []
         if self._arrivals.poll(1000.0 * max(0.0, wait_s)):
             while len(came) < _AT_ONCE:
@@ -215,7 +215,7 @@ def _cannot_listen(bind: Address, error: OSError) -> NetworkError:
 
 
 def _dropped(family: int, inode: int) -> int:
-    """How many datagrams the machine has thrown away before a socket's robot read them; 0 where it does not tell."""
+    """The number of datagrams that the operating system has dropped before they were read; 0 where that is unknown."""
     try:
         table = Path("/proc/net/udp6" if family == socket.AF_INET6 else "/proc/net/udp").read_text(encoding="ascii")
     except OSError:

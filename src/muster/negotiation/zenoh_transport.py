@@ -96,7 +96,7 @@ class ZenohTransport:
         self.bytes_sent += len(data)
 
     def receive(self, wait_s: float) -> list[bytes]:
-        """All that has come."""
+        """All messages that have arrived."""
         came: list[bytes] = []
         with suppress(Empty):
             came.append(self._came.get(timeout=max(0.0, wait_s)))

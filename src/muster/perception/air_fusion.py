@@ -9,14 +9,19 @@ odometry that is not flown. As in `ground_fusion` the velocity is the one that o
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
 from muster.perception.errors import AirErrors
-from muster.perception.kalman import Correction, Estimate, Floats, corrected, extended_prediction, predicted
+from muster.perception.kalman import (
+    Correction,
+    Estimate,
+    Floats,
+    corrected,
+    extended_prediction,
+    predicted,
+    require_seconds,
+)
 
 _NUMBERS = 7
 POSITION, VELOCITY, SLIP = slice(0, 3), slice(3, 6), 6
@@ -39,7 +44,7 @@ def moved(
     ParameterError
         if `dt` is not above 0, or for another shape.
     """
-    _require(dt)
+    require_seconds(dt)
     effect = np.vstack([dt * dt / 2 * np.eye(3), dt * np.eye(3), np.zeros((1, 3))])
     process = errors.acceleration_mps2**2 * effect @ effect.T
     push = effect @ np.asarray(acceleration_mps2, dtype=np.float64)
@@ -70,7 +75,7 @@ def moved_as_counted(
     ParameterError
         if `dt` is not above 0, or for another shape.
     """
-    _require(dt)
+    require_seconds(dt)
     change = np.diag([0.0] * 3 + [(errors.acceleration_mps2 * dt) ** 2] * 3 + [0.0])
     before = predicted(estimate, np.eye(_NUMBERS), change, dt * _VELOCITY.T, acceleration_mps2)
     before = by_odometry(before, velocity_mps, errors).estimate
@@ -94,8 +99,3 @@ def _flown(state: Floats, dt: float) -> tuple[Floats, Floats]:
     derivative[POSITION, VELOCITY] = dt * kept * np.eye(3)
     derivative[POSITION, SLIP] = -dt * state[VELOCITY]
     return after, derivative
-
-
-def _require(dt: float) -> None:
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")

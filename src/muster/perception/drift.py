@@ -20,7 +20,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.perception import air_fusion, ground_fusion
 from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.kalman import Estimate, Floats
+from muster.perception.kalman import Estimate, Floats, require_seconds
 
 START = (-2.18, 0.04, 0.118)
 SETPOINTS = ((-1.0, -1.0, 0.75), (1.0, -1.5, 1.25), (2.0, 0.0, 0.75), (1.0, 1.5, 1.25), (-1.0, 1.0, 0.75))
@@ -204,5 +204,4 @@ def _steps(every_s: float, dt: float) -> int:
 def _require(places: Floats, dt: float) -> None:
     if places.ndim != 2 or places.shape[1] != 3 or len(places) < 2:
         raise ParameterError(f"places: shape {places.shape}; expected (t, 3), t >= 2")
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    require_seconds(dt)

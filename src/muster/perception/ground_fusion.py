@@ -27,6 +27,7 @@ from muster.perception.kalman import (
     extended_correction,
     extended_prediction,
     predicted,
+    require_seconds,
 )
 
 X, Y, HEADING, SPEED, YAW_RATE, BIAS, SLIP = range(7)
@@ -49,8 +50,7 @@ def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2
     ParameterError
         if `dt` is not above 0.
     """
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    require_seconds(dt)
     heading = estimate.mean[HEADING]
     pushes = np.zeros((_NUMBERS, 2))  # of an acceleration ahead, of one of the turn
     pushes[[X, Y, SPEED], 0] = dt * dt / 2 * math.cos(heading), dt * dt / 2 * math.sin(heading), dt
@@ -85,8 +85,7 @@ def moved_as_counted(
     ParameterError
         if `dt` is not above 0.
     """
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    require_seconds(dt)
     change = np.zeros((_NUMBERS, _NUMBERS))
     change[SPEED, SPEED] = (errors.acceleration_mps2 * dt) ** 2
     change[YAW_RATE, YAW_RATE] = (errors.yaw_acceleration_radps2 * dt) ** 2

@@ -6,14 +6,11 @@ The state is (2,): heading in radians of the map frame, kept in [-pi, pi), and b
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.perception.errors import AirErrors
-from muster.perception.kalman import Correction, Estimate, corrected, predicted
+from muster.perception.kalman import Correction, Estimate, corrected, predicted, require_seconds
 
 HEADING, BIAS = range(2)
 
@@ -31,8 +28,7 @@ def turned(estimate: Estimate, dt: float, yaw_rate_radps: float, errors: AirErro
     ParameterError
         if `dt` is not above 0.
     """
-    if not 0 < dt < math.inf:
-        raise ParameterError(f"dt: {dt}; expected seconds above 0")
+    require_seconds(dt)
     transition = np.array([[1.0, -dt], [0.0, 1.0]])
     process = np.diag([(errors.gyro_radps * dt) ** 2, errors.gyro_walk**2 * dt])
     return _wrapped(predicted(estimate, transition, process, [[dt], [0.0]], [yaw_rate_radps]))

@@ -7,6 +7,7 @@ loses symmetry by rounding; Joseph's form, which is the same for this gain and n
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -191,6 +192,12 @@ def extended_correction(
 def gated(estimate: Estimate, correction: Correction) -> Estimate:
     """The corrected estimate; the estimate as it was where the innovation is larger than chance makes it (`GATES`)."""
     return correction.estimate if correction.nis <= GATES[len(correction.innovation)] else estimate
+
+
+def require_seconds(dt: float) -> None:
+    """Raise ParameterError unless a step takes a finite time above 0."""
+    if not 0 < dt < math.inf:
+        raise ParameterError(f"dt: {dt}; expected seconds above 0")
 
 
 def require_covariance(name: str, value: npt.ArrayLike, size: int) -> Floats:

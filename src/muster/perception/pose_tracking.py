@@ -7,8 +7,8 @@ with the fused pose, so that execution needs no knowledge of filters.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
@@ -21,25 +21,28 @@ from muster.perception.kalman import Correction, Estimate
 _SAME_S = 1e-6
 
 
-class Tracker(Protocol):
+class Tracker(ABC):
     """The filter of one robot; reports come in order of their time."""
 
+    _estimate: Estimate | None = None
+    _fix: Correction | None = None
+
+    @abstractmethod
     def fused(self, said: Telemetry) -> Telemetry:
         """The report with the filter's pose. A report that is no newer than the last does not change the filter."""
-        ...
 
     @property
     def estimate(self) -> Estimate | None:
         """The filter's state after the last report; None before the first."""
-        ...
+        return self._estimate
 
     @property
     def fix(self) -> Correction | None:
         """The correction by the last report's position; None before the second report."""
-        ...
+        return self._fix
 
 
-class GroundTracker:
+class GroundTracker(Tracker):
     """A robot that faces its way. Its speed comes from `odometry_m`, its position and heading from fixes.
 
     A gyro reading is used if it spans exactly the time between two reports.
@@ -54,17 +57,7 @@ class GroundTracker:
         _require("position_m", errors.position_m)
         _require("heading_rad", errors.heading_rad)
         self._errors = errors
-        self._estimate: Estimate | None = None
-        self._fix: Correction | None = None
         self._last: Telemetry | None = None
-
-    @property
-    def estimate(self) -> Estimate | None:
-        return self._estimate
-
-    @property
-    def fix(self) -> Correction | None:
-        return self._fix
 
     def fused(self, said: Telemetry) -> Telemetry:
         if self._estimate is None or self._last is None:
@@ -100,7 +93,7 @@ class GroundTracker:
         self._height_variance = (1 - gain) * climbed
 
 
-class AirTracker:
+class AirTracker(Tracker):
     """A robot that moves in any direction. Its velocity is used as odometry.
 
     The inertial unit's reading is used if it spans exactly the time between two reports; without one the heading is as
@@ -117,18 +110,8 @@ class AirTracker:
         _require("heading_rad", errors.heading_rad)
         _require("velocity_mps", errors.velocity_mps)
         self._errors = errors
-        self._estimate: Estimate | None = None
-        self._fix: Correction | None = None
         self._facing: Estimate | None = None
         self._time_s = -math.inf
-
-    @property
-    def estimate(self) -> Estimate | None:
-        return self._estimate
-
-    @property
-    def fix(self) -> Correction | None:
-        return self._fix
 
     def fused(self, said: Telemetry) -> Telemetry:
         errors = self._errors

@@ -1,4 +1,4 @@
-"""What a camera saw, with the tags that were detected drawn into it: for pictures and films."""
+"""Camera images with the detected tags drawn into them, for pictures and films."""
 
 from __future__ import annotations
 

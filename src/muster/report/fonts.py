@@ -20,7 +20,7 @@ NOTE = "#n: the n-th robot or task\nof the mission, whose id\nno installed font 
 
 
 class Names:
-    """How a picture writes the names of a mission. Where no font has an id, its number in the mission stands for it."""
+    """The names of a mission as a picture writes them. An id that no font can write is replaced by its number."""
 
     def __init__(self, mission: Mission) -> None:
         robots, tasks = [robot.id for robot in mission.robots], [task.id for task in mission.tasks]

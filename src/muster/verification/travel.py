@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from muster.mission.model import Mission, Point, Robot, Rules, Task
-from muster.motion.actions import Doing, Impossible, plan
+from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.verification.map_paths import MapPaths
 
 
@@ -26,12 +26,12 @@ def place_of_task(task: Task, robot: Robot | None = None) -> Place:
     """
     doing = None if robot is None else doing_at(robot, task)
     assert robot is not None or not _has_geometry(task)
-    if isinstance(doing, Doing):
+    if isinstance(doing, TaskMotion):
         return Place(task.id, entry=doing.entry, exit=doing.exit)
     return Place(task.id, entry=task.entry or task.position, exit=task.exit or task.position)
 
 
-def doing_at(robot: Robot, task: Task) -> Doing | Impossible | None:
+def doing_at(robot: Robot, task: Task) -> TaskMotion | Impossible | None:
     """Return how the robot does a task whose action has geometry; None for all other tasks, which anyone can do."""
     return plan(task, robot) if _has_geometry(task) else None
 
@@ -57,7 +57,7 @@ def _points(mission: Mission) -> list[Point]:
     for task in mission.tasks:
         points += [task.entry or task.position, task.exit or task.position]
         doings = (doing_at(robot, task) for robot in mission.robots)
-        points += [point for doing in doings if isinstance(doing, Doing) for point in doing.points]
+        points += [point for doing in doings if isinstance(doing, TaskMotion) for point in doing.points]
     return list(dict.fromkeys(points))
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from muster import Robot, Task
 from muster.mission.model import Action, Camera
-from muster.motion.actions import Doing, Impossible, plan
+from muster.motion.actions import Impossible, TaskMotion, plan
 
 ROVER = Robot(id="rover", position=(0, 0), speed_mps=2, efficiency=0.5)
 
@@ -148,7 +148,7 @@ def test_a_ground_robot_does_not_fly():
         "a ground robot cannot look from 2 m above the ground"
     )
     for action in (search, look):  # in the plane there are no heights
-        assert isinstance(plan(task(action=action), rover), Doing)
+        assert isinstance(plan(task(action=action), rover), TaskMotion)
 
 
 def test_a_task_is_done_when_all_way_points_are_passed():

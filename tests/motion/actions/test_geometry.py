@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from muster import Robot, Task
 from muster.mission.model import Action, Camera
-from muster.motion.actions import Doing, plan
+from muster.motion.actions import TaskMotion, plan
 
 numbers = st.floats(-50, 50)
 points = st.tuples(numbers, numbers, numbers)
@@ -33,7 +33,7 @@ def test_an_observer_looks_at_the_target_and_sees_the_width(target, width, headi
     )
     action = Action(name="stationary-observation", width_m=width, heading_deg=heading_deg)
     doing = plan(Task(id="t", position=target, action=action), robot)
-    assert isinstance(doing, Doing)
+    assert isinstance(doing, TaskMotion)
     (waypoint,) = doing.waypoints
     camera = np.array(waypoint.position) + from_body(waypoint.heading, mount)
 

@@ -20,7 +20,7 @@ Leg = tuple[Point, Point]
 
 
 @dataclass(frozen=True)
-class Doing:
+class TaskMotion:
     """How a robot does a task.
 
     Parameters
@@ -99,12 +99,14 @@ class TaskAction(Protocol):
         """What a mission says of it."""
         ...
 
-    def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion | Impossible:
         """How the robot does the task, whose action this is."""
         ...
 
 
-def along(task: Task, robot: Robot, points: Sequence[Point], headings: Sequence[float | None] | None = None) -> Doing:
+def along(
+    task: Task, robot: Robot, points: Sequence[Point], headings: Sequence[float | None] | None = None
+) -> TaskMotion:
     """Pass points in order, and wait in the last for what is left of the task's duration.
 
     Points have the mission's number of coordinates, or a height besides, which is dropped in the plane. `headings` are
@@ -119,10 +121,10 @@ def along(task: Task, robot: Robot, points: Sequence[Point], headings: Sequence[
     turns = headings or [None] * len(own)
     on_the_way = [Waypoint(_place(point), turn) for point, turn in zip(own[:-1], turns[:-1], strict=True)]
     last = Waypoint(_place(own[-1]), turns[-1], rest)
-    return Doing((*_passed(before), *on_the_way, last, *_passed(after)), dimensions)
+    return TaskMotion((*_passed(before), *on_the_way, last, *_passed(after)), dimensions)
 
 
-def staying(task: Task, robot: Robot) -> Doing:
+def staying(task: Task, robot: Robot) -> TaskMotion:
     """Arrive and leave where the mission says, and stay for as long as it takes, for what the mission types in.
 
     The robot stays at the task's position where it arrives or leaves there, else at the entry.
@@ -132,7 +134,7 @@ def staying(task: Task, robot: Robot) -> Doing:
     rest = _rest_s(task, robot, _length(points))
     stays = len(points) - 1 if task.exit is None else 0
     waypoints = [Waypoint(_place(point), hold_s=rest if k == stays else 0.0) for k, point in enumerate(points)]
-    return Doing(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost)
+    return TaskMotion(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost)
 
 
 def given(task: Task, *keys: str) -> tuple[Any, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from muster.mission.action_keys import DELIVERY, ActionKeys
 from muster.mission.model import Robot, Task
-from muster.motion.actions.action import Doing, along
+from muster.motion.actions.action import TaskMotion, along
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Delivery:
     name: str = "delivery"
     keys: ActionKeys = DELIVERY
 
-    def plan(self, task: Task, robot: Robot) -> Doing:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion:
         assert task.action is not None
         assert task.action.pickup is not None
         return along(task, robot, [task.action.pickup, task.position])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from muster.mission.action_keys import GO_TO_GOAL, ActionKeys
 from muster.mission.model import Robot, Task
-from muster.motion.actions.action import Doing, staying
+from muster.motion.actions.action import TaskMotion, staying
 
 
 @dataclass(frozen=True)
@@ -16,5 +16,5 @@ class GoToGoal:
     name: str = "go-to-goal"
     keys: ActionKeys = GO_TO_GOAL
 
-    def plan(self, task: Task, robot: Robot) -> Doing:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion:
         return staying(task, robot)

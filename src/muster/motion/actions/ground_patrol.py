@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from muster.mission.action_keys import GROUND_PATROL, ActionKeys
 from muster.mission.model import Robot, Task
-from muster.motion.actions.action import Doing, along, given
+from muster.motion.actions.action import TaskMotion, along, given
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class GroundPatrol:
     name: str = "ground-patrol"
     keys: ActionKeys = GROUND_PATROL
 
-    def plan(self, task: Task, robot: Robot) -> Doing:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion:
         (side,), (x, y, *z) = given(task, "side_m"), task.position
         half = side / 2
         corners = ((-half, -half), (-half, half), (half, half), (half, -half), (-half, -half))

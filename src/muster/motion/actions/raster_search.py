@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from muster.mission.action_keys import RASTER_SEARCH, ActionKeys
 from muster.mission.model import Robot, Task
-from muster.motion.actions.action import Doing, Impossible, along, given, raised
+from muster.motion.actions.action import Impossible, TaskMotion, along, given, raised
 
 _STRAIGHT_DOWN = 89.0
 """Degrees of tilt from which a camera sees as much behind as ahead."""
@@ -29,7 +29,7 @@ class RasterSearch:
     name: str = "raster-search"
     keys: ActionKeys = RASTER_SEARCH
 
-    def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion | Impossible:
         side, height, spacing = given(task, "side_m", "height_m", "spacing_m")
         if robot.kind == "ground" and len(task.position) == 3:
             return Impossible(f"a ground robot cannot search from {height:g} m above the ground")

@@ -8,7 +8,7 @@ from muster.mission.action_keys import ACTION_GROUP, ACTION_KEYS, keys_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot, Task
 from muster.mission.plugins import Registry
-from muster.motion.actions.action import Doing, Impossible, TaskAction
+from muster.motion.actions.action import Impossible, TaskAction, TaskMotion
 from muster.motion.actions.go_to_goal import GoToGoal
 
 _GO = GoToGoal()
@@ -51,6 +51,6 @@ def register(action: TaskAction) -> None:
     ACTIONS.add(action.name, action)
 
 
-def plan(task: Task, robot: Robot) -> Doing | Impossible:
+def plan(task: Task, robot: Robot) -> TaskMotion | Impossible:
     """How a robot does a task, or why it cannot; a task without an action is one to go to."""
     return (_GO if task.action is None else ACTIONS[task.action.name]).plan(task, robot)

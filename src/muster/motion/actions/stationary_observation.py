@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from muster.mission.action_keys import STATIONARY_OBSERVATION, ActionKeys
 from muster.mission.model import Camera, Robot, Task
-from muster.motion.actions.action import Doing, Impossible, along, given, raised
+from muster.motion.actions.action import Impossible, TaskMotion, along, given, raised
 
 _FARTHEST = 1e6
 """Widths: from farther away rounding leaves nothing of the angles."""
@@ -29,7 +29,7 @@ class StationaryObservation:
     name: str = "stationary-observation"
     keys: ActionKeys = STATIONARY_OBSERVATION
 
-    def plan(self, task: Task, robot: Robot) -> Doing | Impossible:
+    def plan(self, task: Task, robot: Robot) -> TaskMotion | Impossible:
         assert task.action is not None
         if robot.camera is None:
             return Impossible("it has no camera")

@@ -23,7 +23,7 @@ from muster.motion.avoidance.parameters import CommonParameters
 
 
 class Parameters(CommonParameters):
-    """Of HRVO: those that all methods have."""
+    """The parameters of HRVO, which are those of all methods."""
 
 
 @dataclass(frozen=True)

@@ -22,15 +22,15 @@ from muster.motion.avoidance.parameters import CommonParameters
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(CommonParameters):
-    """Of ORCA; the defaults are those of the authors' circle of 250 robots. Further ones are those of all methods.
+    """Parameters of ORCA, by default those of the authors' circle of 250 robots. See `CommonParameters` for the rest.
 
     Parameters
     ----------
     horizon_s
         tau: for how long a velocity keeps robots apart.
     keep_apart
-        whether no robot may use more than half of the gap to another in one step, whatever else: then robots that do
-        not overlap never will.
+        whether no robot may use more than half of the gap to another in one step, in any case: then robots that do not
+        overlap never will.
 
     Raises
     ------

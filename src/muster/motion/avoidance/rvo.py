@@ -40,7 +40,7 @@ from muster.motion.avoidance.parameters import CommonParameters
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(CommonParameters):
-    """Of RVO; n is the thesis'. Its robots consider all others. Further parameters are those of all methods.
+    """The parameters of RVO; n is the thesis'. Its robots consider all others. See `CommonParameters` for the rest.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the planners on a grid share: the cells, and the way from a point to their centres."""
+"""Common parts of the planners on a grid: the cells, and the path from a point to their centres."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every planner of paths is."""
+"""The interface of path planners."""
 
 from __future__ import annotations
 

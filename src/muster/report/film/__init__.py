@@ -1,8 +1,8 @@
 """Films and stills of the physics world. Importing it without the extra `physics`: MissingExtraError."""
 
-from muster.simulation.physics.optional_parts import require_physics_extra
+from muster.perception.optional_parts import require_physics
 
-require_physics_extra()
+require_physics("the physics world", "mujoco")
 
 from muster.report.film.files import check_film, check_still  # noqa: E402
 from muster.report.film.film import FilmSummary, speed_for, write_film  # noqa: E402 (OpenCV comes with it)

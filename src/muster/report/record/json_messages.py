@@ -74,7 +74,7 @@ def state_text(now: float, names: Iterable[str], rows: Iterable[list[float]]) ->
 
 
 def place_texts(rows: Iterable[list[float]]) -> list[tuple[str, str]]:
-    """Of each row x, y, z, heading, ... the place and the turn as JSON, for `poses_text` and `transforms_text`."""
+    """Position and orientation of each row x, y, z, heading, ... as JSON, for `poses_text` and `transforms_text`."""
     return [(_xyz(row), _turn(row[3])) for row in rows]
 
 

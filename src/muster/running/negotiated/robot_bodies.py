@@ -43,11 +43,11 @@ class RobotBodies:
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
         self._work_reports: dict[str, WorkReport] = {}
-        self._events_sent: dict[str, int] = {}  # how often a robot was told that something happened
+        self._events_sent: dict[str, int] = {}  # the number of events sent to each robot
         self._cut_off: set[str] = set()
         self._due_s = world.time_s
         self._unsent: list[Event] = []  # of what concerns tasks, while no robot can be reached
-        self._sent_to: dict[str, list[Event]] = {}  # the same by the robot that was told
+        self._sent_to: dict[str, list[Event]] = {}  # the same by the robot that received them
         self._last_move: dict[str, Event] = {}  # of each task
         self._orders: dict[str, int] = {}  # that bodies were given
         self._agreed_at: Stage | None = None  # of the auction, when its plan was taken in last
@@ -103,7 +103,7 @@ class RobotBodies:
             self._take_event(self._future_events.pop(0))
         self._check_cameras()
         for robot in self._sent_to.keys() & self.team.ended.keys():
-            self._unsent += filter(self._is_valid, self._sent_to.pop(robot))  # nobody else may know
+            self._unsent += filter(self._is_valid, self._sent_to.pop(robot))  # other robots may not know of it
         while self._unsent and self._connected:
             self._send(self._unsent.pop(0), self._connected[0])
         for robot in self.team.living:
@@ -111,7 +111,7 @@ class RobotBodies:
             assert said is not None
             self.team.send(robot, BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
             self._log.see(robot, said, self.time_s)
-        self.team.poll(0.0)  # also if the world took all the time: words that nobody hears fill the pipes
+        self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.poll(left_s)
         self._take_agreement()
@@ -145,7 +145,7 @@ class RobotBodies:
         if stage == self._agreed_at:
             return
         for view in self.team.views(connected[:1]).values():
-            if view.stage != stage:  # it has gone on meanwhile, and owns by now what nobody has agreed on yet
+            if view.stage != stage:  # the robot has gone on meanwhile, and there is no agreement on its route yet
                 return
             self._agreed_at = stage
             self._log.agreed(self._method.plan(self._setup.problem, self._setup.terms, view, None), self.time_s)
@@ -156,7 +156,7 @@ class RobotBodies:
             self._log.tell(self.time_s, "without_effect", plain(event))
             return
         if event.robot_fails is not None:
-            self._fail(event.robot_fails)  # first, as its last words are of what was before
+            self._fail(event.robot_fails)  # first, as its last reports precede the event
         if not self._log.take_event(event, self.time_s) or event.robot_fails is not None:
             return
         if event.robot_silent is not None:
@@ -169,7 +169,7 @@ class RobotBodies:
                 self.camera_search.join(event.robot_joins)
             self.team.start(event.robot_joins.id)
         elif event.delay_task is not None:
-            for robot in self.team.living:  # who is at work notices by itself
+            for robot in self.team.living:  # the robot at work notices it by itself
                 self._send(event, robot)
         else:
             self._unsent.append(event)
@@ -185,7 +185,7 @@ class RobotBodies:
         if event.robot_returns is not None:
             robot = event.robot_returns
             if robot in self.team.ended:
-                return self.team.may_start(robot)  # not if somebody else has killed it
+                return self.team.may_start(robot)  # not if it was killed from outside
             return robot in self._cut_off or self._log.is_out(robot)
         return True
 

@@ -107,7 +107,7 @@ class RobotControl:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
         try:
             if event.new_task is not None:
-                if not self._is_known(event.new_task):  # else it is said once more
+                if not self._is_known(event.new_task):  # else it was announced before
                     self._negotiator.announce(event.new_task)
             elif event.cancel_task is not None:
                 self._negotiator.cancel(event.cancel_task)
@@ -168,7 +168,7 @@ class RobotControl:
         if not rest.crew:
             for task in begun - once:
                 self._negotiator.release(task)
-            for task in begun & once:  # nobody else may do it, nor what waits for it
+            for task in begun & once:  # no other robot may do it, nor tasks that wait for it
                 self._negotiator.cancel(task)
             self._negotiator.withdraw()
             return _revision({}, {})

@@ -27,6 +27,9 @@ LONGEST_S = 120.0
 LOOK_S = 0.1
 """The interval at which idle robots try to begin a task."""
 
+CLOCK_STEP = 1000
+"""Incarnations come from clocks, so no two starts of a robot have the same one."""
+
 
 @dataclass
 class Report:
@@ -168,7 +171,8 @@ class Trial:
             self._memory.pop(robot, None)
         before = self.network.incarnations[robot]
         clock_set_back = forgets and before > 0 and self._clocks.random() < 0.5
-        self.network.start([robot], self._clocks.randrange(before) if clock_set_back else None)
+        step = -self._clocks.randrange(2, CLOCK_STEP) if clock_set_back else CLOCK_STEP
+        self.network.start([robot], before + step)
         self.report.counts["starts without memory after a clock was set back"] += clock_set_back
 
     def _order(self, node: Negotiator, incident: Incident) -> None:

@@ -1,12 +1,12 @@
-"""The web page of mission control: views of what the services can do, by NiceGUI. Nothing of it comes from elsewhere.
+"""The web pages of mission control, built with NiceGUI. All files are served by this server.
 
 | part | what it does |
 |---|---|
 | `frame` | what every view has: header, navigation, keyboard help, theme |
 | `visitor` | the user of a page, and the services that it shows |
-| `sockets` | whose page it is: nobody presses the buttons of another's |
-| `notices` | errors of the services, and news, for a person |
-| `buttons` | buttons that do something once, however often they are clicked |
+| `sockets` | checks that messages for a page come from its user |
+| `notices` | errors and news for the user |
+| `buttons` | buttons that act once, however often they are clicked |
 | `map` | the map, an element with its own scripts |
 """
 
@@ -43,7 +43,7 @@ def mount(
     services
         gives the services, when the application has started.
     user_of
-        says who asks; without it `security.user_of`.
+        gives the user of a request; by default `security.user_of`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Buttons that do something once, however often they are clicked."""
+"""Buttons that act once, however often they are clicked."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Awaitable, Callable
 from nicegui import ui
 from nicegui.events import ClickEventArguments
 
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 
 
 def once(act: Callable[[], Awaitable[bool | None]]) -> Callable[[ClickEventArguments], Awaitable[None]]:
-    """What a button does: `act`, and nothing more from then on, unless that fails or gives back False.
+    """A click handler that runs `act` once; again only if `act` failed or returned False.
 
-    So a double click asks for one thing. The button is disabled here, as `act` begins only after this event, and the
-    second click may be heard before that; NiceGUI ignores clicks on what is disabled, whatever a browser shows.
+    The button is disabled at once: `act` begins after this event, and a second click may arrive before. NiceGUI ignores
+    clicks on disabled buttons.
     """
 
     def clicked(event: ClickEventArguments) -> Awaitable[None]:
@@ -25,7 +25,7 @@ def once(act: Callable[[], Awaitable[bool | None]]) -> Callable[[ClickEventArgum
     async def _done(button: ui.button) -> None:
         done: bool | None = False
         try:
-            with button.client, told():  # what is around the button may be gone when it is done
+            with button.client, errors_shown():  # what is around the button may be gone when it is done
                 done = await act()
         finally:
             if done is False and not button.is_deleted:

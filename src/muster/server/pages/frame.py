@@ -1,4 +1,4 @@
-"""What every view has: header with views, who one is, keyboard help, skip link; and the pages' own style."""
+"""The frame of every view: header with navigation and user, keyboard help, skip link, and style."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Errors of the services, and news, for a person: never a traceback, and never silence."""
+"""Errors of the services and news as notices; the user never sees a traceback."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _log = logging.getLogger("muster.server.pages")
 
 
 @contextmanager
-def told() -> Iterator[None]:
-    """What goes wrong within becomes a notice, if somebody still looks at the page; the work within is then left."""
+def errors_shown() -> Iterator[None]:
+    """Show an error of the block as a notice, if the page is still open."""
     client = ui.context.client
     try:
         yield
@@ -40,12 +40,12 @@ def words_of(error: MusterError) -> str:
 
 
 def say(text: str) -> None:
-    """Tell a piece of news for a few seconds."""
+    """Show news for a few seconds."""
     ui.notify(text, position="bottom-left", timeout=4000, classes="notice", group=False, attrs={"role": "status"})
 
 
 def warn(text: str) -> None:
-    """Tell what went wrong, in the place of what went wrong before; it stays for a while, or until it is closed."""
+    """Show an error in place of the last one; it stays for a while, or until it is closed."""
     client = ui.context.client
     before = _warnings.pop(client, None)
     if before is not None and not before.is_deleted:
@@ -63,7 +63,7 @@ def warn(text: str) -> None:
 
 
 def offer(text: str, label: str, answer: Callable[[], object], seconds: float = 12) -> None:
-    """Tell a piece of news with something that may be done about it: an undo."""
+    """Show news with a button, such as undo."""
     with ui.context.client.content:
         bar = ui.element("div").classes("offer").props('role="status"')
         with bar:

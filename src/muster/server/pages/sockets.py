@@ -1,8 +1,7 @@
-"""Whose page it is: what comes over a socket or as an upload counts only from whoever opened the page.
+"""Checks that messages and uploads for a page come from the user who opened it.
 
-NiceGUI knows a page by its id alone: whoever has that id could press its buttons, and a browser whose login has changed
-connects its old pages again. So the asker of the socket, or of the upload, must be the one of the page, who must still
-hold the same role.
+NiceGUI identifies a page by its id only: anybody with the id could press its buttons, and a browser whose login has
+changed reconnects its old pages. So the user of the socket or upload must be that of the page, with the same role.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ _OF_A_PAGE = re.compile(r"/_nicegui/client/([^/]+)/")
 
 @cache
 def guard_sockets() -> None:
-    """Put the question before everything that NiceGUI hears over its socket; once a process.
+    """Check every message of NiceGUI's socket; installed once per process.
 
-    What a browser would write into the server's log is not heard at all: it could fill it.
+    Log messages of browsers are ignored, as they could fill the server's log.
     """
     theirs = dict(core.sio.handlers["/"])
 
@@ -77,7 +76,7 @@ class OwnUploads:
 
 
 def is_own(page: str, scope: Scope) -> bool:
-    """Whether the page is there, and was opened by whoever asks now, in the role that they have now."""
+    """Whether the page is open, and its user and role are those of the request."""
     client = Client.instances.get(page)
     if client is None:
         return False

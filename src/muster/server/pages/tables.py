@@ -1,4 +1,4 @@
-"""Plain tables: read at a glance, cheap also where they are long."""
+"""Plain HTML tables, which are cheap also if they are long."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def table(
 def table_text(
     heads: Sequence[str], rows: Sequence[Sequence[Cell]], *, label: str = "", numbers: Collection[int] = ()
 ) -> str:
-    """The table as HTML; all words are escaped."""
+    """The table as HTML, with all texts escaped."""
     look = [' class="number"' if k in numbers else "" for k in range(len(heads))]
     head = "".join(f'<th scope="col"{look[k]}>{escape(words)}</th>' for k, words in enumerate(heads))
     body = "".join(

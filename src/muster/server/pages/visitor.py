@@ -17,23 +17,20 @@ if TYPE_CHECKING:
     from muster.server.services.services import Services
 
 PATIENCE_S = 20.0
-"""For each page: NiceGUI answers with an error page where one is not built, or as far as `is_seen`, within this.
-
-By its own three seconds it did so wherever a busy machine let a page wait for a thread of the database.
-"""
+"""Seconds for building a page, up to `is_seen`; NiceGUI's default of three is too short on a busy machine."""
 _KEY = "muster.pages"
 
 
 @dataclass(frozen=True)
 class PageContext:
-    """What pages need of the server that they are mounted in."""
+    """What pages need from their server."""
 
     services: Callable[[], Services]
     user_of: Callable[[HTTPConnection], User]
 
 
 class WithServices:
-    """Middleware: requests know the services, so that pages, which NiceGUI keeps once a process, ask the right one."""
+    """Middleware that passes the services with each request: NiceGUI has its pages once per process."""
 
     def __init__(self, app: ASGIApp, context: PageContext) -> None:
         self._app = app
@@ -55,7 +52,7 @@ def the_user() -> User:
 
 
 def is_logged_in() -> bool:
-    """Whether the user came by the page's own login, and may leave by it."""
+    """Whether the user logged in on the login page, and can log out."""
     caller = ui.context.client.request.scope.get(SCOPE_KEY)
     return isinstance(caller, Caller) and caller.session is not None
 
@@ -72,15 +69,14 @@ def may_command() -> bool:
 
 
 def on_the_wall() -> bool:
-    """Whether the page is shown on a wall (`?wall=1`): large, and without anything to press."""
+    """Whether the page is for a wall screen (`?wall=1`): large, and without controls."""
     return ui.context.client.request.query_params.get("wall", "") not in ("", "0")
 
 
 async def is_seen() -> bool:
-    """Wait until the page as it is so far is seen; False: by nobody, so that nothing more is to be built.
+    """Wait until the browser shows the page so far; False if it has left.
 
-    A page that is not built within PATIENCE_S is an error page; what takes its time, as a database that does not
-    answer or workers that are busy, comes after this.
+    NiceGUI shows an error page if a page is not built within PATIENCE_S, so slow work comes after this.
     """
     client = ui.context.client
     await client.connected()

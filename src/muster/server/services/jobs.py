@@ -7,6 +7,7 @@ import logging
 from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from typing import Any
 
 from muster.exchange.mission_control import (
@@ -45,8 +46,10 @@ class Jobs:
         self._settings = settings
         self._missions = Missions(store, pool)
         self._actions = Actions(store, refused)
-        self._queue: asyncio.Queue[int] = asyncio.Queue()
-        self._queued: set[int] = set()
+        self._arrivals = asyncio.Semaphore(0)  # one release per queued job
+        self._queued: dict[int, str] = {}  # the authors of queued jobs, in order
+        self._last_turn: dict[str, int] = {}
+        self._numbers = count(1)
         self._newest: dict[int, Job] = {}  # states that are newer than the database's
         self._at_work: dict[int, asyncio.Task[None]] = {}
         self._stop_requests: dict[int, StopRequest] = {}  # of running jobs
@@ -58,7 +61,7 @@ class Jobs:
     async def start(self) -> None:
         """Queue the unfinished jobs of the database in order."""
         for job in await asyncio.to_thread(self._store.jobs.requeue):
-            self._enqueue(job.id)
+            self._enqueue(job)
         self._hands = [asyncio.create_task(self._work()) for _ in range(self._settings.workers)]
 
     async def close(self) -> None:
@@ -130,7 +133,7 @@ class Jobs:
                     await asyncio.to_thread(self._store.plans.get, options[name])
             add = partial(self._store.jobs.add, "plan", mission, found.version, options, who.name, request)
             job = await asyncio.to_thread(add)
-            self._enqueue(job.id)
+            self._enqueue(job)
             return job
 
     async def _require_known(self, options: Mapping[str, Any]) -> None:
@@ -174,7 +177,7 @@ class Jobs:
         if at_work is not None:
             at_work.cancel()
         self._stop_requests.pop(job, None)
-        self._queued.discard(job)
+        self._queued.pop(job, None)
         try:
             ended = await asyncio.to_thread(self._store.jobs.end, job, "cancelled")
         except StoreError:  # its process has ended; write that later
@@ -208,17 +211,28 @@ class Jobs:
             if not followers:
                 self._followers.pop(job, None)
 
-    def _enqueue(self, job: int) -> None:
-        self._queued.add(job)
-        self._queue.put_nowait(job)
+    def _enqueue(self, job: Job) -> None:
+        self._queued[job.id] = job.author
+        self._arrivals.release()
+
+    def _take_next(self) -> int | None:
+        """The first job of the author whose last turn is longest ago; None if it was cancelled."""
+        if not self._queued:
+            self._last_turn.clear()
+            return None
+        author = min(self._queued.values(), key=lambda each: self._last_turn.get(each, 0))
+        self._last_turn[author] = next(self._numbers)
+        job = next(number for number, of in self._queued.items() if of == author)
+        del self._queued[job]
+        return job
 
     async def _work(self) -> None:
-        """Do one job after the other."""
+        """Do one job after the other; authors take turns."""
         while True:
-            job = await self._queue.get()
-            if job not in self._queued:  # cancelled meanwhile
+            await self._arrivals.acquire()
+            job = self._take_next()
+            if job is None:
                 continue
-            self._queued.discard(job)
             stop_request = self._stop_requests[job] = StopRequest()
             task = self._at_work[job] = self._see_to(self._do(job, stop_request))
             await asyncio.wait([task])

@@ -2,15 +2,15 @@
 
 | part | what it does |
 |---|---|
-| `urls` | which database a URL means, and how it is called in messages |
+| `urls` | the database of a URL, and its name in messages |
 | `database` | connections and transactions; failures become StoreError |
-| `failures` | what a failure of the database means for a person |
+| `failures` | failures of the database as messages for people |
 | `schema` | the tables |
-| `columns` | kinds of columns that read the same from both databases |
+| `columns` | types of columns that are equal in both databases |
 | `migrate`, `migrations` | bring a database to the newest tables |
-| `missions`, `plans`, `jobs`, `runs`, `log`, `actions` | what is done with each group of tables |
-| `store` | all of it together |
-| `backup`, `prune` | copies, and what is thrown away; imported when asked for |
+| `missions`, `plans`, `jobs`, `runs`, `log`, `actions`, `request_keys` | operations on each group of tables |
+| `store` | all tables of a database |
+| `backup`, `prune` | copies, and deletion of old rows; imported when needed |
 """
 
 from muster.mission.errors import MissingExtraError

@@ -1,4 +1,4 @@
-"""Actions: what users did, and what came of it."""
+"""Actions of users and their outcomes."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ class ActionTable:
     def add(
         self, who: User, verb: str, data: Mapping[str, Any], run: int | None = None, at: datetime | None = None
     ) -> Action:
-        """A new action, whose outcome is not known yet; of a run one of that very time is not added again.
+        """Add an action without an outcome; a run's action of the same time is not added again.
 
         Parameters
         ----------
         at
-            when it was asked for; None: now.
+            the time of the request; None: now.
         """
         with self._database.writing() as connection:
             there = None if run is None or at is None else _of_that_time(connection, run, at)
             return there or add_action(connection, who, verb, data, run, at=at)
 
     def refused(self, who: User, verb: str, data: Mapping[str, Any], why: str) -> Action:
-        """A new action that was refused; of no run, as that of which it was asked may not be there."""
+        """Add an action that was refused, without its run, which may not exist."""
         with self._database.writing() as connection:
             return add_action(connection, who, verb, data, None, why)
 
     def keep(self, action: Action) -> Action:
-        """Write down late what the database refused, or took without a word, when it was asked for in a run.
+        """Write an action of a run that could not be written when it was requested.
 
-        It gets a number now, unless it is there already.
+        It gets an id now, unless it was written after all.
         """
         assert action.run is not None
         row = {key: value for key, value in vars(action).items() if key != "id"}
@@ -49,7 +49,7 @@ class ActionTable:
             return Action(**connection.execute(write.values(row).returning(actions)).one()._mapping)
 
     def settle(self, action: int, outcome: str, applied_s: float | None = None) -> None:
-        """What came of it: `done`, or why it was refused; of a run also when, on the mission's clock.
+        """Set the outcome: `done`, or why it was refused; of a run also the mission time.
 
         Raises
         ------
@@ -62,13 +62,13 @@ class ActionTable:
                 raise NotFoundError(f"no action {action}")
 
     def unsettled(self, run: int) -> list[Action]:
-        """Actions of a run whose outcome is not known, the oldest first."""
+        """Actions of a run without an outcome, oldest first."""
         query = select(actions).where(actions.c.run == run, actions.c.outcome == "").order_by(actions.c.id)
         with self._database.reading() as connection:
             return [Action(**row._mapping) for row in connection.execute(query)]
 
     def list(self, run: int | None = None, limit: int = 200, before: int | None = None) -> list[Action]:
-        """Actions, of one run or all, the newest first; with ids below `before`, if given."""
+        """Actions of one run or of all, newest first; only ids below `before`, if given."""
         query = select(actions).order_by(actions.c.id.desc()).limit(limit)
         if run is not None:
             query = query.where(actions.c.run == run)
@@ -79,7 +79,7 @@ class ActionTable:
 
 
 def _of_that_time(connection: Connection, run: int, at: datetime) -> Action | None:
-    """The action of a run and a time; who holds the run's row looks and writes alone."""
+    """The action of a run at a time; the run's row is locked, so that no other transaction adds one."""
     connection.execute(select(runs.c.id).where(runs.c.id == run).with_for_update())
     row = connection.execute(select(actions).where(actions.c.run == run, actions.c.at == at)).first()
     return None if row is None else Action(**row._mapping)

@@ -1,7 +1,7 @@
-"""Copies of a database: a file of SQLite with the same tables, of whichever database. It goes back into either.
+"""Backups: a file of SQLite with the tables of either kind of database, which can be restored into either.
 
-A copy is of one moment, also while a server writes: SQLite's online backup (https://sqlite.org/backup.html) reads in
-one transaction, and PostgreSQL is read in one of REPEATABLE READ. A copy is there whole or not at all.
+A backup is a snapshot, also while a server writes: SQLite's online backup (https://sqlite.org/backup.html) reads in one
+transaction, PostgreSQL in one of REPEATABLE READ. A backup is complete or does not exist.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def backup(url: str, file: Path) -> None:
 
 
 def restore(file: Path, url: str) -> None:
-    """Put a copy into a database that is empty or not there yet. A copy of an older Muster is brought on.
+    """Restore a backup into an empty or new database. A backup of an older Muster is migrated.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def restore(file: Path, url: str) -> None:
 
 @contextmanager
 def existing(url: str) -> Iterator[Database]:
-    """A database that is there and has tables.
+    """Open a database that exists and has tables.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def _require_empty(connection: Connection, name: str) -> None:
 
 
 def _count_on(connection: Connection) -> None:
-    """PostgreSQL numbers new rows from the highest number on, as SQLite does by itself."""
+    """Let PostgreSQL number new rows from the highest number on, as SQLite does."""
     if connection.dialect.name == "sqlite":
         return
     for table in _COPIED:

@@ -1,4 +1,4 @@
-"""Kinds of columns that read the same from SQLite and from PostgreSQL."""
+"""Types of columns that are equal in SQLite and PostgreSQL."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from muster.mission.errors import ParameterError
 
 
 class Instant(TypeDecorator[datetime]):
-    """An aware datetime. SQLite knows no time zones: it has UTC."""
+    """An aware datetime. SQLite has no time zones and stores UTC."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -34,7 +34,7 @@ class Instant(TypeDecorator[datetime]):
 
 
 class Number(TypeDecorator[float]):
-    """A finite number. SQLite keeps NaN as NULL, and gives a whole number back as int now and then."""
+    """A finite number. SQLite stores NaN as NULL, and may return a whole number as int."""
 
     impl = Float
     cache_ok = True
@@ -49,7 +49,7 @@ class Number(TypeDecorator[float]):
 
 
 class Text(TypeDecorator[str]):
-    """A text. PostgreSQL cannot keep U+0000, nor either database half a character: nobody may write them."""
+    """A text without U+0000 and lone surrogates, which the databases cannot store."""
 
     impl = String
     cache_ok = True

@@ -1,8 +1,8 @@
-"""Connections to a database and its transactions. Every failure of the database becomes a StoreError of one line.
+"""Connections to a database and transactions. Every failure of the database becomes a StoreError of one line.
 
-SQLite keeps a log of what is written ahead (WAL): readers and one writer do not wait for each other. With
-synchronous=FULL what was committed survives a power failure as well; it costs one fsync a transaction. A transaction
-that writes takes the lock at its beginning (BEGIN IMMEDIATE), so it cannot fail half-way because another wrote.
+SQLite uses write-ahead logging (WAL): readers and one writer do not wait for each other. With synchronous=FULL commits
+survive a power failure, at one fsync per transaction. A writing transaction takes the lock at its beginning (BEGIN
+IMMEDIATE), so it cannot fail later because another one wrote.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _NEVER_FOR_EVER = {
 
 
 class Database:
-    """A database that need not have tables yet.
+    """A database, with or without tables.
 
-    `name` is what messages call it; `failures` counts how often it failed. A server sets `require`, which looks at the
-    beginning of each transaction of PostgreSQL that writes whether it may.
+    `name` stands in messages; `failures` counts failures. A server sets `require`, which checks at the beginning of
+    each writing transaction of PostgreSQL whether it may write.
     """
 
     def __init__(self, url: str, name: str = "") -> None:
@@ -76,7 +76,7 @@ class Database:
 
     @contextmanager
     def snapshot(self) -> Iterator[Connection]:
-        """A transaction that reads all at one moment, whatever others write meanwhile."""
+        """A transaction that reads a snapshot."""
         engine = self._engine if self.is_sqlite else self._engine.execution_options(isolation_level="REPEATABLE READ")
         with self._failing(), engine.connect() as connection:
             yield connection
@@ -86,7 +86,7 @@ class Database:
 
     @contextmanager
     def _my_turn(self) -> Iterator[None]:
-        """Alone among the threads that write; one that waits for others who wait for a lock does not do so for ever."""
+        """Let one thread write at a time, with a limit on the wait."""
         if not self._turn.acquire(timeout=_PATIENCE_S):
             self.failures += 1
             raise StoreError(f"{self.name}: is locked by another program; end it, or wait")
@@ -105,7 +105,7 @@ class Database:
 
 
 def insert_unless_there(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
-    """Insert a row unless there is one with its key, which may come at this moment; says whether it was inserted."""
+    """Insert a row unless there is one with its key, also a concurrent one; returns whether it was inserted."""
     if connection.dialect.name == "sqlite":
         from sqlalchemy.dialects.sqlite import insert as insert_or_leave
     else:
@@ -121,7 +121,7 @@ def _sqlite(address: Any) -> Engine:
 
     @event.listens_for(engine, "connect")
     def set_up(connection: Any, _: Any) -> None:
-        connection.isolation_level = None  # the driver begins no transaction of its own
+        connection.isolation_level = None  # the driver must not begin transactions
         for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
             connection.execute(f"PRAGMA {pragma}").close()
 
@@ -139,7 +139,7 @@ def _postgresql(address: Any) -> Engine:
             address,
             json_serializer=as_json,
             hide_parameters=True,
-            pool_pre_ping=True,  # a server that was started anew is found again
+            pool_pre_ping=True,  # reconnects after a restart of the server
             connect_args={"application_name": "muster", **_NEVER_FOR_EVER},
         )
     except ImportError as error:
@@ -154,9 +154,9 @@ def _postgresql(address: Any) -> Engine:
 
 
 def make_file(file: Path) -> None:
-    """A new database with its folder, for this user alone; what is there keeps its mode.
+    """Create a database file and its folder for this user only; existing ones keep their mode.
 
-    SQLite gives what it writes beside a file the mode of that file.
+    SQLite gives its further files the same mode.
 
     Raises
     ------
@@ -169,5 +169,5 @@ def make_file(file: Path) -> None:
         raise StoreError(
             f"{file.parent}: {error.strerror or error}; expected a folder that can be made for the database"
         ) from None
-    with suppress(OSError):  # SQLite cannot open it either, and says why
+    with suppress(OSError):  # SQLite will fail to open it, and say why
         os.close(os.open(file, os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC, 0o600))

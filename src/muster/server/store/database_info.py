@@ -1,4 +1,4 @@
-"""What is in a database, in numbers."""
+"""The size of a database and its numbers of rows."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COUNTED = (missions, mission_versions, plans, jobs, runs, entries, stretches, a
 
 @dataclass(frozen=True)
 class DatabaseInfo:
-    """How messages call a database, which tables it has, its size, and how many rows are in each."""
+    """The name of a database in messages, its migration, its size, and the rows of each table."""
 
     database: str
     tables: str

@@ -1,4 +1,4 @@
-"""What a failure of the database means for a person: one line that says what happened and what to do.
+"""Failures of the database as messages for people: one line that says what happened and what to do.
 
 SQLite names its failures (https://sqlite.org/rescode.html), PostgreSQL numbers them (its manual, appendix A); a
 connection that fails has a text only.
@@ -59,7 +59,7 @@ _OF_A_CONNECTION = (
 
 
 def store_error(error: SQLAlchemyError, where: str) -> MusterError:
-    """What is to be raised instead; `where` is how messages call the database."""
+    """The StoreError for a failure; `where` is the database's name in messages."""
     cause = error.orig if isinstance(error, StatementError) else None
     if isinstance(cause, MusterError):  # what was to be written is wrong: a column said so
         return cause
@@ -73,13 +73,13 @@ def store_error(error: SQLAlchemyError, where: str) -> MusterError:
 
 
 def connection_error(error: Exception, where: str) -> StoreError:
-    """The same for a connection of PostgreSQL that is made without SQLAlchemy."""
+    """The StoreError for a failed connection to PostgreSQL without SQLAlchemy."""
     meaning = _known(_state_of(error), _OF_POSTGRESQL)
     return StoreError(f"{where}: {meaning or f'{_first_line(error)}; look at the database'}")
 
 
 def sqlite_error(error: sqlite3.Error, where: str) -> StoreError:
-    """The same for what is done without SQLAlchemy."""
+    """The StoreError for a failure of SQLite without SQLAlchemy."""
     meaning = (
         _known(getattr(error, "sqlite_errorname", ""), _OF_SQLITE) or f"{_first_line(error)}; look at the database"
     )

@@ -1,4 +1,4 @@
-"""Jobs: long work, from being asked for to being over."""
+"""Jobs in the database, from request to end."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class JobTable:
         author: str,
         request: RequestKey | None = None,
     ) -> Job:
-        """A new job, queued.
+        """Add a queued job.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class JobTable:
             return _get(connection, job)
 
     def begin(self, job: int) -> Job:
-        """A queued job is under way.
+        """Set a queued job running.
 
         Raises
         ------
@@ -74,13 +74,13 @@ class JobTable:
         return self._move(job, ("queued",), state="running", begun_at=datetime.now(UTC))
 
     def progress(self, job: int, data: Mapping[str, Any]) -> None:
-        """The newest progress of a job that is under way; of any other it is left out."""
+        """Set the progress of a running job; ignored for other jobs."""
         under_way = (jobs.c.id == job, jobs.c.state == "running")
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(*under_way).values(progress=dict(data)))
 
     def end(self, job: int, state: JobState, result: Mapping[str, Any] | None = None, error: str = "") -> Job:
-        """A job is over: `done`, `failed` or `cancelled`.
+        """End a job: `done`, `failed` or `cancelled`.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class JobTable:
         return self._move(job, ("queued", "running"), **over, ended_at=datetime.now(UTC))
 
     def end_with_plan(self, job: int, plan: Mapping[str, Any], why: str, progress: Mapping[str, Any] | None) -> Job:
-        """A job is done, and its plan is there: both or neither, so that no crash makes a second plan of it.
+        """End a job and store its plan in one transaction, so that a crash cannot lead to a second plan.
 
         Raises
         ------
@@ -111,7 +111,7 @@ class JobTable:
             return _move(connection, job, ("done",), result={"plan": entry.id, "why": why})
 
     def requeue(self) -> list[Job]:
-        """At start: what was under way when the server ended is queued again. All that is queued, the oldest first."""
+        """Queue jobs again that were running when the server ended; returns all queued jobs, oldest first."""
         again = {"state": "queued", "begun_at": None, "progress": None}
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(jobs.c.state == "running").values(again))
@@ -123,7 +123,7 @@ class JobTable:
             return _move(connection, job, states, **values)
 
     def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
-        """Jobs, of one state and one mission or of all, the newest first."""
+        """Jobs of one state and mission or of all, newest first."""
         query = select(jobs).order_by(jobs.c.id.desc()).limit(limit)
         if state is not None:
             query = query.where(jobs.c.state == state)

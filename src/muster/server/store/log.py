@@ -1,6 +1,6 @@
-"""The log of runs, which only grows: entries, and stretches of tracks.
+"""The append-only log of runs: entries, and stretches of tracks.
 
-The database refuses to change it, too: its triggers are in the first migration.
+Triggers of the database, in the first migration, refuse changes.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ class LogTable:
         self._database = database
 
     def append(self, run: int, time_s: float, entries: Sequence[Entry], stretches: Sequence[Stretch] = ()) -> int:
-        """Write what follows in one transaction; says how many entries were new.
+        """Append entries and stretches in one transaction; returns how many entries were new.
 
-        What is there already is left out, so whoever does not know whether it was written writes it again; another
-        entry in its place is somebody else's. Stretches are numbered by who writes them, and are not compared. The
-        run's `time_s` becomes `time_s` if that is later, and its report the data of an entry `report`.
+        Entries that exist are skipped, so a writer may repeat a write whose result it does not know; a different entry
+        in their place is an error. Stretches are numbered by the writer and not compared. The run's `time_s` is raised
+        to `time_s`, and its report becomes the data of an entry `report`.
 
         Raises
         ------
@@ -66,13 +66,13 @@ class LogTable:
         return len(new)
 
     def entries(self, run: int, after: int = 0, limit: int | None = None) -> list[Entry]:
-        """Entries with a `seq` beyond `after`, in order."""
+        """Entries with a `seq` above `after`, in order."""
         query = select(entry_table).where(entry_table.c.run == run, entry_table.c.seq > after)
         with self._database.reading() as connection:
             return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
 
     def stretches(self, run: int) -> Iterator[Stretch]:
-        """The tracks, in order; read in portions, so that no transaction waits for whoever takes them."""
+        """The tracks in order, read in portions, so that no transaction stays open while they are processed."""
         query = select(stretch_table).where(stretch_table.c.run == run).order_by(stretch_table.c.seq).limit(_AT_ONCE)
         rows = self._rows(query)
         while rows:
@@ -101,7 +101,7 @@ def _last(connection: Connection, table: Table, run: int) -> int:
 
 
 def _following(run: int, last: int, items: Sequence[Item]) -> list[Item]:
-    """What is new, without a gap after `last`."""
+    """The new entries, which must follow `last` without a gap."""
     new: list[Item] = []
     for item in items:
         what = type(item).__name__.lower()
@@ -117,7 +117,7 @@ def _following(run: int, last: int, items: Sequence[Item]) -> list[Item]:
 
 
 def _require_same(connection: Connection, run: int, again: Sequence[Entry]) -> None:
-    """What is written again must be what is there."""
+    """Raise ConflictError unless repeated entries equal those in the log."""
     if not again:
         return
     numbers = [entry.seq for entry in again]

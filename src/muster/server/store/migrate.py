@@ -1,4 +1,4 @@
-"""Makes the tables of a new database; brings those of an older Muster on by Alembic, which is imported only then."""
+"""Creates the tables of a new database; migrates those of an older Muster with Alembic, imported only then."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LOCK = 0x4D55_5354  # of PostgreSQL: one program migrates, others wait
 
 
 def revision(connection: Connection) -> str | None:
-    """The migration that a database has; None of one without tables of Muster."""
+    """The migration of a database; None if it has no tables of Muster."""
     if not inspect(connection).has_table("alembic_version"):
         return None
     found: str | None = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
@@ -24,7 +24,7 @@ def revision(connection: Connection) -> str | None:
 
 
 def migrate(database: Database, folder: Path = MIGRATIONS, head: str = HEAD) -> bool:
-    """Bring it to `head`; says whether something was due. All migrations that are due are one transaction.
+    """Migrate a database to `head` in one transaction; returns whether anything was due.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def migrate(database: Database, folder: Path = MIGRATIONS, head: str = HEAD) -> 
 
 
 def _make(connection: Connection) -> None:
-    """What all migrations come to, at once: without Alembic a server is there sooner."""
+    """Create the tables of the newest migration without Alembic, which is faster."""
     metadata.create_all(connection, checkfirst=False)
     for statement in triggers(connection.dialect.name):
         connection.exec_driver_sql(statement)

@@ -1,4 +1,4 @@
-"""Missions and their versions. Files that versions have in common are kept once, by their SHA-256."""
+"""Missions and their versions. Equal files are stored once, by their SHA-256."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class MissionTable:
         self._database = database
 
     def get(self, mission: str, version: int | None = None) -> MissionVersion:
-        """One version with its files; without a number the newest. A deleted mission's versions are there by number.
+        """A version with its files, by default the newest; of a deleted mission only by number.
 
         Raises
         ------
@@ -62,9 +62,9 @@ class MissionTable:
         shipped: bool = False,
         reserved: Collection[str] = (),
     ) -> MissionVersion:
-        """A new mission. Its id is made of the name, with a number where a mission has it or it is `reserved`.
+        """Create a mission. Its id is made from the name, with a number if the id exists or is `reserved`.
 
-        A mission that is `shipped` gets its name as id.
+        A `shipped` mission has its name as id.
 
         Raises
         ------
@@ -92,12 +92,12 @@ class MissionTable:
         note: str,
         base_version: int,
     ) -> MissionVersion:
-        """A new version, made from `base_version`.
+        """Save a new version based on `base_version`.
 
         Raises
         ------
         ConflictError
-            if another version is the newest: somebody else saved meanwhile.
+            if another version was saved since.
         NotFoundError
             if there is no such mission.
         """
@@ -213,7 +213,7 @@ def _write(
 
 
 def _keep(connection: Connection, data: bytes) -> str:
-    """The digest of a blob that is in the table afterwards. Two may bring it at once."""
+    """Store a blob unless it exists; returns its digest."""
     digest = sha256(data).hexdigest()
     insert_unless_there(connection, blobs, {"sha256": digest, "data": data})
     return digest
@@ -232,6 +232,6 @@ def _is_taken(connection: Connection, mission: str) -> bool:
 
 
 def slug(name: str) -> str:
-    """A name as it may stand in an address: letters and digits of ASCII, `-`, `_` and `.` between them."""
+    """A name for URLs: ASCII letters and digits with `-`, `_` and `.` between them."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     return re.sub(r"[^A-Za-z0-9._-]+", "-", plain)[:_LONGEST_ID].strip("-._") or "mission"

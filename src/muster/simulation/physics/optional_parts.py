@@ -5,9 +5,8 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from importlib.util import find_spec
 
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import ParameterError
 
 BACKENDS = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
 """How MuJoCo may draw without a screen, and the library of each; the first is the faster."""
@@ -30,12 +29,6 @@ _KNOWN = (
     "disabled",
 )
 """What MuJoCo itself takes for `MUJOCO_GL`, on one system or another."""
-
-
-def require_physics_extra() -> None:
-    """Raise MissingExtraError where MuJoCo is not installed."""
-    if find_spec("mujoco") is None:
-        raise MissingExtraError("physics", "the physics world")
 
 
 def choose_backend() -> str | None:

@@ -1,4 +1,4 @@
-"""Charts of a plan as elements of pages, drawn by scripts of their own: who does what when, and how planning goes."""
+"""Charts as page elements drawn by scripts: the schedule of a plan, and the progress of planning."""
 
 from muster.server.pages.charts.element import Curve, Gantt
 

@@ -25,7 +25,7 @@ class Curve(Element, component="curve.js"):
 
 
 class Gantt(Element, component="gantt.js"):
-    """What each robot does when: travel, waiting, work. Emits `choose` with a task's id."""
+    """The schedule of each robot: travel, waiting, work. Emits `choose` with a task's id."""
 
     def __init__(self, rows: Sequence[Mapping[str, Any]] = ()) -> None:
         """Show rows `{robot, visits: [{task, arrives_s, starts_s, ends_s}], leaves_s, back_s}`, in mission order."""

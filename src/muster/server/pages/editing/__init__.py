@@ -3,6 +3,6 @@
 | part | what it does |
 |---|---|
 | `history` | undo and redo |
-| `crossing` | what is typed while another text is on its way to the browser |
-| `draft` | text, version, what is wrong with it; changes are made by workers (`server.work.editing`) |
+| `concurrent_edits` | merges typed changes with a text that is being sent to the browser |
+| `draft` | the text, its version and its errors; workers make changes (`server.work.editing`) |
 """

@@ -1,4 +1,4 @@
-"""Texts that cross on their way: an editor in a browser changes one while another one is sent to it."""
+"""Merges concurrent edits: an editor in the browser changes a text while another text is sent to it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def applied(text: str, sections: Sequence[int], inserted: Sequence[Sequence[str]
 
 
 def merged(before: str, here: str, there: str) -> str | None:
-    """What becomes of a text that was changed here and there, or None where both changed the same place of it."""
+    """The merge of two changes of a text; None if both changed the same place."""
     (start, end, new), (start_there, end_there, new_there) = _change(before, here), _change(before, there)
     if end <= start_there:
         return before[:start] + new + before[end:start_there] + new_there + before[end_there:]
@@ -34,13 +34,13 @@ def merged(before: str, here: str, there: str) -> str | None:
 
 
 def _change(before: str, after: str) -> tuple[int, int, str]:
-    """The smallest piece of a text, from where to where, that was replaced, and by what."""
+    """The smallest replaced piece of a text: its start, its end, and its replacement."""
     start = _alike(before, after)
     same = _alike(before[start:][::-1], after[start:][::-1])
     return start, len(before) - same, after[start : len(after) - same]
 
 
 def _alike(one: str, other: str) -> int:
-    """With how many letters that are the same two texts begin."""
+    """The length of the common prefix of two texts."""
     ends = min(len(one), len(other))
     return next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), ends)

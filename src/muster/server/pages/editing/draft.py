@@ -1,4 +1,4 @@
-"""A mission that is being edited on one page: its text with undo, the version behind it, what is wrong with it."""
+"""The draft of a mission on one page: its text with undo, its base version, and its errors."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ _QUIET_S = 0.35  # without a change, before a text is checked
 
 @dataclass(frozen=True)
 class Checked:
-    """What the check of a text said: errors, tasks that can never be done, and the mission as plain data.
+    """The result of a check: errors, tasks that can never be done, and the mission as plain data.
 
-    `mission` and its `floor` plan are of the last text that could be read, None before. `text` is what was checked,
-    None as long as nothing was.
+    `mission` and `floor` are of the last text that could be read, or None. `text` is the checked text, or None.
     """
 
     errors: Sequence[Mapping[str, Any]] = ()
@@ -32,7 +31,7 @@ class Checked:
 
 @dataclass
 class Draft:
-    """The text that a page shows, and what was saved of it.
+    """The text that a page shows, and its saved version.
 
     Parameters
     ----------
@@ -98,11 +97,11 @@ class Draft:
         return not self.is_editing and self.checked.text == self.text
 
     def typed(self, text: str) -> None:
-        """Take what somebody typed into the text."""
+        """Replace the text by what was typed."""
         self._take(text, "typed")
 
     async def edit(self, change: str, *arguments: object) -> None:
-        """Take what a change makes of the text; raises what the services' `edit` raises, and is then as before."""
+        """Apply a change to the text; raises what `Missions.edit` raises, and leaves the text then."""
         with self._waiting():
             async with self._editing:  # one after the other, as each begins with what the last one made
                 before, made = None, ""
@@ -112,37 +111,37 @@ class Draft:
                 self._take(made, "edit")
 
     async def settled(self) -> None:
-        """Wait for the edits that were asked for before."""
+        """Wait for pending edits."""
         async with self._editing:
             pass
 
-    async def look(self, *keys: str) -> Mapping[str, Any]:
-        """What stands at some keys of the text; raises what the services' `look` raises."""
+    async def read_keys(self, *keys: str) -> Mapping[str, Any]:
+        """The values of some keys of the text; raises what `Missions.read_keys` raises."""
         found: Mapping[str, Any] = await self.missions.read_keys(self.text, *keys)
         return found
 
     async def undo(self) -> None:
-        """Take the last step back: the last edit that was asked for, also where it is still under way."""
+        """Undo the last step, also an edit that is still under way."""
         async with self._editing:
             if self._history.can_undo:
                 self._history.undo()
                 self._tell("undo")
 
     async def redo(self) -> None:
-        """Do the step again that was undone, unless an edit that is under way takes its place."""
+        """Redo the step that was undone, unless an edit is under way."""
         async with self._editing:
             if self._history.can_redo:
                 self._history.redo()
                 self._tell("undo")
 
     def load(self, version: MissionVersion, text: str | None = None) -> None:
-        """Go on from another version; with a `text`, that is kept as changes to it."""
+        """Load another version; a `text` becomes unsaved changes to it."""
         self.base = version
         self._history.change(version.text if text is None else text)
         self._tell("load")
 
     async def save(self, who: User, note: str = "") -> bool:
-        """Save the text as a version, and say whether that was needed.
+        """Save the text as a version; returns whether that was needed.
 
         Raises
         ------
@@ -157,7 +156,7 @@ class Draft:
             return True
 
     async def tick(self) -> None:
-        """Check the text when nobody has changed it for a moment; called again and again, also after it has failed."""
+        """Check the text when it has not changed for a moment; called periodically."""
         if self._changed_at is None or self._checking or monotonic() - self._changed_at < _QUIET_S:
             return
         self._changed_at = None
@@ -178,7 +177,7 @@ class Draft:
 
     @contextmanager
     def _waiting(self) -> Iterator[None]:
-        """An edit is under way within."""
+        """Mark an edit as under way within the block."""
         self._edits += 1
         self.tell_waiting()
         try:
@@ -188,7 +187,7 @@ class Draft:
             self.tell_waiting()
 
     def tell_waiting(self) -> None:
-        """Say whether an edit is under way; also to be said where one is refused before it is asked for."""
+        """Report whether an edit is under way; also called if an edit is refused before it starts."""
         for listener in self.on_wait:
             listener()
 

@@ -7,9 +7,9 @@ _MOST_LETTERS = 20_000_000  # of all of them together
 
 
 class History:
-    """The texts before and after the one that is shown.
+    """The texts before and after the present one.
 
-    Letters typed one after the other are one step: changes with the same `kind` within `together_s` are put together.
+    Changes of the same `kind` within `together_s` are one step, so that letters typed in sequence are.
     """
 
     def __init__(self, text: str, together_s: float = 1.0) -> None:

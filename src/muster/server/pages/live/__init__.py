@@ -1,4 +1,4 @@
-"""Live: the runs under way, and one of them as it is carried out, with all that may be commanded."""
+"""The view *Live*: the runs under way, and one run with its controls."""
 
 from muster.server.pages.live import views
 

@@ -1,4 +1,4 @@
-"""The view of a run as an element of NiceGUI: it hears the run's stream itself, and gives commands to Python."""
+"""The view of a run as an element of NiceGUI: the browser reads the run's stream, and sends commands to Python."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_c
     Parameters
     ----------
     runs
-        the services' service: commands are given to its `act`.
+        the service of runs, whose `act` receives commands.
     who
-        looks at it; without the role `command` there is nothing to press.
+        the user; without the role `command` there are no controls.
     wall
-        large, and nothing to press.
+        whether the view is large and without controls.
     """
 
     def __init__(self, runs: Any, run: int, who: User, *, wall: bool) -> None:
@@ -45,7 +45,7 @@ class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_c
         self.on("act", self._act)
 
     def lay(self, *, image: Mapping[str, Any] | None, tiles: Mapping[str, Any] | None) -> None:
-        """Show what lies under it, as in `map.scene_of`."""
+        """Set the floor plan and map tiles, as in `map.scene_of`."""
         self.props["ground"] = {"image": image, "tiles": tiles}
 
     async def _act(self, event: GenericEventArguments) -> None:

@@ -11,7 +11,7 @@ from muster.exchange.mission_control import OVER, Run
 from muster.mission.errors import MusterError
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
-from muster.server.pages.notices import told, words_of
+from muster.server.pages.notices import errors_shown, words_of
 from muster.server.pages.plan.map_scene import TILES, image_of
 from muster.server.pages.tables import table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, on_the_wall, the_services, the_user
@@ -34,12 +34,12 @@ _ENDED = 10  # runs that are over and still listed
 
 @ui.page("/live", response_timeout=PATIENCE_S)
 async def runs_page() -> None:
-    """The runs under way, and those that have just ended."""
+    """The runs under way, and the last ones that ended."""
     with frame("Live"):
 
         @ui.refreshable
         async def listed() -> None:
-            with told():
+            with errors_shown():
                 _under_way(the_services().runs.present())
                 _over(await the_services().runs.over(_ENDED))
 
@@ -91,8 +91,8 @@ async def run_page(run: int) -> None:
     with frame("Live", title=f"{entry.mission}, run {run}", keys=KEYS) as content:
         content.classes("live-view")
         view = RunView(services.runs, run, who, wall=wall)
-    if await is_seen():  # the robots before what lies under them: neither database nor workers are needed to stop them
-        with told():
+    if await is_seen():  # robots come first: stopping them needs neither database nor workers
+        with errors_shown():
             view.lay(**await _ground(entry))
 
 

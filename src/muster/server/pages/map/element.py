@@ -1,4 +1,4 @@
-"""The map of a mission as an element of NiceGUI. What moves in it, moves in the browser alone."""
+"""The map of a mission as an element of NiceGUI. Movement is drawn by the browser without the server."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class MissionMap(
         self.props["plan"] = plan
 
     def wait(self, words: str) -> None:
-        """Say something else as long as there is no scene."""
+        """Set the text that is shown until there is a scene."""
         self.props["waiting"] = words
 
     def set_mode(self, mode: str) -> None:
@@ -79,5 +79,5 @@ class MissionMap(
         self.run_method("reveal", {"what": what, "id": name})
 
     def choose_none(self) -> None:
-        """Take the mark away."""
+        """Remove the mark."""
         self.run_method("choose", None)

@@ -1,4 +1,4 @@
-"""What the map shows of a mission: plain data for its scripts."""
+"""The scene of a map: plain data for its scripts."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from nicegui import events, ui
 from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import flow_text
 from muster.server.pages.buttons import once
-from muster.server.pages.notices import told, warn
+from muster.server.pages.notices import errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
 from muster.server.work import WorkError
 
@@ -52,7 +52,7 @@ _CSV = (  # as `mission.thesis_csv` reads them
 
 async def open_new_mission() -> None:
     """Open the dialog; the mission that is made is opened in Plan."""
-    with told():
+    with errors_shown():
         shipped = [entry.id for entry in await the_services().missions.list() if entry.shipped]
         with ui.dialog() as dialog, ui.card().classes("making"):
             ui.label("New mission").classes("dialog-title")
@@ -101,7 +101,7 @@ def _uploading() -> None:
 
 
 def refused(files: Sequence[tuple[str, str, int]]) -> str:
-    """Why files were not taken, one a line: each is what was wrong, its name, and its size in bytes."""
+    """Why files were refused, one line each: the reason, the name, and the size in bytes."""
     lines = []
     for wrong, name, size in files:
         if wrong == "max-file-size":
@@ -131,7 +131,7 @@ async def named(text: str, name: str) -> str:
 
 
 async def _upload(files: dict[str, bytes], salesmen: int) -> None:
-    with told():
+    with errors_shown():
         name, beside = sorted_out(list(files))
         options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
@@ -140,7 +140,7 @@ async def _upload(files: dict[str, bytes], salesmen: int) -> None:
 
 
 def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str, Any]:
-    """What has to be known of a mission's file besides, by its kind.
+    """The options for converting a mission's file, by its kind.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str,
 
 
 def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
-    """Which of files that are chosen together is the mission, and which has its robots and its suitability."""
+    """Which of the chosen files are the mission, its robots, and its suitability."""
     beside = {}
     for kind, word in (("robots", "robot"), ("suitability", "suitab")):
         named_so = [name for name in names if name.lower().endswith(".csv") and word in name.lower()]

@@ -13,7 +13,7 @@ from muster.library import mission_summary
 from muster.server.pages.buttons import once
 from muster.server.pages.frame import frame
 from muster.server.pages.missions.new_mission import named, open_new_mission
-from muster.server.pages.notices import offer, say, told
+from muster.server.pages.notices import errors_shown, offer, say
 from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
 
 _KEYS = {"/": "search", "n": "new mission"}
@@ -37,7 +37,7 @@ async def view() -> None:
 
         @ui.refreshable
         async def listed() -> None:
-            with told():
+            with errors_shown():
                 _table(await the_services().missions.list(), listed)
 
         await listed()
@@ -97,7 +97,7 @@ def _row(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[t
 
 @cache
 def _about(shipped: str) -> str:
-    """What a mission that ships is, in a line."""
+    """A shipped mission in one line."""
     return mission_summary(shipped).description
 
 
@@ -117,13 +117,13 @@ def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[
         listed.refresh()
 
     async def delete() -> None:
-        with told():
+        with errors_shown():
             await the_services().missions.delete(the_user(), entry.id)
             listed.refresh()
             offer(f"{entry.name} is deleted.", "Undo", restore)
 
     async def restore() -> None:
-        with told():
+        with errors_shown():
             await the_services().missions.restore(the_user(), entry.id)
             listed.refresh()
 

@@ -1,4 +1,4 @@
-"""The view *Plan*: a mission on the map, as a form and as text, its plans, and why they are as they are."""
+"""The view *Plan*: a mission on the map, as a form and as text, its plans, and their explanations."""
 
 from muster.server.pages.plan import compare, view
 

@@ -11,7 +11,7 @@ from nicegui import ui
 from muster.exchange.mission_control import PlanEntry
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
 from muster.server.pages.plan.map_scene import ground_of
 from muster.server.pages.plan.plan_panel import MOST_PLANS, title_of
@@ -27,7 +27,7 @@ async def compare(mission: str, a: int, b: int) -> None:
         spinner = ui.spinner(size="2em")
 
         async def build() -> None:
-            with content, told():
+            with content, errors_shown():
                 await _build(mission, a, b)
             spinner.delete()
 
@@ -107,7 +107,7 @@ def _table(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
 
 
 def with_better(name: str, first: str, second: str) -> tuple[str, str]:
-    """Two values of a figure, the better one marked where it can be said which that is."""
+    """Two values of a figure, with the better one marked if there is one."""
     kind = name.partition(",")[0]
     least, most = kind in LESS_IS_BETTER, kind in ("Tasks done", "Equality")
     try:

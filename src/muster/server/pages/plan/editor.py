@@ -1,4 +1,4 @@
-"""The editor of a text: CodeMirror, of which what it shows and what is known of it here never drift apart."""
+"""The text editor: CodeMirror, kept in step with the text on the server."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _PATIENCE_S = 60.0  # with a browser that is busy
 
 
 class Editor(CodeMirror):
-    """Takes letters that are typed, also while another text is on its way to the browser.
+    """An editor that accepts typing while another text is being sent to the browser.
 
-    That takes the place of what is shown, and what was typed before it came is of the text before. It is kept until the
-    other text is there, and then put into that, unless both changed the same place: then `on_lost` is called.
+    The sent text replaces the shown one. Changes typed before it arrived refer to the former text; they are kept and
+    merged into the new one, unless both changed the same place: then `on_lost` is called.
     """
 
     on_lost: Callable[[], object]
@@ -28,7 +28,7 @@ class Editor(CodeMirror):
     _sent = 0
 
     def update(self) -> None:
-        """Send all that the element is, the text with it."""
+        """Send the element with its text."""
         super().update()
         self._sent += 1
         if self._before is None:
@@ -44,7 +44,7 @@ class Editor(CodeMirror):
         self.run_method("setLineTooltips", tooltips)
 
     async def _arrive(self, number: int) -> None:
-        """Wait until what was sent is shown, and put in what was typed meanwhile."""
+        """Wait until the sent text is shown, and merge what was typed meanwhile."""
         with suppress(TimeoutError):
             await self.client.run_javascript("return true", timeout=_PATIENCE_S)  # answered after what was sent before
         if number != self._sent or self.is_deleted or self._before is None:

@@ -1,4 +1,4 @@
-"""The left side of Plan: one mission as map, as form and as text, which are three views of the same draft."""
+"""The left side of the view *Plan*: map, form and text, three editors of the same draft."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from nicegui import events, ui
 from muster.mission.errors import MusterError
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import MissionMap
-from muster.server.pages.notices import told, warn, words_of
+from muster.server.pages.notices import errors_shown, warn, words_of
 from muster.server.pages.plan.findings import Findings
 from muster.server.pages.plan.form import Form
 from muster.server.pages.plan.map_scene import scene_of_draft
@@ -22,16 +22,16 @@ _MODES = {"select": "Move and choose", "task": "Add tasks", "robot": "Add robots
 
 
 class Editors:
-    """Builds the three views, and keeps them and the draft the same.
+    """Builds the three editors, and keeps them equal to the draft.
 
     Parameters
     ----------
     draft
         the mission.
     on_choose
-        called with what somebody chose on the map: `{what, id}` or None.
+        called with what is chosen on the map: `{what, id}` or None.
     on_ask
-        called with a task for which somebody wants to know why.
+        called with a task that is to be explained.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Editors:
             self.map.on("remove", lambda event: self._removed(event.args))
 
     async def edit(self, change: str, *arguments: object) -> bool:
-        """Change the text; where that cannot be, say why and show again what is."""
+        """Change the text; if that fails show why, and the present state again."""
         try:
             await self._draft.edit(change, *arguments)
         except MusterError as error:
@@ -99,7 +99,7 @@ class Editors:
 
     async def _drawn(self, corners: Sequence[Sequence[float]]) -> None:
         try:
-            ground = (await self._draft.look("map")).get("map")
+            ground = (await self._draft.read_keys("map")).get("map")
         except MusterError as error:
             warn(words_of(error))
             self._draft.tell_waiting()
@@ -113,7 +113,7 @@ class Editors:
             side.props(remove="hidden") if name == event.value else side.props("hidden")
         if self._editable:
             self._mode.set_visibility(event.value == "map")
-        with self._sides[event.value], told():
+        with self._sides[event.value], errors_shown():
             if event.value == "form" and self._form is None:
                 self._form = Form(self._draft, self.edit, editable=self._editable)
             if event.value == "text" and self._script is None:

@@ -1,4 +1,4 @@
-"""Why a task is done by this robot and not by another, or is left out."""
+"""The explanation of a task: why its robot does it, or why it is unassigned."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.shown_plan import ShownPlan
 from muster.server.pages.visitor import the_services
 
@@ -32,7 +32,7 @@ class Explanation:
             self._button.text = question(task, entry.plan)
 
     def clear(self) -> None:
-        """Show no answer: there is another plan."""
+        """Remove the answer, as there is another plan."""
         self._box.clear()
 
     async def _pressed(self) -> None:
@@ -47,7 +47,7 @@ class Explanation:
         self._box.clear()
         with self._box:
             waiting = ui.spinner(size="1.4em")
-        with told():
+        with errors_shown():
             found = await the_services().plans.explain(entry.id, task)
             if waiting.is_deleted:  # another plan is shown meanwhile, or something else was asked
                 return
@@ -60,7 +60,7 @@ class Explanation:
 
 
 def question(task: str, plan: Mapping[str, Any]) -> str:
-    """What is asked about a task of a plan: it may be left out."""
+    """The question about a task, which may be unassigned."""
     left_out = any(str(item["task"]) == task for item in plan.get("unassigned") or ())
     return f"Why is task {task} left out?" if left_out else f"Why is task {task} done as it is?"
 

@@ -1,4 +1,4 @@
-"""Figures of a plan, and who does what: as lists, tables, and lines for the map."""
+"""The figures and routes of a plan as lists, tables, and lines for the map."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LESS_IS_BETTER = ("Objective", "Total cost", "Greatest usage", "Ends after")
 
 
 def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None) -> list[tuple[str, str]]:
-    """Names and values; from the judge where it has judged."""
+    """Names and values, from the judge's verdict if there is one."""
     judged = verdict or {}
     unit = plan.get("usage_unit") or ""
     objective = plan.get("objective") or {}
@@ -65,12 +65,12 @@ def objective_unit(plan: Mapping[str, Any]) -> str:
 
 
 def meaning_of(name: str) -> str:
-    """What a figure is, for a person who asks."""
+    """The meaning of a figure, for its tooltip."""
     return _MEANINGS.get(name.partition(",")[0], "")
 
 
 def figures_list(rows: Sequence[tuple[str, str]]) -> None:
-    """Show figures; each says what it is where one points at it."""
+    """Show figures with their meanings as tooltips."""
     with ui.element("dl").classes("figures"):
         for name, text in rows:
             box = ui.element("div")
@@ -101,7 +101,7 @@ def left_out(plan: Mapping[str, Any], choose: Choose) -> None:
 
 
 def _choosing(shown: ui.html, choose: Choose) -> None:
-    """Whatever is named in it can be chosen by a click; one listener for all, as there may be 20,000."""
+    """Let named tasks be chosen by a click; one listener for all, as there may be 20,000."""
     shown.on("click", lambda event: choose(*event.args), js_handler=_CLICKED)
 
 
@@ -128,7 +128,7 @@ def _robot_row(k: int, route: Mapping[str, Any]) -> str:
 
 
 def lines_of(plan: Mapping[str, Any], verdict: Mapping[str, Any]) -> dict[str, Any]:
-    """What the map shows of a plan that the judge has looked at."""
+    """The routes of a judged plan for the map."""
     routes = [
         {"robot": route["robot"], "tasks": list(route["tasks"]), "lines": verdict["lines"].get(route["robot"])}
         for route in verdict["routes"]

@@ -12,7 +12,7 @@ _MOST = 30
 
 
 class Findings:
-    """A strip that is there only when something is wrong; a line is shown in the text by a click."""
+    """A strip with the findings, hidden if there are none; a click shows the line in the text."""
 
     def __init__(self, reveal: Callable[[int], None]) -> None:
         self._reveal = reveal
@@ -58,7 +58,7 @@ class Findings:
 
 
 def _why(reasons: object) -> str:
-    """The reasons of all robots, each told once."""
+    """The reasons of all robots, without repetition."""
     assert isinstance(reasons, (list, tuple))
     by_reason: dict[str, list[str]] = {}
     for reason in reasons:

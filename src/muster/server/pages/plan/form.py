@@ -92,9 +92,9 @@ class Form:
                 table.forget()
 
     async def _read(self) -> None:
-        """Where the text cannot be read, say so and show what was there."""
+        """Read the text; if it cannot be read show why, and the former values."""
         try:
-            data = await self._draft.look(*_SHOWN.values())
+            data = await self._draft.read_keys(*_SHOWN.values())
         except MusterError as error:
             self._message.text = f"The text cannot be shown: {words_of(error)}"
             return
@@ -133,7 +133,7 @@ class Form:
 
 
 def _value(typed: str, where: str, kind: str) -> object:
-    """What somebody typed, as the text holds it; None for nothing. `where` is what an error names."""
+    """A typed value as in the mission's text; None for an empty cell. `where` stands in errors."""
     typed = typed.strip()
     if not typed:
         return None
@@ -147,7 +147,7 @@ def _value(typed: str, where: str, kind: str) -> object:
 
 
 def number_of(typed: str, where: str) -> float:
-    """A number with a point or a comma before what is behind it; 1,000 may be one or a thousand, and is refused."""
+    """A number with a decimal point or comma; 1,000 is ambiguous and refused."""
     try:
         number = math.nan if "_" in typed or _AMBIGUOUS.fullmatch(typed) else float(typed.replace(",", "."))
     except ValueError:

@@ -1,4 +1,4 @@
-"""What can be done with a plan: carry it out, take it away as a file, bring one along, compare it with another."""
+"""The actions on a plan: carry it out, download it, upload one, compare it with another."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from nicegui import events, ui
 from muster.exchange.export_request import FORMATS
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
-from muster.server.pages.notices import say, told
+from muster.server.pages.notices import errors_shown, say
 from muster.server.pages.plan.shown_plan import ShownPlan
 from muster.server.pages.plan.start_run import open_start
 from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
@@ -39,7 +39,7 @@ class PlanActions:
         self.show()
 
     def show(self, *, on_earth: bool = True) -> None:
-        """Show what can be done with the plan that is shown now; `on_earth`: its mission says where on Earth it is."""
+        """Show the actions on the present plan; `on_earth`: its mission has a place on the earth."""
         self._bar.clear()
         entry = self._answer.entry
         with self._bar:
@@ -67,7 +67,7 @@ class PlanActions:
                 ui.item(words, on_click=lambda what=what: self._picture(plan, what))
 
     async def _export(self, plan: int, form: str) -> None:
-        with told():
+        with errors_shown():
             plans = the_services().plans
             if form:
                 content, name = await archive_of(await plans.export(plan, form), f"plan-{plan}-{form}")
@@ -76,14 +76,14 @@ class PlanActions:
             ui.download.content(content, name)
 
     async def _picture(self, plan: int, what: str) -> None:
-        with told():
+        with errors_shown():
             ui.download.content(await the_services().plans.picture(plan, what, "svg"), f"{what}-{plan}.svg")
 
     async def _start(self) -> None:
         entry = self._answer.entry
         if entry is None:
             return
-        with told():
+        with errors_shown():
             missions = {mission.id: mission for mission in await the_services().missions.list()}
             if entry is not self._answer.entry:  # another plan is chosen meanwhile
                 return
@@ -95,7 +95,7 @@ class PlanActions:
             ui.label("A plan file (JSON), also of another program: it needs `schema` and `routes`.").classes("quiet")
 
             async def take(event: events.UploadEventArguments) -> None:
-                with told():
+                with errors_shown():
                     try:
                         plan = json.loads(await event.file.read())
                     except ValueError as error:

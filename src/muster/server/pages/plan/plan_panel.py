@@ -1,4 +1,4 @@
-"""The right side of Plan, below the controls: the plan that is shown, its figures, who does what, and why."""
+"""The right side of the view *Plan*, below the controls: the shown plan, its figures, routes and explanations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.server.pages.charts import Curve, Gantt
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import MissionMap
 from muster.server.pages.missions.view import ago
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.explanation import Explanation
 from muster.server.pages.plan.figures import figures_list, figures_of, left_out, lines_of, objective_unit, robots_table
 from muster.server.pages.plan.plan_actions import PlanActions
@@ -91,7 +91,7 @@ class PlanPanel:
         if chosen is None:
             return
         self._show_no_plan()
-        with told():
+        with errors_shown():
             entry = await the_services().plans.get(chosen)
             if self._choice.value != chosen:  # another one meanwhile
                 return
@@ -104,7 +104,7 @@ class PlanPanel:
                 self._show(entry, verdict, on_earth=on_earth)
 
     def _show_no_plan(self) -> None:
-        """Until a chosen plan is known nothing can be done with it, nor with the one before."""
+        """Disable all actions until the chosen plan is loaded."""
         self._entry = None
         self._show_outdated()
         self._body.clear()
@@ -141,7 +141,7 @@ class PlanPanel:
         self._outdated.props(remove="hidden") if old else self._outdated.props("hidden")
 
     def choose(self, one: Mapping[str, Any] | None) -> None:
-        """Take what was chosen on the map."""
+        """Show what was chosen on the map."""
         self._chosen = one
         self.why.offer(one["id"] if one and one["what"] == "task" else None)
 
@@ -151,7 +151,7 @@ class PlanPanel:
 
 
 def _how_found(plan: Mapping[str, Any]) -> None:
-    """The improvements that led to a plan, folded away."""
+    """The improvements that led to a plan, collapsed."""
     history = plan.get("history") or []
     if len(history) < 2:
         return

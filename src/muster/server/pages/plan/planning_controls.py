@@ -1,4 +1,4 @@
-"""Asking for a plan: with what, how it goes, and ending it early: with its best plan, or without."""
+"""The controls of planning: its options, its progress, and ending it early with or without a plan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from muster.mission.model import OBJECTIVES
 from muster.server.pages.buttons import once
 from muster.server.pages.charts import Curve
 from muster.server.pages.editing.draft import Draft
-from muster.server.pages.notices import say, told
+from muster.server.pages.notices import errors_shown, say
 from muster.server.pages.visitor import the_services, the_user
 
 _WAITING: tuple[JobState, ...] = ("queued", "running")
@@ -24,7 +24,7 @@ _BOUNDS = {"": "none", "quick": "quick", "exact": "exact (may take long)"}
 class PlanningControls:
     """The controls of planning, and the job that is under way.
 
-    `before` is asked to save the mission, and says whether it is saved; `on_done` is told a new plan's id.
+    `before` saves the mission and returns whether it is saved; `on_done` receives a new plan's id.
     """
 
     def __init__(self, draft: Draft) -> None:
@@ -68,8 +68,8 @@ class PlanningControls:
         self._show(None)
 
     async def go_on(self) -> None:
-        """Show what allocators there are, and a job of this mission that is under way."""
-        with told():
+        """Show the allocators, and a job of this mission that is under way."""
+        with errors_shown():
             found = await the_services().plans.allocators()
             names = {a["name"]: a["name"] for a in found}
             self._allocator.set_options(names, value=next((a["name"] for a in found if a["default"]), None))
@@ -78,7 +78,7 @@ class PlanningControls:
                 await self._follow(max(jobs, key=lambda job: job.id))
 
     async def _ask(self) -> bool:
-        """Plan, and follow it to its end; False, as another plan may be asked for then."""
+        """Request a plan, and follow the job to its end; returns False, so that the button works again."""
         if self._draft.checked.errors:
             raise ParameterError("the mission has errors; mend them first")
         if await self.before("to be planned"):
@@ -103,18 +103,18 @@ class PlanningControls:
         return {name: value for name, value in given.items() if value is not None}
 
     async def _ask_to_stop(self) -> None:
-        with told():
+        with errors_shown():
             if self._job is not None:
                 self._stopped = True
                 await the_services().jobs.stop(the_user(), self._job.id)
 
     async def _cancel(self) -> None:
-        with told():
+        with errors_shown():
             if self._job is not None:
                 await the_services().jobs.cancel(the_user(), self._job.id)
 
     async def _follow(self, asked: Job) -> None:
-        """Show a job until it is over, or nobody looks any more."""
+        """Show a job until it is over, or the page is closed."""
         client, job = ui.context.client, asked
         self._stopped = False
         async for job in the_services().jobs.follow(asked.id):

@@ -1,4 +1,4 @@
-"""The dialog that begins to carry a plan out: in which world, how fast, and what a bridge to real robots needs."""
+"""The dialog that starts a run: its world, its speed, and the settings of real robots."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Reading = Callable[[], dict[str, Any]]
 
 
 def open_start(entry: PlanEntry, dimensions: int) -> None:
-    """Ask how a plan is to be carried out, and go to the run when it has begun."""
+    """Ask how to carry out a plan, and open the run when it has started."""
     bridges = {name: f"real robots ({name})" for name in the_services().settings.bridges}
     with ui.dialog() as dialog, ui.card().classes("making"):
         ui.label("Carry this plan out").classes("dialog-title")

@@ -10,7 +10,7 @@ from nicegui.element import Element
 
 @dataclass(frozen=True)
 class Column:
-    """A column: its key, which stands above it; what is typed: text, number, words or a choice; and what it means."""
+    """A column: its key, its kind (text, number, words or a choice), and its meaning."""
 
     key: str
     kind: str = "text"

@@ -1,4 +1,4 @@
-"""The line above a mission: its name and version, undo, redo, save, history; and what happens when two save at once."""
+"""The title bar of a mission: name, version, undo, redo, save, history, and the resolution of conflicts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from nicegui import ui
 
 from muster.exchange.mission_control import ConflictError
 from muster.server.pages.editing.draft import Draft
-from muster.server.pages.notices import say, told
+from muster.server.pages.notices import errors_shown, say
 from muster.server.pages.plan.versions import open_differences, open_versions
 from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
 
@@ -69,7 +69,7 @@ class TitleBar:
         await self._draft.settled()
         if self._draft.is_saved:
             return True
-        with told():
+        with errors_shown():
             try:
                 if await self._draft.save(the_user(), note):
                     say(f"Saved as version {self._draft.base.version}.")
@@ -102,7 +102,7 @@ class TitleBar:
             ui.navigate.to(f"/plan/{made.mission}")
 
     async def _asked(self, conflict: str, theirs: str, mine: str) -> str:
-        """What somebody wants: `theirs`, `mine`, a `copy`, or nothing yet."""
+        """The user's choice: `theirs`, `mine`, a `copy`, or nothing."""
         client = ui.context.client
         with ui.dialog().props("persistent") as dialog, ui.card().classes("making"):
             ui.label("Somebody else has saved this mission").classes("dialog-title")

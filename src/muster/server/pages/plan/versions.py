@@ -11,7 +11,7 @@ from nicegui import ui
 
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.missions.view import ago
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 from muster.server.pages.visitor import the_services
 
 _MOST_VERSIONS = 1000  # that are listed
@@ -21,20 +21,20 @@ _CLASSES = {"+": "added", "-": "removed", "@": "quiet"}
 
 async def open_versions(draft: Draft, save: Callable[[str], Awaitable[bool]]) -> None:
     """List the newest versions; one can be compared with the text as it is, and restored as a new version."""
-    with told():
+    with errors_shown():
         versions = await the_services().missions.versions(draft.id, _MOST_VERSIONS)
         with ui.dialog() as dialog, ui.card().classes("making versions"):
             ui.label(f"Versions of {draft.id}").classes("dialog-title")
 
             async def restore(number: int) -> None:
-                with told():
+                with errors_shown():
                     old = await the_services().missions.get(draft.id, number)
                     dialog.close()
                     draft.load(draft.base, old.text)
                     await save(f"version {number} again")
 
             async def compare(number: int) -> None:
-                with told():
+                with errors_shown():
                     await open_differences((await the_services().missions.get(draft.id, number)).text, draft.text)
 
             with ui.element("div").classes("scrolling full"), ui.element("table").classes("plain"):

@@ -10,7 +10,7 @@ from nicegui import ui
 
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
-from muster.server.pages.notices import told
+from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.editors import Editors
 from muster.server.pages.plan.plan_panel import MOST_PLANS, PlanPanel
 from muster.server.pages.plan.planning_controls import PlanningControls
@@ -35,7 +35,7 @@ _KEYS = {
 @ui.page("/plan", response_timeout=PATIENCE_S)
 async def choose() -> None:
     """Without a mission: those that were planned last, or the way to the list."""
-    with frame("Plan"), told():
+    with frame("Plan"), errors_shown():
         recent = list(dict.fromkeys(entry.mission for entry in await the_services().plans.list(limit=MOST_PLANS)))[:8]
         with ui.element("div").classes("panel narrow"):
             ui.label("Which mission?").classes("dialog-title")
@@ -56,7 +56,7 @@ async def choose() -> None:
 async def view(mission: str, plan: int | None = None) -> None:
     """A mission and its plans; `?plan=` chooses one."""
     with frame("Plan", mission, _KEYS) as content:
-        with told():
+        with errors_shown():
             await _build(mission, plan)
             return
         with content:
@@ -93,7 +93,7 @@ async def _build(mission: str, plan: int | None) -> None:
 
     async def tick() -> None:
         if client.has_socket_connection:  # nobody is told of errors before
-            with told():
+            with errors_shown():
                 await draft.tick()
 
     ui.timer(_TICK_S, tick)

@@ -1,4 +1,4 @@
-"""The small form of a zone that was drawn on the map: its heights, and whom it is closed to."""
+"""The form of a zone that was drawn on the map: its heights, and the robots that it excludes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _WHOM = {"both": "ground and air robots", "ground": "ground robots", "air": "air
 
 
 def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awaitable[bool]]) -> ui.dialog:
-    """Ask what a zone is like, and put it by `edit` into a mission with that map."""
+    """Ask for the properties of a zone, and add it by `edit`."""
     with ui.dialog() as dialog, ui.card().classes("making"):
         ui.label(f"A new zone of {len(corners)} corners").classes("dialog-title")
         whom = ui.select(_WHOM, value="both", label="forbidden_to").props("outlined dense").classes("full")
@@ -39,7 +39,7 @@ def open_zone(corners: Sequence[Corner], ground: object, edit: Callable[..., Awa
 
 
 def _notes(corners: Sequence[Corner], ground: object) -> list[str]:
-    """What somebody should know before the zone is there."""
+    """Warnings about the zone."""
     if not ground:
         return [
             "The mission has no map, and a zone needs one: a boundary is drawn around everything. "

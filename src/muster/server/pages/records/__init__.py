@@ -1,4 +1,4 @@
-"""Records: runs that are over, and one of them: its replay, what was planned beside what was flown, who did what."""
+"""The view *Records*: runs that are over, and one record with its replay, comparison and commands."""
 
 from muster.server.pages.records import views
 

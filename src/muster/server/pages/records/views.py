@@ -11,7 +11,7 @@ from nicegui import ui
 from muster.exchange.mission_control import OVER, Action, Entry, Run
 from muster.mission.errors import MusterError
 from muster.server.pages.frame import frame
-from muster.server.pages.notices import told, words_of
+from muster.server.pages.notices import errors_shown, words_of
 from muster.server.pages.records.figures import (
     ROBOT_HEADS,
     TASK_HEADS,
@@ -57,7 +57,7 @@ ui.add_css(Path(__file__).with_name("records.css"), shared=True)
 @ui.page("/records", response_timeout=PATIENCE_S)
 async def records_page() -> None:
     """Runs that are over, the newest first."""
-    with frame("Records"), told():
+    with frame("Records"), errors_shown():
         runs = await the_services().records.list()
         if runs:
             table(_HEADS, [_row(run) for run in runs], label="Records", numbers=(3, 4, 5, 6))
@@ -85,7 +85,7 @@ async def record_page(run: int) -> None:
         with frame("Records"):
             ui.label(words_of(error))
         return
-    with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), told():
+    with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), errors_shown():
         if not await is_seen():
             return
         entries = await services.runs.entries(run)
@@ -108,7 +108,7 @@ async def _is_on_earth(run: Run) -> bool:
 
 
 def _files_of(run: Run, *, on_earth: bool) -> Sequence[tuple[str, str]]:
-    """What can be downloaded, each with its path."""
+    """The downloads, each with its path."""
     return (*_FILES, *(_ON_EARTH if on_earth else ())) if run.state in OVER else ()
 
 
@@ -132,7 +132,7 @@ def _facts(run: Run) -> str:
 
 
 def _file(run: int, path: str) -> str:
-    """A name for what is taken away; empty: the server's own, as an export may be several files in one."""
+    """The name of a download; empty for the server's own, as an export may be one or several files."""
     return f"run-{run}-{path}" if "?" not in path else ""
 
 
@@ -188,7 +188,7 @@ def _heading(words: str, level: int = 3) -> None:
 
 
 def _folded(words: str) -> ui.element:
-    """A part that is shown when its heading is pressed."""
+    """A part that is expanded by its heading."""
     details = ui.element("details")
     with details, ui.element("summary"):
         ui.label(words)
