@@ -91,18 +91,18 @@ study: $(VENV)/developed
 bench: $(VENV)/developed
 	$(BIN)/muster bench
 
-# Two states of one environment: what a user has, and with the developers' tools.
+# Two states of one environment: what the demo needs (the core, pictures, pages); and everything, with the developers' tools.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
-	@echo "Building Muster; this takes about a minute ..."
-	$(BIN)/pip install --quiet --editable '.[all]'
+	@echo "Building Muster; this takes less than a minute ..."
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable '.[plot,record]'
 	@touch $@
 
-$(VENV)/developed: $(VENV)/installed
-	@echo "Installing the tools for tests ..."
+$(VENV)/developed: $(BUILT_FROM) | $(VENV)/made
+	@echo "Building Muster, and installing all extras and the tools for tests; this takes minutes ..."
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
-	@touch $@
+	@touch $(VENV)/installed $@
 
 $(VENV)/made: | prerequisites
 	$(PYTHON) -m venv $(VENV)

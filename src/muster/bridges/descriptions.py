@@ -1,4 +1,4 @@
-"""What is said outside of mission files as it is said there: a robot of itself, a task that is added."""
+"""Robots and tasks described outside of mission files, with the keys of mission files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ R = TypeVar("R", Robot, Task)
 
 
 def robot_from_description(said: object, robot: Robot, where: str) -> Robot:
-    """A robot with what it says of itself: keys of a robot in a mission file, such as speed_mps; its id stays.
+    """A robot with its own description: keys of a robot in a mission file, such as speed_mps; its id stays.
 
     Parameters
     ----------

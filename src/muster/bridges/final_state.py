@@ -17,7 +17,7 @@ UP_M = 0.5
 """A robot that flies is in the air if it is this much higher than its start."""
 _SILENT_S = 2.0
 _POLL_S, _POLLS = 0.1, 20
-"""Robots that were told to stop have this many times this many seconds to come to rest."""
+"""Robots have this many times this many seconds to come to rest."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a bridge is to whoever carries a plan out: robots behind ports, and a clock that goes on by itself."""
+"""The interface of a bridge: robots behind ports, and a clock that goes on by itself."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from muster.motion.port import RobotPort
 
 @dataclass(frozen=True)
 class Failure(Event):
-    """A robot says that it cannot go on (`robot_fails`), and why, in words; files have no word for that."""
+    """A robot reports that it cannot go on (`robot_fails`), with the reason; mission files have no key for that."""
 
     reason: str = ""
 
 
 def reason_of(event: Event) -> str:
-    """Why it has happened, in words; empty where nobody says."""
+    """Why it has happened; empty where that is not known."""
     return event.reason if isinstance(event, Failure) else ""
 
 
@@ -36,7 +36,7 @@ class Fleet(Protocol):
         ...
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """Hear and speak until a time of the mission's clock; may return before, where something was heard.
+        """Receive and send until a time of the mission's clock; may return before, where something has arrived.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Follows way points for a robot that only says where it is: which is next, and how many it has passed."""
+"""Progress along way points of a robot that reports poses alone: the next one, and how many it has passed."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Follower:
 
     @property
     def waits(self) -> bool:
-        """Whether it has passed all that it was sent to; not one that was sent nowhere, or told to stay where it is."""
+        """Whether it has passed all way points of an order that had some."""
         return self.aim is None and self.passed > 0
 
     @property
@@ -71,7 +71,7 @@ class Follower:
         return self.passed > before
 
     def wait(self, now: float) -> bool:
-        """Nothing was heard, but time goes on; returns whether a hold is over, and its way point passed with that."""
+        """Let time go on without a new pose; returns whether a hold is over, and its way point passed with that."""
         if self.aim is None or self._held_since is None or now - self._held_since < self.aim.hold_s:
             return False
         self.passed += 1
@@ -79,7 +79,7 @@ class Follower:
         return True
 
     def arrive(self, now: float) -> None:
-        """It is at its way point, as one says who knows better than its poses do."""
+        """Count it as arrived, by a source other than its poses."""
         if self.aim is not None and self._held_since is None:
             self._held_since = now
 

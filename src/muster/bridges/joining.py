@@ -1,4 +1,4 @@
-"""Robots that the mission does not name: found by their topics, they join once they have said where they are.
+"""Robots that the mission does not name: found by their topics, they join once their position is known.
 
 Steps 2 to 4 of the dynamic instantiation of [tcf-thesis], Figure 5.7. How such a robot describes itself is the
 middleware's affair.
@@ -62,7 +62,7 @@ class Newcomers(Generic[P]):
         self._topics, self._describe, self._reach, self._warn = topics, describe, reach, warn
         self._origin = (0.0, 0.0) if flat else (0.0, 0.0, 0.0)
         self.ports: dict[str, P] = {}
-        """Of robots that were found and have not said yet where they are."""
+        """Of robots that were found and whose position is not known yet."""
 
     def discover(self) -> None:
         """Look for robots on topics; an error that is no MissionError leaves the rest to the next call."""
@@ -71,7 +71,7 @@ class Newcomers(Generic[P]):
                 self._meet(Robot(id=name, position=self._origin))
 
     def located(self) -> list[P]:
-        """The ports of robots that have said where they are since; `body` is who they are, and where."""
+        """The ports of robots whose position is known by now; `body` has it."""
         found = [(name, said) for name, port in self.ports.items() if (said := port.telemetry()) is not None]
         for name, said in found:
             body = self.ports[name].body

@@ -1,4 +1,4 @@
-"""How far a robot has gone, by where it says it is: robot_usage of [tcf-thesis], Table 5.2."""
+"""Travelled distance of a robot by its reported positions: robot_usage of [tcf-thesis], Table 5.2."""
 
 from __future__ import annotations
 

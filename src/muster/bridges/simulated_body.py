@@ -1,4 +1,4 @@
-"""The body of a simulated robot behind a bridge: it moves exactly by its kinematics, as it is told on whatever wire."""
+"""The body of a simulated robot behind a bridge: it moves exactly by its kinematics, as it is commanded."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.port import Place, Waypoint
 
 _DEAF_S = 0.5
-"""A robot that is told no velocity for longer goes to its way point, or stands."""
+"""A robot that gets no velocity command for longer goes to its way point, or stands."""
 
 
 class SimulatedBody:
@@ -47,13 +47,13 @@ class SimulatedBody:
         return (x, y, z), float(wrapped(heading))
 
     def drive(self, velocity: Velocity, now: float) -> None:
-        """It is told how to move; its way point is forgotten."""
+        """Take a velocity command; the way point is dropped."""
         if all(map(math.isfinite, velocity)):
             self._told, self._told_s = velocity, now
             self._follower.take(())
 
     def go_to(self, place: Place, heading: float) -> None:
-        """It is told where to go."""
+        """Take a way point."""
         self._follower.take([Waypoint(place, heading)])
 
     def step(self, now: float, dt: float) -> Floats:

@@ -27,7 +27,7 @@ _TO_THE_RIGHT = math.radians(1.0)
 SETTLES_S = 0.4
 """How fast robots come to their way points at the end: several times the delay from a pose to what is done about it."""
 _STANDS = 1e9
-"""Priority of who stands: the others go around."""
+"""Priority of a robot that stands: the others go around it."""
 
 Velocity = tuple[float, float, float, float]
 """Ahead, left, up in m/s, and yaw rate in rad/s: of a body."""
@@ -64,7 +64,7 @@ class SteeredRobot:
 
 
 class Steering:
-    """Remembers what robots were told last, which limits what they can be told next.
+    """Keeps the last inputs of each robot, which limit the next ones.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ _HELD_UP_S = 1.0
 _SLOW = 0.1
 """Share of its speed below which a robot hardly goes."""
 _AHEAD_M = 3.0
-"""So far ahead of one that is held up, those are asked who stand there."""
+"""Metres ahead of a robot that is held up, within which robots that stand yield."""
 _DIRECTIONS, _RINGS = 24, 8
 _STRAYS_M = 0.5
 """Farther beside its way, and its body's breadth, a robot was moved by somebody else; nearer it goes around others."""
@@ -47,7 +47,7 @@ class _Trip:
 
 
 class Yielding:
-    """Remembers where those who wait belong, and who is held up since when.
+    """Keeps where waiting robots belong, and which robots are held up since when.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What changes while a mission is carried out, as it reaches the ledger of tasks and the crew."""
+"""Changes while a mission is carried out, applied to the task ledger and the robots."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OUT = {FAILED: "failed", SILENT: "fell silent", STUCK: "did not get on"}
 
 @dataclass(frozen=True)
 class Change:
-    """Something that asks for a new plan.
+    """A change that requires a new plan.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Change:
 
 @dataclass
 class Changes:
-    """Lets events happen to a ledger and a crew.
+    """Applies events to the task ledger and the robots.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Changes:
             yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
 
     def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
-        """A robot takes no part any more: what it was to do is free, also what it was doing."""
+        """Exclude a robot: its tasks are free, the current one too."""
         if state.out == FAILED or (state.out and why != FAILED):
             return
         state.out, state.out_s = why, now
@@ -92,7 +92,7 @@ class Changes:
         yield Change(why, {"robot": state.robot.id} | ({"reason": detail} if detail else {}))
 
     def readmit(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot takes part again, from where it is."""
+        """Let a robot take part again, from where it is."""
         if state.out:
             state.out, state.last_heard_s, state.stuck_before = "", now, False
             self.ledger.unblock(state.robot.id)

@@ -1,4 +1,4 @@
-"""What was done of a mission before whoever carried it out ended: tasks, and what robots used."""
+"""Work that was completed before a restart: tasks, and usage of robots."""
 
 from __future__ import annotations
 

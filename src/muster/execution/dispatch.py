@@ -1,4 +1,4 @@
-"""Dispatch: sends each robot to its next task, to its work and to its end, and sees how far it is."""
+"""Dispatch: sends each robot to its next task, to its work and to its end, and tracks its progress."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Emit = Callable[[str, Mapping[str, Any]], None]
 
 
 class Dispatch:
-    """Sends robots of a crew on, one at a time.
+    """Sends robots to their next task, one robot a call.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Dispatch:
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, state: RobotState, now: float) -> None:
-        """See whether a robot has arrived, or ended its work."""
+        """Check whether a robot has arrived, or ended its work."""
         if state.activity is Activity.DRIVING and state.passed >= state.to_task:
             self._arrive(state, now)
         if state.activity is Activity.WORKING and state.arrived:
@@ -64,7 +64,7 @@ class Dispatch:
             self._emit("robot_at_end", {"robot": state.robot.id})
 
     def send_on(self, state: RobotState, now: float) -> Iterator[Change]:
-        """Send a robot on that is available, or may begin; yields why it cannot, which asks for a new plan."""
+        """Send a robot on that is available, or may begin; yields a change that requires a new plan if it cannot."""
         if state.activity is Activity.WAITING:
             if self._ledger.may_begin(state.route[0]) and (self._leave is None or self._leave(state.route[0])):
                 self._work(state, now)
@@ -90,7 +90,7 @@ class Dispatch:
         self._emit("no_way_to_end", {"robot": state.robot.id})
 
     def again(self, state: RobotState, now: float) -> None:
-        """Send a robot that does not get on once more, by a new way if it drives."""
+        """Send a robot without progress once more, by a new path if it drives."""
         state.stuck_before = True
         if state.activity is Activity.WORKING:
             state.send_again(now)
@@ -98,7 +98,7 @@ class Dispatch:
             state.stop(now)
 
     def take_route(self, state: RobotState, tasks: Sequence[str], now: float) -> None:
-        """Give a robot another route; it keeps on with work, and on its way if that is to the same task."""
+        """Give a robot another route; it goes on with its work, and with its path if that leads to the same task."""
         if state.activity is Activity.WORKING:
             state.route = [state.route[0], *tasks]
             return

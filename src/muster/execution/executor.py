@@ -61,7 +61,7 @@ class Executor:
     limits
         of the monitor.
     observer
-        is told all that happens.
+        receives all events.
     now
         seconds of the mission's clock at which it begins.
     past
@@ -137,7 +137,7 @@ class Executor:
 
     @property
     def idle(self) -> bool:
-        """Whether nobody of the crew has anything to do, or a way to go."""
+        """Whether no robot has a task left, or is under way."""
         ways = [state for state in self._present if state.activity is not Activity.IDLE]
         return not ways and not any(state.route or self._dispatch.goes_home(state) for state in self._present)
 
@@ -180,7 +180,7 @@ class Executor:
         self._changes.require_newcomer(robot)
 
     def report_if_it_fits(self, event: Event, reason: str = "") -> bool:
-        """`report` where nobody is there to hear of an error: what does not fit is refused, and that is told."""
+        """As `report`, but an event that does not fit is refused, with the event `event_refused`."""
         try:
             self.report(event, reason)
         except ParameterError as error:
@@ -265,7 +265,7 @@ class Executor:
             self._go_on()
 
     def _go_on(self) -> None:
-        """Plan the rest again if that was asked for, and send robots on, until nobody refuses what it is to do."""
+        """Plan the rest again if that is due, and send robots on, until no robot refuses its task."""
         while True:
             if self._asked:
                 self._plan_again()

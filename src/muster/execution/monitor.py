@@ -50,7 +50,7 @@ def is_silent(state: RobotState, now: float, limits: Limits) -> bool:
 
 
 def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
-    """Whether a robot that should get on does not: its way grows no shorter, or its work takes far too long."""
+    """Whether a robot makes no progress: its path grows no shorter, or its work takes far too long."""
     if state.activity is Activity.WORKING:
         return now > state.nearest_s + 2 * state.work_s + limits.stuck_after_s
     if state.activity not in (Activity.DRIVING, Activity.RETURNING):
@@ -69,7 +69,7 @@ def seems_late(state: RobotState, now: float, limits: Limits) -> bool:
 
 
 def held_up(crew: Sequence[RobotState]) -> list[RobotState]:
-    """Those under way who have one before them that stands at work, or is held up itself.
+    """Robots under way that are blocked by a robot at work, or by one that is blocked itself.
 
     Of two that stand close to their way points at work, the one that is nearer to its own holds the other up.
     """
@@ -121,5 +121,5 @@ def stands_in_the_way(broken: RobotState, robot: Robot, points: Sequence[Place])
 
 
 def exceeds(used: float, capacity: float | None) -> bool:
-    """Whether a usage is more than a robot can."""
+    """Whether a usage exceeds a capacity."""
     return capacity is not None and used > capacity * (1 + _ROUNDING) + _ROUNDING

@@ -1,4 +1,4 @@
-"""Who watches a mission being carried out: what is told, and in what form."""
+"""Observers of a mission that is carried out: the events that they receive, and their form."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ class ExecutionEvent:
 
 
 class Observer(Protocol):
-    """Is told everything, in the order in which it happens. Times are seconds of the mission's clock."""
+    """Receives everything, in the order in which it happens. Times are seconds of the mission's clock."""
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something happened; `data` is plain: texts, numbers, lists and mappings."""
+        """An event; `data` is plain: texts, numbers, lists and mappings."""
         ...
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        """A robot said something new."""
+        """New telemetry of a robot."""
         ...
 
     def on_plan(self, now: float, plan: Plan) -> None:
-        """From now on this is the plan: of the whole mission, what is done included."""
+        """The plan from now on: of the whole mission, what is done included."""
         ...
 
 
 class Recorder(Observer, Protocol):
-    """Who keeps all that happens, where robots are, and the report; see `muster.report.record.RecordWriter`."""
+    """Receives the positions of robots and the report, too; see `muster.report.record.RecordWriter`."""
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """Robots are there: (n, 3) metres, (n,) radians, (n, 3) m/s in the map frame, NaN of those that are not.
@@ -47,7 +47,7 @@ class Recorder(Observer, Protocol):
         ...
 
     def on_report(self, report: dict[str, Any]) -> None:
-        """It is over."""
+        """The mission is over."""
         ...
 
 

@@ -80,7 +80,7 @@ class RobotState:
 
     @property
     def available(self) -> bool:
-        """The thesis' `a_i`."""
+        """Whether it can take a task: `a_i` of [tcf-thesis], 5.3.1."""
         return not self.out and self.activity in (Activity.IDLE, Activity.RETURNING)
 
     @property
@@ -89,7 +89,7 @@ class RobotState:
 
     @property
     def refuge(self) -> Place:
-        """A place near by where it can stand for certain."""
+        """A place near by that is known to be free."""
         return self.left if self.left is not None else place(self.robot.position)
 
     @property
@@ -108,12 +108,12 @@ class RobotState:
         return self.passed >= len(self._waypoints)
 
     def recall(self, used: float) -> None:
-        """It has used so much before it was heard first, in the mission's unit, as a gauge has it."""
+        """Set its usage before the first telemetry, in the mission's unit."""
         said = self.port.telemetry()
         self.busy_s, self.charged = used, used - (said.odometry_m if said is not None else 0.0)
 
     def hear(self, now: float) -> Telemetry | None:
-        """What it says, if that is new."""
+        """Its telemetry, if that is new."""
         if self.activity in MOVING and not self.out:
             self.busy_s += now - self.since_s
         self.since_s = now
@@ -147,7 +147,7 @@ class RobotState:
         self.begin_activity(now, Activity.IDLE)
 
     def stand(self, now: float) -> None:
-        """Stop for a while: who is under way has to be sent again, who works keeps what is left of the work."""
+        """Stop for a pause: a robot under way is sent again later, a robot at work keeps the rest of its work."""
         if self.activity is Activity.WORKING:
             self._waypoints = self._waypoints[self.passed :]
             self._order = self.port.cancel()

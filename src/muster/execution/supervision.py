@@ -1,4 +1,4 @@
-"""The overseer looks at the crew now and then: what the monitor notices of robots becomes changes."""
+"""Supervision of the robots at intervals: findings of the monitor become changes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Supervisor:
     look_s: float
 
     def look(self, now: float) -> Iterator[Change]:
-        """Look at all that take part, if that is due; yields what asks for a new plan."""
+        """Check all robots that take part, if that is due; yields changes that require a new plan."""
         if now < self.look_s:
             return
         self.look_s = now + self.limits.look_every_s
@@ -62,7 +62,7 @@ class Supervisor:
         return [state for state in self.crew.values() if not state.out]
 
     def _free_or_put_out(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot that does not get on is sent again, and out the next time; not if a broken one stands in its way."""
+        """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it."""
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
         if blocking is not None and state.activity is Activity.RETURNING:
@@ -76,14 +76,14 @@ class Supervisor:
             self.dispatch.again(state, now)
 
     def _let_refuse(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot that will not get to where it was sent: others do the task, or it ends where it is."""
+        """A robot cannot reach its way point: other robots do the task, or it ends where it is."""
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         else:
             yield from self.dispatch.refuse(state, state.route[0], state.refused, now)
 
     def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
-        """No robot gets to a task at which a broken one stands, if it is as large as the one that tried."""
+        """A failed robot stands at a task: robots as large as the one that tried cannot reach it."""
         task, points, reason = state.route[0], state.points_left, f"unreachable: {blocking.robot.id} stands there, out"
         for other in self._present:
             able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
@@ -93,7 +93,7 @@ class Supervisor:
         return self.dispatch.refuse(state, task, reason, now)
 
     def _notice_capacity(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot that cannot do the task it is on its way to, or all the rest of its route, by what it has used."""
+        """The capacity of a robot is too small for its current task, or for the rest of its route."""
         task, capacity, after = state.route[0], self.capacity(state), state.used_after(now)
         if exceeds(after + state.home_usage, capacity):
             reason = f"capacity: {after + state.home_usage:.2f} used with it, of {capacity:.2f}"

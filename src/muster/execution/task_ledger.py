@@ -1,4 +1,4 @@
-"""The ledger of tasks: which there are, how far each is, and why one is lost. Nothing is ever struck out."""
+"""The task ledger: all tasks, the progress of each, and why one is lost. Entries are never removed."""
 
 from __future__ import annotations
 

@@ -6,7 +6,6 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
-from muster.exchange.export_request import Files, QgcOptions
 from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -14,7 +13,7 @@ from muster.mission.text_files import write_text
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
-    from muster.exchange.export_request import QgcKeywords
+    from muster.exchange.export_request import Files, QgcKeywords
 
 
 def export(
@@ -52,6 +51,7 @@ def export(
     ParameterError
         if there is no such format, or an option is wrong.
     """
+    from muster.exchange.export_request import QgcOptions
     from muster.exchange.files import exported
     from muster.verification.required import require_admissible
 

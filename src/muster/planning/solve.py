@@ -6,7 +6,6 @@ import inspect
 from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from muster.allocation.parameter_types import AllocatorParameters
 from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
@@ -19,6 +18,7 @@ from muster.planning.solving import OnProgress, answer
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
     from muster.allocation.function_allocator import AllocatingFunction
+    from muster.allocation.parameter_types import AllocatorParameters
     from muster.verification import Verdict
 
 
@@ -96,6 +96,8 @@ def solve(
 
 def _require_no_misspelt_argument(parameters: Mapping[str, Any]) -> None:
     """Refuse a misspelt argument of `solve`; the allocator refuses parameters that it does not have."""
+    from muster.allocation.parameter_types import AllocatorParameters
+
     for name in parameters:
         if name not in AllocatorParameters.__annotations__ and did_you_mean(name, _ARGUMENTS):
             require_known([name], _ARGUMENTS)

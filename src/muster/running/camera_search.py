@@ -1,7 +1,7 @@
 """Robots that look while a plan is carried out: what their cameras find becomes tasks ([tcf-thesis] 4.3, 7.3).
 
 Each camera looks at its own rate from where it truly is. Its robot takes itself to be where its telemetry says, and
-tilted as its inertial unit says, both with the world's noise. Of a robot that is silent nobody hears what it sees.
+tilted as its inertial unit says, both with the world's noise. What a silent robot sees is lost.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class CameraSearch:
     seed
         of what is random.
     on_look
-        is told every look.
+        receives every look.
     proof
         when a point of interest counts as found.
 

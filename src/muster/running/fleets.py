@@ -41,7 +41,7 @@ FLEETS: Registry[OpenFleet] = Registry(
 def fleet_ready(
     world: str, mission: Mission, settings: Mapping[str, Any], halt: threading.Event, *, again: bool
 ) -> Opened:
-    """The robots of a mission, heard and ready; and what they are told when all is done.
+    """The robots of a mission, ready to go; and the function to call when all is done.
 
     Parameters
     ----------

@@ -64,9 +64,9 @@ def carry_out_live(
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
-        is told all that happens, and where robots say that they are.
+        receives all events, and the positions that robots report.
     on_event
-        is told what happens, as it happens.
+        receives every event when it happens.
 
     Raises
     ------
@@ -105,7 +105,7 @@ class Live:
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
-        is told all that happens, and where robots say that they are.
+        receives all events, and the positions that robots report.
     past, begin_s
         what was done before, of a mission that goes on, and up to when.
 

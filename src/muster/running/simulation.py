@@ -61,11 +61,11 @@ class Simulation:
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
-        is told all that happens.
+        receives all events.
     on_look
-        is told each look of a camera; cameras look where the mission has tags.
+        receives each look of a camera; cameras are used where the mission has tags.
     on_world
-        is given the world when it is made, to look at it: at bodies, in the physics world.
+        receives the world when it is made, to read the states of bodies.
 
     Raises
     ------
@@ -274,7 +274,7 @@ def carry_out(
     speed
         how many times as fast as the wall clock; None: as fast as it goes.
     on_event
-        is told what happens, as it happens.
+        receives every event when it happens.
     halt
         when it is set, carrying out stops, and the report is of what was done until then.
     """

@@ -1,15 +1,16 @@
-"""What a drone is told from first to last when it is given an order: to fly way points, to hover, to stand down."""
+"""The sequence of requests for each order: fly way points, change the mode, stand down."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from muster.bridges.follower import Follower
-from muster.bridges.mavlink import procedures
 from muster.bridges.mavlink.drone import Drone
 from muster.bridges.mavlink.faults import FaultError
 from muster.bridges.mavlink.mission_items import route_of
 from muster.bridges.mavlink.position_targets import TURNED_RAD
+from muster.bridges.mavlink.procedures import armed, climb, disarmed, started, upload
+from muster.bridges.mavlink.procedures import mode as change_mode
 from muster.bridges.mavlink.requests import Script, pause
 from muster.motion.port import Waypoint
 
@@ -29,10 +30,10 @@ def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
         accept_m=drone.settings.accept_m,
         take_off=not telemetry.up,
     )
-    yield from procedures.upload(drone.target, route)
+    yield from upload(drone.target, route)
     yield from _armed(drone)
     drone.mode, drone.changing_mode = None, True
-    yield from procedures.started(drone.target, kind, route.first)
+    yield from started(drone.target, kind, route.first)
     drone.route, drone.mode, drone.changing_mode = route, kind.mission, False
 
 
@@ -49,7 +50,7 @@ def guided(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
     yield from into(drone, drone.kind.guided)
     yield from _armed(drone)
     if not drone.telemetry.up:
-        yield from procedures.climb(drone.target, waypoints[0].position[2] - drone.telemetry.start[2])
+        yield from climb(drone.target, waypoints[0].position[2] - drone.telemetry.start[2])
     drone.follower = follower
 
 
@@ -62,7 +63,7 @@ def into(drone: Drone, mode: int) -> Script:
     drone.mode = None
     if drone.changing_mode or not shown:
         drone.changing_mode = True
-        yield from procedures.mode(drone.target, drone.kind, mode, sightings=2 if shown else 1)
+        yield from change_mode(drone.target, drone.kind, mode, sightings=2 if shown else 1)
     drone.mode, drone.changing_mode = mode, False
 
 
@@ -75,7 +76,7 @@ def stand_down(drone: Drone) -> Script:
     if not drone.telemetry.was_up:
         drone.disarming = drone.changing_mode = True
         try:
-            yield from procedures.disarmed(drone.target, drone.kind)
+            yield from disarmed(drone.target, drone.kind)
         except FaultError:  # refused: it does not stand on the ground any more
             pass
         else:
@@ -87,5 +88,5 @@ def stand_down(drone: Drone) -> Script:
 def _armed(drone: Drone) -> Script:
     drone.asked_to_arm = True
     if drone.disarming or not drone.telemetry.armed:
-        yield from procedures.armed(drone.target)
+        yield from armed(drone.target)
     drone.disarming = False

@@ -1,4 +1,4 @@
-"""One drone as Muster works with it: who it is, what it said, and what is wanted of it."""
+"""Working state of one drone: its robot, its telemetry, its orders."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ class Drone:
 
     @property
     def kind(self) -> Autopilot:
-        """Its autopilot, which was heard."""
+        """Its autopilot; a heartbeat must have arrived."""
         assert self.autopilot is not None
         return self.autopilot
 
     @property
     def target(self) -> Message:
-        """A message of it, which says to whom answers go."""
+        """A message of the drone; its sender is the target of commands."""
         assert self.telemetry.heartbeat is not None
         return self.telemetry.heartbeat
 
     @property
     def located(self) -> bool:
-        """Whether it has said where it is, in all frames in which it is to be told where to go."""
+        """Whether its position is known in all frames in which it gets way points."""
         return self.telemetry.place is not None and not (self.settings.offboard and self.telemetry.local is None)
 
     @property

@@ -1,4 +1,4 @@
-"""What drones would be told, if all went as planned: way points of routes, checked against the fence."""
+"""The way points that would be sent if all went as planned, checked against the fence."""
 
 from __future__ import annotations
 

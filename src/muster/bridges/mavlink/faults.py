@@ -9,7 +9,7 @@ _TEXTS_WITHIN_S = 0.5
 
 
 class Reaction(Enum):
-    """What Muster tells a drone that fails."""
+    """The command that a drone with a fault gets."""
 
     NOTHING = "nothing"  # it cannot hear, lies on the ground, or somebody else flies it
     HOLD = "hold"
@@ -17,7 +17,7 @@ class Reaction(Enum):
 
 
 class Kind(Enum):
-    """A failure by its name: why the drone takes no part any more, and what it is told."""
+    """A kind of fault, and the reaction to it. The drone takes no part any more."""
 
     LINK_LOST = "link lost", Reaction.NOTHING
     ITEM_REJECTED = "item rejected", Reaction.HOLD
@@ -37,7 +37,7 @@ class Kind(Enum):
 
     @property
     def is_refusal(self) -> bool:
-        """Whether the autopilot did not do what it was told; its status texts may say why."""
+        """Whether the autopilot refused a command; its status texts may give the reason."""
         return self in (Kind.ITEM_REJECTED, Kind.ARM_REFUSED, Kind.COMMAND_REFUSED, Kind.NO_ANSWER)
 
 
@@ -64,12 +64,12 @@ class Fault:
     texts: tuple[str, ...] = ()
 
     def awaits_texts(self, now: float) -> bool:
-        """Whether a status text that is heard now may say why something was refused."""
+        """Whether a status text that arrives now may give the reason of a refusal."""
         return self.kind.is_refusal and now <= self.at_s + _TEXTS_WITHIN_S
 
     @property
     def reason(self) -> str:
-        """What has happened, in the autopilot's words too."""
+        """Kind and detail of the fault, with the status texts of the autopilot."""
         texts = f" ({'; '.join(self.texts)})" if self.texts else ""
         return f"{self.kind.words}: {self.detail}{texts}"
 

@@ -30,7 +30,7 @@ from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
-"""For how long it is spoken at the least, and at the most, to drones that are told how to end, or are not heard."""
+"""Seconds, at least and at most, for which final commands are sent to drones that do not confirm, or are silent."""
 _STANDSTILL_S, _MOVED_M = 20.0, 3.0
 """A drone that returns or lands and moves less in this time is waited for no longer."""
 
@@ -104,7 +104,7 @@ class MavlinkFleet:
         return sorted(found, key=lambda fault: fault.at_s)
 
     def connect(self, within_s: float = 10.0) -> None:
-        """Wait until every drone has said who and where it is.
+        """Wait until every drone has sent a heartbeat and its position.
 
         Raises
         ------
@@ -127,7 +127,7 @@ class MavlinkFleet:
             self._speaker.start()
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """Hear and speak; a drone that cannot go on is told once (`robot_fails`). Raises what has ended the thread."""
+        """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""
         while True:
             self._go_on()
             if self._failure is not None:
@@ -177,7 +177,7 @@ class MavlinkFleet:
             link.close()
 
     def _new_faults(self) -> list[Fault]:
-        """The first fault of each drone that was not reported yet, as soon as all is heard that belongs to it."""
+        """The first fault of each drone that was not reported yet, once its status texts are complete."""
         first = [session.fault for session in self.sessions.values() if session.fault is not None]
         ready = [fault for fault in first if fault.robot not in self._told and not fault.awaits_texts(self.time_s)]
         return sorted(ready, key=lambda fault: fault.at_s)
@@ -187,7 +187,7 @@ class MavlinkFleet:
         return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=fault.reason)
 
     def _ending_flights(self) -> list[Drone]:
-        """The drones that return or land, and were heard lately."""
+        """The drones that return or land and have sent a heartbeat lately."""
         drones = [session.drone for session in self.sessions.values() if session.drone.autopilot is not None]
         return [
             drone

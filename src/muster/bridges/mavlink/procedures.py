@@ -36,7 +36,7 @@ def obeyed(
     sightings: int = 1,
     with_it: Sequence[Message] = (),
 ) -> Script:
-    """Give a command until what is heard shows that it was obeyed. That it is acknowledged does not.
+    """Repeat a command until telemetry shows its effect. An acknowledgement does not show that.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def obeyed(
 
 
 def _result(acknowledgement: Message) -> str:
-    """What an acknowledgement says, with the number that details it if there is one."""
+    """The result of an acknowledgement, with its second parameter if there is one."""
     name, detail = name_of("MAV_RESULT", acknowledgement.result), acknowledgement.result_param2
     return f"{name}, {detail}" if detail else name
 
@@ -89,7 +89,7 @@ def armed(target: Message) -> Script:
 
 
 def disarmed(target: Message, autopilot: Autopilot) -> Script:
-    """Disarm it on the ground: not forced, so that in the air it refuses; told to hold too, in case it takes off."""
+    """Disarm it on the ground, without force: in the air it refuses. A command to hold precedes it: it may take off."""
     hold = command(target, mavlink.MAV_CMD_DO_SET_MODE, *_mode_parameters(autopilot, autopilot.hold))
     number, kind = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, Kind.COMMAND_REFUSED
     return obeyed(target, number, (0.0,), _beats(armed=False), kind, sightings=2, with_it=[hold])

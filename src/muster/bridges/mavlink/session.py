@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from muster.bridges.mavlink import commands, procedures
 from muster.bridges.mavlink.autopilots import AtEnd, autopilot_of
+from muster.bridges.mavlink.commands import guided, into, mission, stand_down
 from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.drone import Drone
 from muster.bridges.mavlink.fault_detection import FaultDetector
 from muster.bridges.mavlink.faults import Fault, FaultError, Kind, Reaction
 from muster.bridges.mavlink.position_targets import EVERY_S, position_target
+from muster.bridges.mavlink.procedures import command
 from muster.bridges.mavlink.requests import RequestSequence, Script
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
@@ -26,12 +27,12 @@ _TELEMETRY = (30, 32, 33, 147, 1, 42, 162)  # ATTITUDE, the two places, the two 
 _TELEMETRY_US = 100_000
 _ASK_AGAIN_S = 5.0
 _LET_GO = Kind.TAKEN_OVER, Kind.DISARMED
-"""Faults after which Muster says nothing more, whatever is heard."""
+"""Faults after which Muster sends no command any more."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
 
 
 class Session:
-    """What is said to one drone and heard from it.
+    """The connection to one drone.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ class Session:
 
     @property
     def busy(self) -> bool:
-        """Whether something that it was told is not answered yet."""
+        """Whether a request is not answered yet."""
         return self._requests is not None
 
     def take(self) -> list[Message]:
@@ -121,7 +122,7 @@ class Session:
             self._try(lambda: self._call_back(now), now)
 
     def note_missing_hold(self) -> None:
-        """Let its fault say so if it was not told to hover: it may fly on."""
+        """Add to its fault that it did not get the command to hover: it may fly on."""
         if self.fault is not None and self.hold_pending and self._is_left_to_us:
             self.faults[0] = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
             self.hold_pending = False
@@ -157,7 +158,7 @@ class Session:
         self._try(lambda: self._go_on(now), now)
 
     def fail(self, kind: Kind, detail: str, now: float) -> None:
-        """Take no part any more, for good, and react as the kind of fault says."""
+        """Take no part any more, for good, and react by the kind of fault."""
         texts = self.drone.telemetry.texts if kind.is_refusal else ()
         fault = Fault(now, self.drone.robot.id, kind, detail, texts)
         if self.fault is not None:
@@ -173,7 +174,7 @@ class Session:
             self._end_flight(reactions[kind.reaction], now)
 
     def _explain_refusal(self, now: float) -> None:
-        """The status text that says why something was refused may come after the refusal."""
+        """Add a status text that arrives shortly after a refusal to its fault."""
         if self.faults and self.faults[-1].awaits_texts(now):
             self.faults[-1] = replace(self.faults[-1], texts=self.drone.telemetry.texts)
 
@@ -192,7 +193,7 @@ class Session:
         if not waypoints:
             return
         self._fault_detector.require_charge()
-        way = commands.guided if self.drone.settings.offboard else commands.mission
+        way = guided if self.drone.settings.offboard else mission
         self._begin(way(self.drone, waypoints), now)
 
     @property
@@ -206,9 +207,9 @@ class Session:
     def _end_flight(self, mode: int, now: float) -> None:
         """Into a mode if it flies under Muster; on the ground it stands down instead."""
         if self.drone.stands:
-            self._begin(commands.stand_down(self.drone), now)
+            self._begin(stand_down(self.drone), now)
         elif self.drone.ours:
-            self._begin(commands.into(self.drone, mode), now)
+            self._begin(into(self.drone, mode), now)
 
     @property
     def _is_left_to_us(self) -> bool:
@@ -289,7 +290,7 @@ class Session:
         self._asked_s = now
         for number in _TELEMETRY:
             rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
-            self._say(procedures.command(self.drone.target, *rate))
+            self._say(command(self.drone.target, *rate))
 
     def _say(self, message: Message) -> None:
         """The one way out."""

@@ -74,7 +74,7 @@ class SimulatedAutopilot:
                     handler(message)
 
     def advance(self, now: float) -> list[bytes]:
-        """Fly until a time; returns what it says."""
+        """Fly until a time; returns the packets to be sent."""
         by_s = 0.0 if self._now < -1e8 else now - self._now
         self._now = now
         if self._arms_s is not None and now >= self._arms_s:
@@ -222,7 +222,7 @@ class SimulatedAutopilot:
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _disarm(self) -> int:
-        """In the air it refuses; what it was told before, it does before."""
+        """In the air it refuses; a command to arm that is under way comes first."""
         if self.flight.flies:
             return int(mavlink.MAV_RESULT_DENIED)
         if self._arms_s is not None:

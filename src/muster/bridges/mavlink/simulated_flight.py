@@ -13,7 +13,7 @@ _TURN_RADPS = 1.0
 
 @dataclass
 class Flight:
-    """Straight to where it is told, at an even speed; turned as it flies, or as it is told, at an even rate."""
+    """Flies straight at constant speed; its yaw follows the flight, or a command, at a constant rate."""
 
     speed_mps: float = 5.0
     place: Place = (0.0, 0.0, 0.0)

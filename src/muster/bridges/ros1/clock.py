@@ -27,7 +27,7 @@ class Forward:
         return self._read() > 0
 
     def __call__(self) -> float:
-        """Seconds that have gone by since it was heard first; a jump back takes none of them."""
+        """Seconds since the first message; a jump back takes none of them."""
         with self._lock:
             said = self._read()
             if self._last > 0:
@@ -58,7 +58,7 @@ class MissionClock:
 
     @property
     def unpaused_s(self) -> float:
-        """Seconds that go on in pauses too, for who watches robots then."""
+        """Seconds that go on in pauses too, to monitor robots then."""
         return self._now()
 
     @property

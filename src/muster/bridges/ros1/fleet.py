@@ -31,7 +31,7 @@ from muster.motion.robot_paths import RobotPaths
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
-"""A robot that was not heard for longer is told to stand."""
+"""A robot that is silent for longer gets the command to stand."""
 _TICK_S = 0.01
 """Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
 
@@ -268,7 +268,7 @@ class Ros1Fleet:
             self._ports[steered.robot.id].speak(steered, told.get(steered.robot.id, STILL))
 
     def _look_on(self) -> None:
-        """Look for robots that nobody knows, again and again; those who have said where they are join."""
+        """Look for unknown robots, again and again; robots whose position is known join."""
         while not self._closed.wait(_LOOK_S):
             for port in self._newcomers.look():
                 with self._lock:

@@ -28,7 +28,7 @@ class Ros1Newcomers(Newcomers[Ros1Port]):
         )
 
     def look(self) -> list[Ros1Port]:
-        """The ports of robots that have said where they are since; while the master does not answer, none is found."""
+        """The ports of robots whose position is known by now; while the master does not answer, none is found."""
         try:
             self.discover()
         except Exception as error:  # rospy raises whatever the network does; who watches the master tells of it
@@ -36,6 +36,6 @@ class Ros1Newcomers(Newcomers[Ros1Port]):
         return self.located()
 
     def close(self) -> None:
-        """Close the ports of robots that have not said where they are."""
+        """Close the ports of robots that have not joined."""
         for port in self.ports.values():
             port.close()

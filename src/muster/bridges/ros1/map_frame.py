@@ -1,4 +1,4 @@
-"""Poses in any frame, as poses of the map: by what tf says of frames."""
+"""Poses in any frame, as poses of the map, by tf."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from muster.motion.frames import Floats
 from muster.motion.transform_tree import TransformTree
 
 OWN = "muster/"
-"""Begins the names of frames that Muster says, and need not hear."""
+"""Prefix of the frames that Muster publishes itself."""
 
 
 class MapFrame:
@@ -71,7 +71,7 @@ class MapFrame:
                 rospy.logwarn_throttle(10.0, f"tf: {error}")
 
     def _forget_if_time_went_back(self) -> None:
-        """A simulator that begins anew stamps what it says with times that would be too old; so does tf2."""
+        """A simulator that begins anew stamps messages with times that would be too old; so does tf2."""
         now = rospy.get_time()
         if now < self._heard_s:
             self._tree = TransformTree()

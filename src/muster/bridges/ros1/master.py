@@ -42,7 +42,7 @@ class Master:
             port = probe.getsockname()[1]
         self.address = f"http://127.0.0.1:{port}"
         self.environment = {"ROS_MASTER_URI": self.address, "ROS_IP": "127.0.0.1", "ROS_LOG_DIR": str(folder)}
-        """Of those who are to be nodes under it."""
+        """The environment of its nodes."""
         self._command = [program, "--core", "-p", str(port)]
         self.start()
 
@@ -65,7 +65,7 @@ class Master:
         self._process.send_signal(number)
 
     def stop(self) -> None:
-        """End it at once: nodes are not told."""
+        """End it at once, without notice to nodes."""
         self._process.kill()
         self._process.wait()
 

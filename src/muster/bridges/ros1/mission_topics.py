@@ -1,4 +1,4 @@
-"""What the controller says to other nodes while a mission is carried out: all of it JSON in std_msgs/String.
+"""Topics that the controller publishes for other nodes: all of it JSON in std_msgs/String.
 
 `/muster/status`, `/muster/mission`, `/muster/plan` and `/muster/robots` are latched, for nodes that come late.
 """
@@ -74,7 +74,7 @@ class MissionTopics:
         self._publish_status()
 
     def refuse(self, reason: str) -> None:
-        """Tell whoever hears events that something asked for was refused."""
+        """Publish the event that a request was refused."""
         self._say("events", {"kind": "event_refused", "reason": reason})
 
     def on_plan(self, now: float, plan: Plan) -> None:
@@ -95,7 +95,7 @@ class MissionTopics:
             self._advance_status(now)
 
     def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        """See `Observer`: the system monitor hears robots itself."""
+        """See `Observer`: the system monitor subscribes to robots itself."""
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`: where robots are is in what they say."""

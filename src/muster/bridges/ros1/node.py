@@ -99,7 +99,7 @@ def publish(publisher: Any, message: Any) -> None:
 
 
 def hear(topic: str, kind: Any, do: Callable[..., None], **how: Any) -> Any:
-    """Listen to a topic, until the node ends: what fails because ROS has shut it down is not told of."""
+    """Subscribe to a topic, until the node ends: errors because ROS has shut it down are ignored."""
 
     def heard(message: Any, *more: Any) -> None:
         try:

@@ -21,7 +21,7 @@ _PATIENCE_S = 3.0
 _MASTER_GONE_S = 5.0
 """Topics live on without their master: for so long it is waited for, or for another in its place."""
 _HANGS_S = 10.0
-"""After a fault; who waits for a master that hangs would wait for ever."""
+"""After a fault; a master that hangs would be waited for without end."""
 
 
 class NodeProcesses:

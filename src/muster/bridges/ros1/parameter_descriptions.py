@@ -1,4 +1,4 @@
-"""What a robot says of itself on the parameter server, and what is asked for in JSON: as in a mission file."""
+"""Robots described on the parameter server and tasks given in JSON, with the keys of mission files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from muster.mission.model import Robot, Task
 
 
 def robot_from_parameters(topics: str, robot: Robot) -> Robot:
-    """A robot with what its parameter `muster` says: keys of a robot in a mission file, such as speed_mps.
+    """A robot with its parameter `muster`: keys of a robot in a mission file, such as speed_mps.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The port of a robot on ROS 1: it hears poses, and gives goals or velocities ([tcf-thesis], section 5.2, Figure 5.6).
+"""The port of a robot on ROS 1: receives poses, sends goals or velocities ([tcf-thesis], section 5.2, Figure 5.6).
 
 A robot only says where it is: whether it has passed a way point the port itself finds out (`follower`).
 """
@@ -25,13 +25,13 @@ from muster.motion.port import Place, Telemetry, Waypoint
 
 Drive = Literal["cmd_vel", "goals"]
 _TOLD_STILL_S = 1.0
-"""For how long a robot without way points is told to stand; after that a person may drive it."""
+"""Seconds for which a robot without way points gets zero velocities; after that a person may drive it."""
 _AGAIN_S = 1.0
 """After which a goal is given again, for those that did not hear it."""
 
 
 class Ros1Port:
-    """One robot: a `RobotPort`. Before it was sent anywhere it is told nothing: somebody else may drive it.
+    """One robot: a `RobotPort`. Before its first way points it gets no commands: somebody else may drive it.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Ros1Port:
         return self._last_word
 
     def steered(self, *, within_s: float, paused: bool) -> SteeredRobot | None:
-        """How it is to be steered; None if nothing is known of it. One that was not heard for a while stands."""
+        """How it is to be steered; None if nothing is known of it. A robot that is silent for a while stands."""
         said = self._last_word
         if said is None:
             return None

@@ -1,4 +1,4 @@
-"""Hears where one robot is, on whichever of its topics says so, as a pose of the map.
+"""Receives the pose of one robot, from any of its topics, as a pose of the map.
 
 Who is localised (`<robot>/pose`) does not go by odometry (`<robot>/odom`) any more: but only once such a pose counts.
 """

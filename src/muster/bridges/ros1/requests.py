@@ -26,7 +26,7 @@ _LOOK_S = 0.1
 
 
 class RequestClient:
-    """Asks on `<name>/question`, and hears answers on `<name>/answer`."""
+    """Sends requests on `<name>/question`, and receives answers on `<name>/answer`."""
 
     def __init__(self, name: str) -> None:
         self._one_at_a_time = threading.Lock()

@@ -25,9 +25,9 @@ from muster.motion.port import Place
 
 _REPORT_S = 0.5
 _READ_S = 0.1
-"""A pose is read no sooner after the one before: a person watches, and bytes are heard for less than poses are read."""
+"""Least time between two poses that are decoded: a person watches, and decoding costs more than receiving."""
 _SILENT_S = 5.0
-"""A robot that was not heard for longer is not available."""
+"""A robot that is silent for longer is not available."""
 
 
 class SystemMonitor:
@@ -106,7 +106,7 @@ class WatchedRobot:
 
     @property
     def heard_ago_s(self) -> float | None:
-        """Seconds; None if it was never heard."""
+        """Seconds; None if no message has arrived."""
         heard_s = self._listener.heard_s
         return None if heard_s is None else time.monotonic() - heard_s
 

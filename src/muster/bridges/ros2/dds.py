@@ -71,7 +71,7 @@ class DdsMiddleware:
                 yield topic.removeprefix(_TOPICS), f"{name[1]}/{name[2]}"
 
     def wait(self, seconds: float) -> None:
-        """See `Middleware`: Cyclone DDS hears by itself."""
+        """See `Middleware`: Cyclone DDS receives in threads of its own."""
         time.sleep(seconds)
 
     def close(self) -> None:

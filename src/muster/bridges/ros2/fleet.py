@@ -145,7 +145,7 @@ class Ros2Fleet:
 
     @property
     def not_told(self) -> list[str]:
-        """Robots that are to stay where they are and could not be told so."""
+        """Robots that did not get the command to stay where they are."""
         return [name for name, port in self._ports.items() if port.is_to_stay]
 
     def close(self) -> None:
@@ -188,7 +188,7 @@ class Ros2Fleet:
 
 
 def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:
-    """Act, and go on where that fails, whatever the reason: others are still to be told."""
+    """Act, and note an error of any kind: other robots are still to get the command."""
     try:
         act()
     except Exception as error:

@@ -1,4 +1,4 @@
-"""How a robot is told where to go: one goal at a time, as a pose on a topic or by Nav2's action."""
+"""Goals of a robot, one at a time: as a pose on a topic, or by Nav2's action."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Goals(Protocol):
         ...
 
     def withdraw(self, here: PoseStamped | None) -> bool:
-        """Let it stay where it is, None where that is not known; returns whether it was told."""
+        """Withdraw the goal: the robot stays at its position (None: unknown); returns whether that was sent."""
         ...
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
@@ -58,7 +58,7 @@ class Goals(Protocol):
 
 
 class PoseGoals:
-    """Goals on a topic. Nobody says how they end: poses do."""
+    """Goals on a topic. They have no result: poses show when they are reached."""
 
     ready = at_rest = True
 
@@ -79,7 +79,7 @@ class PoseGoals:
         return here is not None
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
-        """Who begins to listen late is told, too."""
+        """A new subscriber gets the goal, too."""
         listeners = self._writer.listeners
         if listeners > self._listeners and under_way and self._goal is not None:
             self._writer.write(self._goal)
@@ -147,7 +147,7 @@ class Nav2Goals:
             self._tries += 1
 
     def _outcome(self, now: float) -> Outcome | None:
-        """How the goal under way ended; also where nobody is left who would say so."""
+        """How the goal under way ended; also where its server is gone."""
         if self._navigation is None or self._navigation.outcome is not None:
             return None if self._navigation is None else self._navigation.outcome
         if not self._navigator.ready:

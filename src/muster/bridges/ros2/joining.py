@@ -49,7 +49,7 @@ class Ros2Newcomers(Newcomers[Ros2Port]):
         )
 
     def look(self, now: float) -> list[Ros2Port]:
-        """The ports of robots that have said where they are since."""
+        """The ports of robots whose position is known by now."""
         if now >= self._look_s:
             self._now, self._look_s = now, now + _LOOK_S
             self.discover()

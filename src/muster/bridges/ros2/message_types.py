@@ -53,7 +53,7 @@ class Duration(Message):
 
 @dataclass(frozen=True)
 class Header(Message):
-    """`seq` is counted by whoever publishes in ROS 1."""
+    """`seq` is set by the publisher in ROS 1."""
 
     NAME: ClassVar = "std_msgs/Header"
     seq: Annotated[UInt32, Only(ROS1)] = 0

@@ -35,7 +35,7 @@ class Writer(Protocol[Sent]):
 
     @property
     def listeners(self) -> int:
-        """How many there are who hear it."""
+        """The number of subscribers."""
         ...
 
 
@@ -49,7 +49,7 @@ class Reader(Protocol[M]):
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a goal of navigation ended, and what the robot says of it."""
+    """How a goal of navigation ended, and the detail that the robot gives."""
 
     status: Literal["succeeded", "aborted", "canceled", "rejected"]
     detail: str = ""
@@ -68,7 +68,7 @@ class Navigation(Protocol):
         ...
 
     def cancel(self) -> None:
-        """Ask the robot to give the goal up; that it did so `outcome` says.
+        """Request that the goal is cancelled; `outcome` shows whether it was.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class Middleware(Protocol):
         ...
 
     def reader(self, topic: str, message: type[M]) -> Reader[M]:
-        """Who hears a topic."""
+        """A subscriber of a topic."""
         ...
 
     def navigator(self, action: str) -> Navigator:
@@ -141,5 +141,5 @@ def domain_or_own(domain: int | None) -> int:
 
 
 def line_of(error: Exception) -> str:
-    """What an error of DDS or rclpy says, in a line."""
+    """The message of an error of DDS or rclpy, in one line."""
     return " ".join(str(error).split()) or type(error).__name__

@@ -1,4 +1,4 @@
-"""The port of a robot on ROS 2: hears where it is, and gives it one goal after the other.
+"""The port of a robot on ROS 2: receives its poses and sends one goal after the other.
 
 | topic | type | |
 |---|---|---|
@@ -100,7 +100,7 @@ class Ros2Port:
 
     @property
     def at_rest(self) -> bool:
-        """Whether it was told all, and nothing is under way, as far as that is said."""
+        """Whether all was sent, and no goal is known to be under way."""
         return self.goals.at_rest and not self.is_to_stay
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
@@ -150,7 +150,7 @@ class Ros2Port:
         return passed
 
     def _let_stay(self) -> None:
-        """Where it is; one that is not heard keeps its goal until it is."""
+        """Make its position its goal; a silent robot keeps its goal until a pose arrives."""
         said = self._said
         lost = said is None or self._clock() - said.time_s > _FRESH_S
         here = None if said is None or lost else self._stamped(said.position, said.heading)

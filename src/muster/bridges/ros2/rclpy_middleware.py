@@ -181,7 +181,7 @@ class _Navigation:
             self._ask_to_cancel()
 
     def _end(self, future: Any) -> None:
-        """Nav2 says why by a number since ROS 2 Iron, in words since Kilted."""
+        """Nav2 gives the reason as a number since ROS 2 Iron, as text since Kilted."""
         with self._failing():
             answer = future.result()
             code, words = getattr(answer.result, "error_code", 0), getattr(answer.result, "error_msg", "")

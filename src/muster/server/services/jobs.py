@@ -267,16 +267,16 @@ class Jobs:
     async def _planned(self, job: Job, stop_request: StopRequest) -> dict[str, Any]:
         """The answer of a worker. If the worker dies, the job is tried once more."""
         mission = await self._patiently(job.id, self._store.missions.get, job.mission, job.mission_version)
-        wishes = {**job.arguments, "mission": mission_input(mission.text, mission.files, job.mission)}
+        arguments = {**job.arguments, "mission": mission_input(mission.text, mission.files, job.mission)}
         for name in PLANS:
-            if wishes.get(name) is not None:
-                wishes[name] = (await self._patiently(job.id, self._store.plans.get, wishes[name])).plan
+            if arguments.get(name) is not None:
+                arguments[name] = (await self._patiently(job.id, self._store.plans.get, arguments[name])).plan
 
         def hear(progress: dict[str, Any]) -> None:
             self._learn(replace(job, progress=progress))
 
         ask = partial(
-            self._pool.run, "plan", wishes, on_progress=hear, limit_s=self._settings.job_s, stop_request=stop_request
+            self._pool.run, "plan", arguments, on_progress=hear, limit_s=self._settings.job_s, stop_request=stop_request
         )
         try:
             return await ask()

@@ -82,9 +82,9 @@ class PlanningControls:
         if self._draft.checked.errors:
             raise ParameterError("the mission has errors; mend them first")
         if await self.before("to be planned"):
-            base, asker, arguments = self._draft.base, the_user(), self._arguments()
+            base, user, arguments = self._draft.base, the_user(), self._arguments()
             await self._follow(
-                await the_services().jobs.ask_plan(asker, base.mission, base.version or None, **arguments)
+                await the_services().jobs.ask_plan(user, base.mission, base.version or None, **arguments)
             )
         return False
 

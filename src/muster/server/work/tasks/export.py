@@ -27,14 +27,14 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         raise ParameterError(
             f"to: {shown(form)}; expected {', '.join((*FORMATS, 'json'))}{did_you_mean(form, FORMATS)}"
         )
-    wishes = _wishes(options) if form == "qgc" else None
-    if options and wishes is None:
+    qgc = _qgc_options(options) if form == "qgc" else None
+    if options and qgc is None:
         raise ParameterError(f"options: {shown(options)}; expected none with {form}")
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
     if form == "json":
         return _answer({f"{_stem(mission.name)}.json": plan.text()})
     verdict = require_admissible(mission, plan, "plan", arguments.get("ignore", ()))
-    files = exported(mission, verdict, form, wishes or QgcOptions())
+    files = exported(mission, verdict, form, qgc or QgcOptions())
     alone = f"plan.{form}"  # one file bears the mission's name
     stem = _stem(mission.name)
     texts = {f"{stem}.{form}" if name == alone else name: text for name, text in files.texts.items()}
@@ -50,7 +50,7 @@ _RANGES = {"altitude": (0.0, 1e5), "clearance": (0.0, 1e5), "tolerance": (0.0, 1
 _FIRMWARES = ("px4", "ardupilot")
 
 
-def _wishes(options: Mapping[str, Any]) -> QgcOptions:
+def _qgc_options(options: Mapping[str, Any]) -> QgcOptions:
     """The options, checked as the command checks them."""
     known = [f.name for f in fields(QgcOptions)]
     for name, value in options.items():
