@@ -12,7 +12,7 @@ from muster import core
 from muster.allocation.allocator import routes_of
 from muster.allocation.bounds import lower_bound
 from muster.allocation.exact import solve_exactly
-from muster.allocation.fixed import keeping
+from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import run
@@ -54,7 +54,7 @@ def begins_with(plan, fixed):
 def fits(mission, fixed):
     """A part of an admissible plan is one, but where a task lies on a short cut, or the way home is longer from it."""
     try:
-        keeping(Problem.compile(mission), fixed)
+        with_fixed_routes(Problem.compile(mission), fixed)
     except ParameterError:
         return False
     return True
@@ -82,7 +82,7 @@ def test_it_finds_the_best_of_all_such_plans(objective):
         if not any(route.tasks for route in fixed.routes) or not fits(mission, fixed):
             continue
         tried += 1
-        problem = keeping(Problem.compile(mission, objective), fixed)
+        problem = with_fixed_routes(Problem.compile(mission, objective), fixed)
         weight, value, _ = best_plan(problem)
         exact = solve_exactly(problem, 30.0)
         assert exact.optimal
@@ -179,6 +179,6 @@ def test_from_the_command(tmp_path, capsys):
 def test_the_start_of_the_search_has_them():
     mission = muster.load("eil51-5")
     fixed = plan_of(mission, {mission.robots[0].id: [task.id for task in mission.tasks[:4]]})
-    problem = keeping(Problem.compile(mission), fixed)
+    problem = with_fixed_routes(Problem.compile(mission), fixed)
     assert routes_of(problem, fixed) == [list(route) for route in problem.fixed]
     assert core.Inspection(problem.core, routes_of(problem, fixed)).admissible

@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 import shapely
-from tests.verification.brute_ways import star
+from tests.verification.brute_paths import star
 
 import muster
 from muster import Mission, Robot, Rules, Task

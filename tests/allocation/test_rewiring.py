@@ -7,7 +7,7 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import Mission, Plan, Robot, Route, Task
-from muster.allocation.fixed import keeping
+from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewire, rewired
 from muster.mission.errors import ParameterError
@@ -82,7 +82,7 @@ def test_shipped_missions_wait_less(name):
 def test_what_is_fixed_stays():
     mission = thesis_example()
     problem = Problem.compile(mission)
-    fixed = keeping(problem, plan_of(f=["j"], n=["g"]))
+    fixed = with_fixed_routes(problem, plan_of(f=["j"], n=["g"]))
     robot, task = problem.robot_index, problem.task_index
     routes = [[], []]
     routes[robot["f"]], routes[robot["n"]] = [task["j"], task["later"]], [task["g"]]

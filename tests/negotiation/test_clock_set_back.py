@@ -61,6 +61,24 @@ def test_where_the_others_hear_it_and_it_does_not_hear_them_it_owns_nothing():
     assert net.nodes["r_0"].incarnation == 10
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_it_is_corrected_through_robots_that_accept_it_where_not_all_hear_each_other(seed):
+    chain = {("r_0", "r_1"), ("r_1", "r_2"), ("r_2", "r_3")}
+    links = {*chain, *((b, a) for a, b in chain)}
+    net = settled_team(line_mission(robots=4), seed=seed, jitter_s=0.1, links=lambda a, b: (a, b) in links)
+    net.crash("r_0")
+    net.start(["r_0"], incarnation=9)
+    agree(net)
+    net.crash("r_0")
+    net.crash("r_1")
+    net.run(net.now + 15)
+    net.start(["r_1"])
+    net.start(["r_0"], incarnation=3)
+    agree(net, 60)
+    assert net.nodes["r_0"].incarnation == 10
+    assert all(len(robots) == 1 for robots in owners(net).values())
+
+
 def test_a_process_of_this_name_that_lives_is_not_outdone():
     net = settled_team(line_mission())
     net.crash("r_0")
@@ -87,7 +105,7 @@ def test_a_robot_that_the_others_have_accepted_falls_silent_when_it_hears_of_a_l
 def test_a_robot_that_some_have_accepted_rises_when_another_tells_that_the_later_process_is_silent():
     net = settled_team(line_mission())
     node = net.nodes["r_0"]
-    node.handle(heartbeats_of_r_1(net, Heartbeat("r_0", 7, 1)), net.now)
+    node.handle(heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**6), Heartbeat("r_0", 7, 0)), net.now)
     assert not node.superseded
     assert node.incarnation == 8
     agree(net)
@@ -103,7 +121,7 @@ def test_a_sender_of_a_past_life_is_told_nothing_while_the_later_process_is_hear
     assert net.nodes["r_1"].handle(old, net.now) == []
     (answer,) = net.nodes["r_1"].handle(old, net.now + 3.0)
     assert answer.to == "r_0"
-    assert answer.message.heartbeats[0].incarnation == 9
+    assert answer.message.heartbeats == (Heartbeat("r_0", 9, 0),)
 
 
 def test_what_it_keeps_on_disk_holds_the_incarnation_that_it_took(tmp_path):

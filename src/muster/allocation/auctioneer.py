@@ -1,4 +1,4 @@
-"""What every auction in one process needs: who bids what, who wins, and the account of the sales."""
+"""The auctioneer of an auction in one process: it announces tasks, collects bids, selects winners and keeps records."""
 
 from __future__ import annotations
 

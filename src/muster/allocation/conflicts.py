@@ -1,7 +1,7 @@
-"""Tasks that can each be done, but not all of them in one plan: which, and what proves it.
+"""Conflicts: sets of tasks that can each be done, but not all in one plan, with a proof.
 
 That no admissible plan does a set of tasks is proven by lower bounds on usage (`usage_bounds`); that a set of tasks can
-be done is shown by a plan that was found and judged (`attempts`).
+be done is shown by a plan that was found and judged (`witness_plans`).
 """
 
 from __future__ import annotations

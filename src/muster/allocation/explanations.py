@@ -1,4 +1,4 @@
-"""Why this robot and not that one; why a task is left out."""
+"""Reasons: why a plan leaves out a task, and what giving a task to another robot would do."""
 
 from __future__ import annotations
 
@@ -92,9 +92,9 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
 
 @dataclass(frozen=True)
 class Alternative:
-    """What giving a task to a robot would do: number in the route and objective then; or why it cannot be.
+    """The effect of giving a task to a robot: its number in the route and the objective; or the reason against it.
 
-    Where another route of the plan lacks a way there is no objective.
+    The objective is None where another route of the plan has a leg without a path.
     """
 
     robot: str

@@ -56,9 +56,9 @@ def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
 
 
 def least_usages(problem: Problem) -> Floats:
-    """(m, n) what no route of a robot that holds a task uses less of.
+    """(m, n) a lower bound of the usage of any route of a robot with a task in it.
 
-    That is `least_usage`; where too many ways through short cuts would have to be looked at, the work alone.
+    That is `least_usage`; where too many paths through short cuts would have to be compared, the work alone.
     """
     robots = range(len(problem.robots))
     if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:

@@ -1,6 +1,6 @@
-"""Routes that begin as they are, for planning anew while robots are under way: what they have done, do, or go on to do.
+"""Fixed beginnings of routes, for planning again while robots are under way.
 
-The tasks that stay are a plan by themselves, so that whatever is planned behind them, they can be done.
+The fixed tasks are an admissible plan by themselves, so they can be done whatever is planned after them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from muster.allocation.rules.rule import ROUNDING
 from muster.mission.plan import Plan
 
 
-def keeping(problem: Problem, plan: Plan) -> Problem:
+def with_fixed_routes(problem: Problem, plan: Plan) -> Problem:
     """The same problem for plans whose routes begin with the routes of this one.
 
     Raises
@@ -29,10 +29,10 @@ def keeping(problem: Problem, plan: Plan) -> Problem:
 
 
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
-    """The same problem for plans whose routes begin with what robots have done or begun: what has happened may be.
+    """The same problem for plans whose routes begin with what robots have done or begun, be it admissible or not.
 
-    These tasks wait for nothing, and a robot that has used more than it could has that for its capacity. Where the
-    problem knows no way along what a robot has done, it is taken to be at its start, and nobody waits for that.
+    Tasks done or begun have no prerequisites here. The capacity of a robot that has used more than its capacity is what
+    it has used. A robot whose past has a leg without a path is taken to be at its start; no task waits for its past.
     """
     begun = {j for route in past for j in route}
     free = tuple(replace(task, prerequisites=()) if j in begun else task for j, task in enumerate(problem.tasks))
@@ -56,10 +56,10 @@ def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
 
 
 def admissible_part(problem: Problem, routes: Routes) -> Routes:
-    """As much of routes, each of which begins with its robot's fixed tasks, as is still admissible.
+    """The admissible part of routes that begin with the fixed tasks of their robots.
 
-    Tasks go that their robot may not do, that wait for one that is not there, and from the end of a route that costs
-    too much. Of routes that wait for each other in a circle only the fixed tasks are left.
+    Removed are tasks that their robot may not do, tasks with a prerequisite that is missing, and tasks at the end of a
+    route above its capacity. If routes deadlock, only the fixed tasks are left.
     """
     least = [len(problem.beginning(i)) for i in range(len(problem.robots))]
     part = [[j for k, j in enumerate(route) if k < least[i] or problem.may(i, j)] for i, route in enumerate(routes)]

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.allocation.lengths import Measured
-from muster.allocation.task_geometry import TaskMotions
+from muster.allocation.task_geometry import TaskGeometry
 from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
@@ -31,29 +31,29 @@ class MapTravel:
         of the mission.
     bodies
         of each class of robots.
-    doings
-        what they do at the tasks, by body.
+    geometry
+        entries, exits and costs of the tasks for each class of robots.
     exits, entries
         (classes, p, 3) metres in the map frame: where places are left and entered; first the n tasks.
     """
 
     robot_paths: RobotPaths
     bodies: tuple[Body, ...]
-    doings: TaskMotions
+    geometry: TaskGeometry
     exits: Floats
     entries: Floats
 
     @classmethod
     def of(
-        cls, robot_paths: RobotPaths, robots: Sequence[Robot], doings: TaskMotions, exits: Floats, entries: Floats
+        cls, robot_paths: RobotPaths, robots: Sequence[Robot], geometry: TaskGeometry, exits: Floats, entries: Floats
     ) -> MapTravel:
-        return cls(robot_paths, tuple(body_of(robots[i]) for i in doings.firsts), doings, exits, entries)
+        return cls(robot_paths, tuple(body_of(robots[i]) for i in geometry.firsts), geometry, exits, entries)
 
     @cached_property
     def costs(self) -> Floats:
         """(classes, n) metres along the way points of actions, else the typed costs; inf where there is no way."""
-        costs = self.doings.costs.copy()
-        for (k, j), doing in self.doings.moving.items():
+        costs = self.geometry.costs.copy()
+        for (k, j), doing in self.geometry.moving.items():
             costs[k, j] = sum(self.robot_paths.leg_m(self.bodies[k], *leg) for leg in doing.legs)
         for k, j in self._crossed:
             if math.isinf(self.robot_paths.leg_m(self.bodies[k], *self._across(k, j))):
@@ -63,7 +63,7 @@ class MapTravel:
     def measured(self, threads: int) -> Measured:
         """All lengths."""
         table = np.array([self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)])
-        classes = self.doings.classes
+        classes = self.geometry.classes
         return Measured(table, classes, np.where(np.isinf(self.costs), 0.0, self.costs), classes)
 
     def lengths(self, k: int, exits: Floats, threads: int) -> Floats:
@@ -77,12 +77,12 @@ class MapTravel:
 
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
-        k = int(self.doings.classes[i])
+        k = int(self.geometry.classes[i])
         body, d = self.bodies[k], self.robot_paths.world.dimensions
         found = self.robot_paths.path(body, self.exits[k, start, :d].tolist(), self.entries[k, end, :d].tolist())
         if isinstance(found, NoPath):
             return f"{found.reason}: {found.detail}"
-        doing = self.doings.moving.get((k, end))
+        doing = self.geometry.moving.get((k, end))
         for leg in doing.legs if doing is not None else ():
             found = self.robot_paths.path(body, *leg)
             if isinstance(found, NoPath):
@@ -96,9 +96,9 @@ class MapTravel:
     @cached_property
     def _crossed(self) -> frozenset[tuple[int, int]]:
         """Classes and tasks without geometry that are left elsewhere than entered."""
-        n = self.doings.costs.shape[1]
+        n = self.geometry.costs.shape[1]
         apart = (self.entries[:, :n] != self.exits[:, :n]).any(axis=2)
-        return frozenset((int(k), int(j)) for k, j in np.argwhere(apart)) - self.doings.moving.keys()
+        return frozenset((int(k), int(j)) for k, j in np.argwhere(apart)) - self.geometry.moving.keys()
 
     def _across(self, k: int, j: int) -> Leg:
         d = self.robot_paths.world.dimensions

@@ -1,4 +1,4 @@
-"""Teams that outgrow a search: divided in space, improved part by part, side by side, then divided otherwise.
+"""Large teams: divided in space, the parts improved in parallel, then divided along other lines and improved again.
 
 The first division goes by where robots start and tasks lie; the later ones by where routes run, along other lines, so
 that what was a border lies within a part. Robots keep their routes from one division to the next, so the plan never

@@ -16,7 +16,7 @@ from muster import core
 from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
-from muster.allocation.task_geometry import TaskMotions
+from muster.allocation.task_geometry import TaskGeometry
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -50,7 +50,7 @@ class Problem:
     ignored
         rules that do not hold, of IGNORABLE.
 
-    Robots may have tasks that stay where they are, at the beginning of their routes: see `fixed.keeping`.
+    Robots may have tasks that stay where they are, at the beginning of their routes: see `fixed.with_fixed_routes`.
 
     Raises
     ------
@@ -87,7 +87,7 @@ class Problem:
         )
 
     def ready(self) -> Problem:
-        """The problem itself, its arrays made, so that an allocator's own time does not hold that."""
+        """The problem itself with its arrays computed, so that the time of an allocator does not include it."""
         assert self.core is not None
         return self
 
@@ -186,11 +186,11 @@ class Problem:
 
     def action_refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
-        return self._task_motions.why_impossible(i, j)
+        return self._task_geometry.refusal(i, j)
 
     def actions_refused(self, i: int) -> frozenset[int]:
         """The tasks whose actions robot i cannot do."""
-        return self._task_motions.cannot_do(i)
+        return self._task_geometry.refused(i)
 
     @cached_property
     def allowed(self) -> Bools:
@@ -278,17 +278,17 @@ class Problem:
     def measured(self) -> Measured:
         if self.known is not None:
             return self.known
-        doings, none = self._task_motions, np.empty(0, dtype=np.int32)
+        geometry, none = self._task_geometry, np.empty(0, dtype=np.int32)
         if self.mission.travel_rule == "map":
             return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
-            return Measured(*travel_table(self.mission, self.robots, self.tasks), doings.costs, doings.classes)
+            return Measured(*travel_table(self.mission, self.robots, self.tasks), geometry.costs, geometry.classes)
         table = straight_table(self.mission, self._exits, self._entries)
-        return Measured(table, doings.classes if len(table) else none, doings.costs, doings.classes)
+        return Measured(table, geometry.classes if len(table) else none, geometry.costs, geometry.classes)
 
     @cached_property
-    def _task_motions(self) -> TaskMotions:
-        return TaskMotions.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
+    def _task_geometry(self) -> TaskGeometry:
+        return TaskGeometry.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
 
     @cached_property
     def robot_paths(self) -> RobotPaths:
@@ -307,12 +307,12 @@ class Problem:
         from muster.allocation.map_travel import MapTravel
 
         by_body = self.mission.travel_rule == "map"
-        doings = self._task_motions if by_body else TaskMotions.of(self.robots, self.tasks, by_body=True)
-        exits, entries = self._with_robots(doings.exits), self._with_robots(doings.entries)
-        return MapTravel.of(robot_paths, self.robots, doings, exits, entries)
+        geometry = self._task_geometry if by_body else TaskGeometry.of(self.robots, self.tasks, by_body=True)
+        exits, entries = self._with_robots(geometry.exits), self._with_robots(geometry.entries)
+        return MapTravel.of(robot_paths, self.robots, geometry, exits, entries)
 
     def no_way_to(self, i: int, j: int) -> str:
-        """Why robot i cannot come to task j, which no way leads to, or along the way of its action."""
+        """Why robot i has no path to task j, or along its way points."""
         if self.mission.travel_rule != "map" or self.known is not None:
             return "there is no way to it"
         return self._over_map.why_not(i, self.start(i), j)
@@ -324,12 +324,12 @@ class Problem:
     @cached_property
     def _entries(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
-        return self._with_robots(self._task_motions.entries)
+        return self._with_robots(self._task_geometry.entries)
 
     @cached_property
     def _exits(self) -> Floats:
         """(classes, n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
-        return self._with_robots(self._task_motions.exits)
+        return self._with_robots(self._task_geometry.exits)
 
     def _with_robots(self, portals: Floats) -> Floats:
         places = np.array([(*p, 0.0)[:3] for p in self._robots_places], dtype=np.float64)

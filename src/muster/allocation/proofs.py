@@ -1,4 +1,4 @@
-"""What can be proven of a plan: a lower bound of its objective, at once or by an exact solver."""
+"""The lower bound of a plan's objective: a quick one, or one from an exact solver."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Proof:
 
 
 def require_provable(problem: Problem, proof: str) -> None:
-    """Find out before a long search that what is asked for cannot be proven.
+    """Check before a long search that the bound can be computed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What would have to change for a robot to do a task beside all that a plan does: the least of each kind."""
+"""Remedies: the least changes with which a robot can do a task in addition to all tasks of a plan."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _NEAR_ENOUGH = 1e-3  # relative
 
 
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
-    """For every robot, in mission order, what it would need to do task j."""
-    first = dict(_first_look(problem, routes, j))
+    """For every robot, in mission order, the remedy with which it can do task j."""
+    first = dict(_needs_as_is(problem, routes, j))
     able = [i for i, remedy in first.items() if not remedy.unable]
     searched = set(sorted(able, key=lambda i: first[i].size)[:_MOST_SEARCHED])
     found = {
         i: _not_found(replace(remedy, impossible=True))
         if remedy.unable
-        else _looked_into(problem, routes, i, j, remedy, judge)
+        else _searched_for(problem, routes, i, j, remedy, judge)
         if i in searched
         else replace(_as_is(problem, routes, i, j, remedy, judge), searched=False)
         for i, remedy in first.items()
@@ -44,7 +44,7 @@ def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Re
 
     Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
     """
-    first = dict(_first_look(problem, routes, j))
+    first = dict(_needs_as_is(problem, routes, j))
     order = sorted((i for i, remedy in first.items() if not remedy.unable), key=lambda i: first[i].size)
     if order and first[order[0]].before:
         return first[order[0]]
@@ -64,8 +64,8 @@ def smallest(found: Sequence[Remedy]) -> Remedy | None:
 # --- what stands between a robot and a task --------------------------------------------------------------------------
 
 
-def _first_look(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int, Remedy]]:
-    """What each robot lacks, and the capacity with which its route has room for the task; nothing is judged yet."""
+def _needs_as_is(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int, Remedy]]:
+    """For each robot the changes that it needs, and the capacity with which its route has room; not judged yet."""
     rest = _without(routes, j)
     inspection = core.Inspection(problem.core, rest)
     done = {k for route in rest for k in route}
@@ -155,7 +155,7 @@ def _not_found(remedy: Remedy) -> Remedy:
     return replace(remedy, capacity=replace(remedy.capacity, enough=None))
 
 
-def _looked_into(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
+def _searched_for(problem: Problem, routes: Routes, i: int, j: int, remedy: Remedy, judge: Judge) -> Remedy:
     """The remedy with the capacity that is enough, and the one that is needed at least."""
     rest = _without(routes, j)
     now, as_is = remedy.capacity.now, remedy.capacity.as_is
@@ -188,7 +188,7 @@ def _looked_into(problem: Problem, routes: Routes, i: int, j: int, remedy: Remed
 
 
 def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, remedy: Remedy) -> Routes | None:
-    """Routes that do all that is needed, j by robot i, whose usage is as low as could be found where it must grow."""
+    """Routes with all needed tasks, j by robot i, with the least usage of robot i that was found."""
     now, low = remedy.capacity.now, remedy.capacity.at_least or 0.0
     if now is None or low <= now * (1 + ROUNDING):
         first = _rearranged(sole, rest, needed, i, now) or _rearranged(sole, None, needed, i, now)
@@ -220,7 +220,7 @@ def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
 
 
 def _rearranged(sole: Problem, rest: Routes | None, needed: list[int], i: int, capacity: float | None) -> Routes | None:
-    """Routes that do all that is needed with this work capacity of robot i, if a short search finds some.
+    """Routes with all needed tasks with this work capacity of robot i, if a short search finds some.
 
     The search begins with the rest of the plan, if that is given and admissible.
     """
@@ -242,7 +242,7 @@ def _admissible(problem: Problem, routes: Routes) -> bool:
 
 
 def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> float:
-    """What robot i, of unlimited capacity, uses at least in a plan that does all the tasks; j, which only it may do."""
+    """A lower bound of the usage of robot i, of unlimited capacity, in a plan of all the tasks; only it may do j."""
     problem = bounds.problem
     others = [k for k in range(len(problem.robots)) if k != i]
     few, reached = list(tasks), [0]

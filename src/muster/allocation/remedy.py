@@ -1,4 +1,4 @@
-"""What a robot would need to do a task, as data: the change of each rule, and what is known of them together."""
+"""A remedy as data: the change of each rule with which a robot can do a task, and what is proven of them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Before:
 
 @dataclass(frozen=True, kw_only=True)
 class Remedy:
-    """What a robot would need to do a task beside all that a plan does.
+    """What a robot needs to do a task in addition to all tasks of a plan.
 
     `changes` are, by the words of rules, exactly what stands between the two: each is needed. `before` are the
     prerequisites that the plan leaves out. `enough` tells whether a plan with all this was found and judged; its routes

@@ -1,4 +1,4 @@
-"""When an algorithm stops, and what it had reached until then."""
+"""The stopping rule of an algorithm, and the history of its best plans."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a part of a problem needs of the mission: so little that it can be sent to another machine."""
+"""The mission of a part of a problem, cut down so that it can be sent to another machine."""
 
 from __future__ import annotations
 

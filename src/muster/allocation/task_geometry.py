@@ -1,6 +1,6 @@
-"""What a problem's robots do at its tasks: entries, exits and costs, once for each class of robots that do alike.
+"""Entries, exits and costs of tasks, once for each class of robots that pass the same points at all tasks.
 
-Only actions with geometry are looked at by robot; all other tasks are the same for everyone.
+Only tasks whose action has geometry differ between robots.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ Classes = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
-class TaskMotions:
-    """Made by `TaskMotions.of`.
+class TaskGeometry:
+    """The geometry of a problem's tasks, made by `TaskGeometry.of`.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class TaskMotions:
     _impossible: Mapping[int, Mapping[int, str]]  # for the first robot of each shape the reasons by task
 
     @classmethod
-    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> TaskMotions:
+    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> TaskGeometry:
         """With `by_body` robots of different bodies are in different classes."""
         moving = [j for j, task in enumerate(tasks) if task.action is not None and task.action.has_geometry]
         first_of: dict[object, int] = {}
@@ -69,11 +69,11 @@ class TaskMotions:
             costs[at] = doing.cost_m
         return cls(classes, firsts, entries, exits, costs, by_class, like, _reasons(found))
 
-    def why_impossible(self, i: int, j: int) -> str | None:
+    def refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do task j, whatever the plan; None if it can."""
         return self._impossible[self._like[i]].get(j)
 
-    def cannot_do(self, i: int) -> frozenset[int]:
+    def refused(self, i: int) -> frozenset[int]:
         """The tasks that robot i cannot do."""
         return frozenset(self._impossible[self._like[i]])
 
@@ -97,7 +97,7 @@ def _body(robot: Robot) -> tuple[float, str]:
 
 
 def _shape(robot: Robot) -> tuple[object, ...]:
-    """What the doings of a robot may depend on (see `TaskAction`)."""
+    """The attributes of a robot on which the way points of an action may depend (see `TaskAction`)."""
     return robot.kind, robot.radius_m, robot.kinematics, robot.camera
 
 

@@ -1,4 +1,4 @@
-"""Lower bounds on the usage of robots that do certain tasks, whatever else they do: what proves that they cannot.
+"""Lower bounds on the usage of robots that do certain tasks; a bound above the capacities proves that they cannot.
 
 For few tasks they are each robot's least usage for every subset ([held-karp1962]) and all ways to share the tasks out;
 for many a spanning forest from the starts of the robots that can do them. Neither sees that robots may wait for each
@@ -33,12 +33,12 @@ class UsageBounds:
 
     @cached_property
     def least(self) -> Floats:
-        """(m, n) what no route of a robot that holds a task uses less of."""
+        """(m, n) the least usage of any route of a robot with a task in it, or less."""
         return least_usages(self.problem)
 
     @cached_property
     def possible(self) -> Bools:
-        """(m, n) whether a robot can do a task, were it alone."""
+        """(m, n) whether a robot can do a task, as far as single robots tell."""
         return usable_pairs(self.problem, self.least)
 
     @cached_property

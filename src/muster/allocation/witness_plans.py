@@ -1,4 +1,4 @@
-"""Plans that a short search finds: what shows that a set of tasks can be done."""
+"""Plans found by a short search, which show that a set of tasks can be done together."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 
 Judge = Callable[[Mission, Plan, tuple[str, ...]], bool]
-"""Whether a plan is admissible, some rules ignored: `verification` says so, which allocators may not ask themselves."""
+"""Whether a plan is admissible, some rules ignored: given by the caller, as this room may not import `verification`."""
 
 _ITERATIONS, _EFFORT = 5000, 800_000  # most steps of a short search; most steps times tasks and robots
 _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways

@@ -1,4 +1,4 @@
-"""Where the parts of a team are improved: on threads of this process, or by whatever else keeps to `Workers`."""
+"""Workers that improve parts of a team: threads of this process, or another implementation of `Workers`."""
 
 from __future__ import annotations
 

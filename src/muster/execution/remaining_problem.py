@@ -12,7 +12,7 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from muster.allocation.fixed import keeping
+from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.execution.travel import Spot, Travel
 from muster.mission.model import Mission, Robot, Task
@@ -108,7 +108,7 @@ def remaining_problem(rest: RemainingMission, travel: Travel) -> RemainingProble
     problem = _delayed(rest, replace(problem, known=known))
     problem = _bearable(problem, past)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
-    return RemainingProblem(keeping(problem, Plan(routes=routes)), hopeless)
+    return RemainingProblem(with_fixed_routes(problem, Plan(routes=routes)), hopeless)
 
 
 def _past(rest: RemainingMission) -> dict[str, Task]:

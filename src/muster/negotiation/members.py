@@ -51,6 +51,7 @@ class _Peer:
     may_return: bool = False
     spoke_s: float = -inf
     born_s: float = inf  # when this incarnation was heard of first
+    outdated_s: float = -inf  # when others were last known to accept an earlier incarnation
     unheard: tuple[str, ...] = ()
 
     def is_far(self, suspect_s: float) -> bool:
@@ -63,7 +64,7 @@ class _Peer:
             return False
         restarted = -1 < self.incarnation < incarnation
         self.born_s = now if incarnation > self.incarnation else self.born_s
-        self.incarnation, self.number, self.heard_s = incarnation, number, now
+        self.incarnation, self.number, self.heard_s = incarnation, number, now if number else self.heard_s
         return restarted
 
 
@@ -93,9 +94,11 @@ class Members:
     def hear(self, heartbeat: Heartbeat, now: float) -> bool:
         """Note a relayed heartbeat; return whether its robot has restarted."""
         peer = self._peers.get(heartbeat.robot)
-        return (
-            peer is not None and heartbeat.robot != self.me and peer.hear(heartbeat.incarnation, heartbeat.number, now)
-        )
+        if peer is None or heartbeat.robot == self.me:
+            return False
+        if heartbeat.incarnation < peer.incarnation:
+            peer.outdated_s = now
+        return peer.hear(heartbeat.incarnation, heartbeat.number, now)
 
     def accepts(self, message: Message) -> bool:
         """Whether a message is to be processed: its sender belongs to the team, and its incarnation is not outdated."""
@@ -110,10 +113,10 @@ class Members:
             peer.unheard = message.unheard
         return peer.hear(message.incarnation, message.number, now)
 
-    def last_heartbeat(self, robot: str) -> Heartbeat | None:
-        """The last sign of life of a robot; None: it does not belong to the team."""
-        peer = self._peers.get(robot)
-        return None if peer is None else Heartbeat(robot, peer.incarnation, peer.number)
+    def correction(self, robot: str, now: float) -> Heartbeat | None:
+        """The known incarnation of a robot, for those that accept an earlier one; None while it is heard."""
+        is_silent = self.silent_s(robot, now) >= self.timeouts.suspect_s / 2
+        return Heartbeat(robot, self._peers[robot].incarnation, 0) if is_silent else None
 
     def incarnation(self, robot: str) -> int:
         """The highest incarnation heard of; -1: none."""
@@ -177,4 +180,6 @@ class Members:
         told = set(robots) if self.unheard(now) else {robots[own.number % len(robots)]}
         told.update(*(peer.unheard for peer in self._peers.values() if peer.unheard and peer.spoke_s > since))
         news = ((r, p) for r, p in self._peers.items() if r in told and now - p.heard_s < self.timeouts.suspect_s / 8)
-        return (own, *(Heartbeat(r, p.incarnation, p.number) for r, p in news if p.number >= 0))
+        relayed = [Heartbeat(r, p.incarnation, p.number) for r, p in news if p.number >= 0]
+        outdated = [r for r, p in self._peers.items() if now - p.outdated_s < self.timeouts.suspect_s / 8]
+        return (own, *relayed, *(correction for r in outdated if (correction := self.correction(r, now)) is not None))

@@ -116,7 +116,10 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """The last sign of life of a robot, direct or relayed: its incarnation and the number of its message."""
+    """The last sign of life of a robot, direct or relayed: its incarnation and the number of its message.
+
+    Number 0 is no sign of life: it tells those that accept an earlier incarnation that this one is known, and silent.
+    """
 
     robot: str
     incarnation: int

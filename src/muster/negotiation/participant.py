@@ -200,8 +200,6 @@ class Participant:
             return False
         if self.members.hear_from(message, now):
             self._note_restart(message.sender)
-        if message.heartbeats and message.heartbeats[0].robot == self.robot:  # of `_correct`: no rival lives
-            self._identity.may_renumber = True
         for heartbeat in message.heartbeats:
             self._hear_of(heartbeat, now)
         for said in message.declarations:
@@ -220,18 +218,19 @@ class Participant:
         It may have started without memory after its clock was set back. It then takes a higher incarnation. While the
         known incarnation is heard, another process has the id, and nobody is told.
         """
-        last = self.members.last_heartbeat(message.sender)
-        if last is None or last.incarnation <= message.incarnation or not message.heartbeats:
+        is_past = self.members.incarnation(message.sender) > message.incarnation
+        if not is_past or not message.heartbeats or not self._repairs.may_answer(message, now):
             return []
-        is_silent = self.members.silent_s(message.sender, now) >= self.timeouts.suspect_s / 2
-        if not is_silent or not self._repairs.may_answer(message, now):
+        correction = self.members.correction(message.sender, now)
+        if correction is None:
             return []
         self.counts.repairs += 1
-        return [Outgoing(self._message(None, heartbeats=(last,)), message.sender)]
+        return [Outgoing(self._message(None, heartbeats=(correction,)), message.sender)]
 
     def _hear_of(self, heartbeat: Heartbeat, now: float) -> None:
         """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation."""
         if heartbeat.robot == self.robot:
+            self._identity.may_renumber |= heartbeat.number == 0  # a correction: no rival lives
             if self._identity.renumber_above(heartbeat):
                 self._renumber()
             elif self._identity.hear(heartbeat):

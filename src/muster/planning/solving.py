@@ -79,11 +79,11 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
 
 
 def _compiled(request: Request) -> Problem:
-    from muster.allocation.fixed import keeping
+    from muster.allocation.fixed import with_fixed_routes
     from muster.allocation.problem import Problem
 
     problem = Problem.compile(request.mission, request.objective, request.ignore)
-    return (problem if request.fixed is None else keeping(problem, request.fixed)).ready()
+    return (problem if request.fixed is None else with_fixed_routes(problem, request.fixed)).ready()
 
 
 def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tuple[Plan, str]:

@@ -1,4 +1,4 @@
-"""What the book of an auction says, against the routes and against itself."""
+"""Checks the book of an auction against the routes and against itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the rules of the judge look at: a mission and a plan's routes, measured, under the rules that hold."""
+"""The case before the judge: a mission, the measured routes of a plan, and the rules that are ignored."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A plan before its judge.
+    """The data that the rules of the judge work on.
 
     Parameters
     ----------

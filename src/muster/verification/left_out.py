@@ -1,4 +1,4 @@
-"""What a plan says of the tasks that it leaves out: which they are, and why each robot does not do them."""
+"""Checks the list `unassigned` of a plan: the tasks left out, and the reasons given for each robot."""
 
 from __future__ import annotations
 

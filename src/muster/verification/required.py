@@ -1,4 +1,4 @@
-"""Plans that are handed on to robots and to other tools: only those that break no rule."""
+"""Refuses inadmissible plans before they are given to robots or other programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.verification.verdict import Verdict
 
 
 def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collection[str] = ()) -> Verdict:
-    """What the judge says of a plan that breaks no rule but those to `ignore`; `file` names it in the message.
+    """The verdict on a plan that breaks no rule but those to `ignore`; `file` names it in the message.
 
     Which objective the plan was to minimise makes no difference to that.
 
@@ -25,7 +25,7 @@ def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collecti
     if not verdict.valid:
         first, *others = verdict.violations
         more = f" and {len(others)} more" if others else ""
-        told = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
+        parts = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
         expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
-        raise PlanError([Finding(file, None, first.kind, f"{told}{more}", expected)])
+        raise PlanError([Finding(file, None, first.kind, f"{parts}{more}", expected)])
     return verdict

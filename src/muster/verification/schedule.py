@@ -1,4 +1,4 @@
-"""When each task is done, and whether all can be: docs/design.md, Meaning: prerequisites.
+"""The earliest schedule of routes, or the deadlock that forbids one (docs/design.md, Meaning).
 
 [tcf-thesis] (3.25) compares the order within one route only. Here the graph of all routes and all prerequisites
 is judged, which also finds robots that wait for each other for ever.

@@ -1,4 +1,4 @@
-"""The figures, the objective and the history that a plan states, against what is (docs/design.md, Files)."""
+"""Checks the figures, the objective and the history that a plan states (docs/design.md, Files)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from muster.verification.verdict import Verdict, Violation
 
 
 def false_statements(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
-    """Find every figure that is not so. A plan that states only routes states nothing false.
+    """Find every false statement. A plan that states only routes states nothing false.
 
     `tolerance` is that of travel, relative.
     """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from muster.mission.model import Mission, Point, Robot, Rules, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
-from muster.verification.ways import MapWays
+from muster.verification.map_paths import MapPaths
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Travel:
     """
 
     def __init__(self, mission: Mission) -> None:
-        self._ways = MapWays(mission, _points(mission)) if mission.travel_rule == "map" else None
+        self._paths = MapPaths(mission, _points(mission)) if mission.travel_rule == "map" else None
         self._by_table = mission.travel_rule == "matrix"
         self._tables = mission.travel_tables
         self._index = {kind: {place: k for k, place in enumerate(table.places)} for kind, table in self._tables.items()}
@@ -79,12 +79,12 @@ class Travel:
     @property
     def tolerance(self) -> float:
         """By how much, relative, a right length may differ from these: 0, but where a map is in play."""
-        return 0.0 if self._ways is None else self._ways.tolerance
+        return 0.0 if self._paths is None else self._paths.tolerance
 
     @property
     def is_straight(self) -> bool:
         """Whether each leg is the straight line between its ends."""
-        return self._ways is None and not self._by_table
+        return self._paths is None and not self._by_table
 
     @property
     def is_tabled(self) -> bool:
@@ -93,8 +93,8 @@ class Travel:
 
     def metres(self, robot: Robot, start: Place, end: Place) -> float | None:
         """Return the length of the leg from the exit of `start` to the entry of `end`; None if there is no way."""
-        if self._ways is not None:
-            return self._ways.metres(robot, start.exit, end.entry)
+        if self._paths is not None:
+            return self._paths.metres(robot, start.exit, end.entry)
         length = self._tabled(robot, start, end) if self._by_table else math.dist(start.exit, end.entry)
         return length if math.isfinite(length) else None
 
@@ -106,14 +106,14 @@ class Travel:
         doing = doing_at(robot, task)
         if doing is None:
             place = place_of_task(task)
-            if self._ways is None or place.entry == place.exit:
+            if self._paths is None or place.entry == place.exit:
                 return task.actuation_cost
-            return None if self._ways.metres(robot, place.entry, place.exit) is None else task.actuation_cost
+            return None if self._paths.metres(robot, place.entry, place.exit) is None else task.actuation_cost
         if isinstance(doing, Impossible):
             return 0.0
-        if self._ways is None:
+        if self._paths is None:
             return doing.cost_m
-        lengths = [self._ways.metres(robot, start, end) for start, end in doing.legs]
+        lengths = [self._paths.metres(robot, start, end) for start, end in doing.legs]
         return None if None in lengths else math.fsum(length for length in lengths if length is not None)
 
     def _tabled(self, robot: Robot, start: Place, end: Place) -> float:

@@ -1,4 +1,4 @@
-"""What the judge finds: the figures of a plan, recomputed, and everything that is wrong with it. Immutable."""
+"""The verdict: the recomputed figures of a plan and its violations. Immutable."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ _ROUNDS = 7  # of taking points closer
 _CLOSER = 0.4  # how much closer each time
 
 
-class AirWays:
+class AirPaths:
     """Shortest ways in a PrismSpace."""
 
     def __init__(self, space: PrismSpace) -> None:

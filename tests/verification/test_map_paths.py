@@ -7,21 +7,21 @@ from itertools import permutations
 import numpy as np
 import pytest
 import shapely
-from tests.verification.brute_ways import among_polygons, over_cells, random_cells, star
+from tests.verification.brute_paths import among_polygons, over_cells, random_cells, star
 
 from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.narrow_places import necks
 from muster.motion.maps.polygons import free_region, grown
-from muster.verification.air import AirWays
-from muster.verification.ways import PlaneWays
+from muster.verification.air_paths import AirPaths
+from muster.verification.map_paths import PlanePaths
 
 ARENA = shapely.box(0, 0, 40, 40)
 SQUARE = shapely.box(15, 15, 25, 25)
 
 
 def metres(space, start, end):
-    ways = PlaneWays(space, [start, end])
+    ways = PlanePaths(space, [start, end])
     there, back = ways.metres(start, end), ways.metres(end, start)
     assert there == back
     return there
@@ -127,7 +127,7 @@ def test_a_metric_no_shorter_than_the_straight_line(make, extent, seed):
     random = np.random.default_rng(seed)
     space = make(random)
     places = [tuple(point) for point in (random.random((9, 2)) * extent).tolist()]
-    ways = PlaneWays(space, places)
+    ways = PlanePaths(space, places)
     length = {(a, b): ways.metres(a, b) for a in places for b in places}
     reached = [a for a in places if length[a, a] == 0]
     assert len(reached) >= 3
@@ -164,7 +164,7 @@ def test_nothing_passes_where_two_free_parts_meet_in_a_point():
 
 def test_a_place_that_is_not_known_is_refused():
     with pytest.raises(KeyError):
-        PlaneWays(PolygonSpace(ARENA), [(1, 1)]).metres((1, 1), (2, 2))
+        PlanePaths(PolygonSpace(ARENA), [(1, 1)]).metres((1, 1), (2, 2))
 
 
 def test_on_the_ground_height_rises_evenly_along_the_way():
@@ -175,7 +175,7 @@ def test_on_the_ground_height_rises_evenly_along_the_way():
 
 
 def in_air(prisms, start, end, region=ARENA):
-    ways = AirWays(PrismSpace(region, (*prisms, *necks(region, prisms))))
+    ways = AirPaths(PrismSpace(region, (*prisms, *necks(region, prisms))))
     there = ways.metres(start, end)
     assert there == ways.metres(end, start)
     return there
@@ -251,4 +251,4 @@ def test_no_way_leads_through_another_place(seed):
     blocked = random_cells(np.random.default_rng(seed), (6, 6), 0.4)
     space, start, end = GridSpace(Grid(blocked, 1.0)), (0.5, 0.5), (5.5, 5.5)
     pinches_too = [(float(x), float(y)) for x in range(7) for y in range(7)]
-    assert PlaneWays(space, [start, end, *pinches_too]).metres(start, end) == metres(space, start, end)
+    assert PlanePaths(space, [start, end, *pinches_too]).metres(start, end) == metres(space, start, end)

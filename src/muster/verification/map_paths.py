@@ -17,7 +17,7 @@ from muster.mission.model import Mission, Point, Robot
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.map_world import World
-from muster.verification.air import AirWays
+from muster.verification.air_paths import AirPaths
 from muster.verification.cells import Cells
 from muster.verification.regions import Regions
 from muster.verification.visibility_graph import VisibilityGraph
@@ -29,7 +29,7 @@ AIR_TOLERANCE = 1e-2
 """Relative. Among prisms both are within half of it."""
 
 
-class MapWays:
+class MapPaths:
     """Shortest ways over a mission's map for its robots, made once for each radius and kind.
 
     Parameters
@@ -48,7 +48,7 @@ class MapWays:
     def __init__(self, mission: Mission, points: Iterable[Point]) -> None:
         self._world = World.of(mission)
         self._points = tuple(points)
-        self._made: dict[tuple[float, str], PlaneWays | AirWays] = {}
+        self._made: dict[tuple[float, str], PlanePaths | AirPaths] = {}
         in_air = any(isinstance(self._space(robot), PrismSpace) for robot in mission.robots)
         self.tolerance = AIR_TOLERANCE if in_air else PLANE_TOLERANCE
 
@@ -57,7 +57,7 @@ class MapWays:
         body = (robot.radius_m, robot.kind)
         if body not in self._made:
             space = self._space(robot)
-            self._made[body] = AirWays(space) if isinstance(space, PrismSpace) else PlaneWays(space, self._points)
+            self._made[body] = AirPaths(space) if isinstance(space, PrismSpace) else PlanePaths(space, self._points)
         return self._made[body].metres(start, end)
 
     def _space(self, robot: Robot) -> Space:
@@ -79,7 +79,7 @@ class _Sight(Protocol):
     def clear(self, start: Floats, end: Floats) -> bool: ...
 
 
-class PlaneWays:
+class PlanePaths:
     """Shortest ways in the plane between some places, which must be known beforehand.
 
     With heights, as of a ground robot in a 3-D mission, z rises evenly along the way in the plane: the length is
