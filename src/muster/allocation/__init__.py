@@ -1,1 +1,1 @@
-"""Who does what, in which order: one algorithm a file, behind one interface."""
+"""Allocation of tasks to robots, in an order: one algorithm a file, behind one interface."""

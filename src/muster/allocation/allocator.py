@@ -1,4 +1,4 @@
-"""What every allocator is, and how its routes become a plan."""
+"""The interface of allocators, and the plan made from the routes of one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The terms of an auction: who bids what, where a task goes, who wins."""
+"""The terms of an auction: the bid rule, the place of a task in a route, the winner rule."""
 
 from __future__ import annotations
 

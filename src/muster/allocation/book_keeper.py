@@ -1,4 +1,4 @@
-"""The book of an auction in one process."""
+"""Keeps the book of an auction in one process: its rounds, their bids and winners."""
 
 from __future__ import annotations
 

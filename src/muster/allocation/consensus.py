@@ -1,4 +1,4 @@
-"""Agreement of robots on who wins which task, by messages between neighbours: phase 2 of CBBA.
+"""Agreement of robots on the winner of each task, by messages between neighbours: phase 2 of CBBA.
 
 [choi2009]. Variables carry the paper's names: i receives from k; z: winning agents, y: winning bids, s:
 time stamps. All rounds are synchronous.

@@ -1,4 +1,4 @@
-"""CBBA: the consensus-based bundle algorithm, in one process, its rounds and messages counted.
+"""CBBA, the consensus-based bundle algorithm, in one process; rounds and messages are counted.
 
 [choi2009]. Every robot fills its bundle with the tasks that add most to the score of its path (phase 1, Algorithm 3);
 then the robots exchange winners, bids and time stamps with their neighbours (phase 2, Table I), and each releases what

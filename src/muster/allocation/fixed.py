@@ -1,4 +1,4 @@
-"""Fixed beginnings of routes, for planning again while robots are under way.
+"""Fixed beginnings of routes, for replanning: the tasks that robots have done, are doing, or must keep.
 
 The fixed tasks are an admissible plan by themselves, so they can be done whatever is planned after them.
 """

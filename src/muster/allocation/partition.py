@@ -1,4 +1,4 @@
-"""Large teams: divided in space, the parts improved in parallel, then divided along other lines and improved again.
+"""Large teams: divided in space, each part improved in parallel, then divided differently and improved again.
 
 The first division goes by where robots start and tasks lie; the later ones by where routes run, along other lines, so
 that what was a border lies within a part. Robots keep their routes from one division to the next, so the plan never

@@ -1,4 +1,4 @@
-"""The compiled question: a mission, an objective and the rules that hold, as arrays for the core."""
+"""The problem: a mission, an objective and the rules in force, compiled to arrays for the core."""
 
 from __future__ import annotations
 

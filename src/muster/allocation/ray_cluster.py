@@ -1,4 +1,4 @@
-"""Parts of a team improved on a Ray cluster (extra `ray`); the only file that knows Ray.
+"""Improves parts of a team on a Ray cluster (extra `ray`). No other module uses Ray.
 
 A part is a task of Ray's on one CPU. Ctrl-C, or the end of the time, cancels what is still at work: Ray then sends the
 worker the signal that Ctrl-C sends, on which it returns the best it has. A worker that dies is replaced once; where

@@ -1,4 +1,4 @@
-"""The allocators by name, those of installed packages included; and any function as an allocator."""
+"""The allocators by name, including those of installed packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A remedy as data: the change of each rule with which a robot can do a task, and what is proven of them."""
+"""A remedy as data: the changes of rules with which a robot can do a task, and which of them are proven."""
 
 from __future__ import annotations
 

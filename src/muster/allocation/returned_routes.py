@@ -1,4 +1,4 @@
-"""The routes that an algorithm returned, checked where it is not one that ships."""
+"""Checks the routes that a plugin's algorithm returned."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Spanning trees that no set of routes costs less than, for lower bounds."""
+"""Lower bounds by spanning trees: no set of routes costs less than the least tree over its places."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Travel between places by the mission's rule, as the core wants it."""
+"""Travel between places by the mission's rule, as input of the core."""
 
 from __future__ import annotations
 

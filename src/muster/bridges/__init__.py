@@ -1,1 +1,1 @@
-"""Doors to real robots and their tools. Each asks for its own extra when it is used; `fleet` has what all are."""
+"""Bridges to real robots. Each has its own extra, needed when it is used; `fleet` has the common interface."""

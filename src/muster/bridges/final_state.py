@@ -1,4 +1,4 @@
-"""What each robot does when a command ends: where it is, whether it answers, whether it still flies or drives."""
+"""The state of each robot when a command ends: position, whether it answers, whether it still flies or drives."""
 
 from __future__ import annotations
 

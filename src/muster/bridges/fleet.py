@@ -1,4 +1,4 @@
-"""The interface of a bridge: robots behind ports, and a clock that goes on by itself."""
+"""The interface of a bridge: robots behind ports, and a clock in real time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Progress along way points of a robot that reports poses alone: the next one, and how many it has passed."""
+"""Progress along way points of a robot that reports only poses: the next way point, and how many are passed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robots that the mission does not name: found by their topics, they join once their position is known.
+"""Robots that the mission does not name: discovered by their topics, they join once their position is known.
 
 Steps 2 to 4 of the dynamic instantiation of [tcf-thesis], Figure 5.7. How such a robot describes itself is the
 middleware's affair.

@@ -1,4 +1,4 @@
-"""What ports of robots that only say where they are have in common: velocities by poses, goals by way points."""
+"""Base of ports of robots that report only poses: velocities estimated from poses, goals from way points."""
 
 from __future__ import annotations
 

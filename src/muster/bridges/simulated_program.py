@@ -1,4 +1,4 @@
-"""A simulated robot as a program: what the ones of ROS 1 and ROS 2 are asked on the command line, and how they end."""
+"""A simulated robot as a program: the command-line options and the end that ROS 1 and ROS 2 have in common."""
 
 from __future__ import annotations
 

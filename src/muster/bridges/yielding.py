@@ -1,4 +1,4 @@
-"""Robots that wait make room for those that come, and come back, as those of the simulated worlds do.
+"""Waiting robots make room for robots under way, and return afterwards, as in the simulated worlds.
 
 Only one that has done what it was sent to do is moved. Where another is to go to a place so near that both bodies do
 not fit, or is held up on its way there, it steps aside to the nearest place at which it is in nobody's way. It comes

@@ -1,4 +1,4 @@
-"""A server of mission control: its missions, plans, jobs, runs and records."""
+"""The client of a mission control server: its missions, plans, jobs, runs and records."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Handles of a job and of a run at a server."""
+"""Handles of a job and of a run on a server: progress, result, control."""
 
 from __future__ import annotations
 

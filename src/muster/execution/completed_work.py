@@ -1,4 +1,4 @@
-"""Work that was completed before a restart: tasks, and usage of robots."""
+"""Work completed before a restart of the executor: tasks, and the robots' usage."""
 
 from __future__ import annotations
 

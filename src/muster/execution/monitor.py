@@ -1,4 +1,4 @@
-"""What the monitor notices of a robot: that it is silent, does not get on, or will use more than it can.
+"""The monitor's findings about a robot: it is silent, it makes no progress, or it will use more than its capacity.
 
 A robot that others hold up who are at work does not count as stuck, however long they take.
 """

@@ -1,4 +1,4 @@
-"""Re-allocation: the rest of a mission planned again when something has changed ([tcf-thesis], 7.3; [market-paper], 6).
+"""Re-allocation: the remaining tasks are planned again after a change ([tcf-thesis], 7.3; [market-paper], 6).
 
 The plan so far, as far as it still can be, is where the search begins. `rules.stability` bounds how many tasks go from
 one robot that could do them to another.

@@ -1,4 +1,4 @@
-"""Observers of a mission that is carried out: the events that they receive, and their form."""
+"""Observers of a mission under way: the form of the events that they receive."""
 
 from __future__ import annotations
 

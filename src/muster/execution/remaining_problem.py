@@ -1,4 +1,4 @@
-"""The rest of a mission as a problem: what is left to be planned while robots are under way.
+"""The remaining mission as a problem, for planning again while robots are under way.
 
 Each robot stands where it is, or will be when its work under way is done. What it has done is one task at the beginning
 of its route, which stays (`allocation.fixed`): it costs what the robot has used, lasts as long as the work under way

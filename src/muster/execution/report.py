@@ -1,4 +1,4 @@
-"""The report: what carrying a mission out took, beside what was planned (usage discrepancy, [tcf-thesis], 6.3.1)."""
+"""The report of a mission carried out, beside what was planned (usage discrepancy, [tcf-thesis], 6.3.1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One robot of the crew: its activity, its order, its telemetry and its usage.
+"""The state of one robot during execution: its activity, its order, its telemetry and its usage.
 
 The availability `a_i` of [tcf-thesis], 5.3.1: a robot is busy while it moves to a task or does it.
 """

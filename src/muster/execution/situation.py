@@ -1,4 +1,4 @@
-"""The situation while a mission is carried out, as planning needs it: the rest, and the plan of the whole."""
+"""The state of a mission under way as input of replanning: the remaining problem, and the plan of the whole mission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a mission stands at a moment: what each robot does, what it waits for and has left, how far each task is."""
+"""The status of a mission at a moment: each robot's activity, wait and remaining route, and each task's progress."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A task as a robot of the crew carries it out: the way points of its action, by the ways that robots go."""
+"""The motion of a task as a robot carries it out: way points of its action, connected by paths."""
 
 from __future__ import annotations
 

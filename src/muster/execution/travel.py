@@ -1,4 +1,4 @@
-"""Travel from where robots are now: straight, over the map, or by travel tables."""
+"""Travel from the robots' current positions: straight, over the map, or by travel tables."""
 
 from __future__ import annotations
 

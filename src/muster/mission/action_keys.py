@@ -1,4 +1,4 @@
-"""The keys that each task action has in a mission file. What an action does is told by `motion.actions`."""
+"""The keys that each task action has in a mission file. `motion.actions` defines what the actions do."""
 
 from __future__ import annotations
 

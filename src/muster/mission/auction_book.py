@@ -1,4 +1,4 @@
-"""The book of an auction: what was bid for which task, who won it, and for how much. Immutable."""
+"""The book of an auction: the bids for each task, its winner and the price. Immutable."""
 
 from __future__ import annotations
 

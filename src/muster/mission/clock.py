@@ -1,4 +1,4 @@
-"""Time, as something that is passed in: nothing in Muster reads the wall clock for logic."""
+"""Clocks. Time is passed in: no logic in Muster reads the wall clock."""
 
 from __future__ import annotations
 

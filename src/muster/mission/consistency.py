@@ -1,4 +1,4 @@
-"""What must hold between the parts of a mission, wherever it came from."""
+"""Consistency rules between the parts of a mission: ids, references, units, cycles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Places that a file gives in degrees become metres in the map frame, before the mission is read.
+"""Converts places that a file gives in degrees to metres in the map frame, before the mission is read.
 
 A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
 `pickup` may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at

@@ -1,4 +1,4 @@
-"""What happens while a mission is carried out, each event in a line for people."""
+"""The events of a mission file, each described in one line for people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What happens while a mission is carried out."""
+"""The events of a mission file: failures, new tasks and other changes at given times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plain data (from YAML, CSV, TSPLIB) to a Mission, with all that is wrong reported in one go.
+"""Converts plain data (from YAML, CSV, TSPLIB) to a Mission, and reports all errors at once.
 
 A value that is wrong is set aside and the rest is still checked, so that a misspelt speed does not hide an unknown
 prerequisite three tasks later.

@@ -1,4 +1,4 @@
-"""The rules that a caller may switch off, by the words of reasons: `--ignore` and the key `ignored` of plans."""
+"""The rules that a caller may ignore, named by the words of reasons: `--ignore` and the key `ignored` of plans."""
 
 from __future__ import annotations
 

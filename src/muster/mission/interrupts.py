@@ -1,4 +1,4 @@
-"""Ctrl-C, and other signals to end, where they must not end a program at once."""
+"""Handling of Ctrl-C and other signals to end, where a program must not end at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keyword arguments that nobody knows, refused with the nearest known name."""
+"""Refuses unknown keyword arguments, and names the nearest known one."""
 
 from __future__ import annotations
 

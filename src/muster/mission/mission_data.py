@@ -1,4 +1,4 @@
-"""The fields of a mission, before it is known whether they fit together."""
+"""The fields of a mission, before their consistency is checked."""
 
 from __future__ import annotations
 

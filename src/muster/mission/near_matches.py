@@ -1,4 +1,4 @@
-"""The known word that a misspelt one may stand for."""
+"""The known word nearest to a misspelt one."""
 
 from __future__ import annotations
 

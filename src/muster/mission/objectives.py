@@ -1,4 +1,4 @@
-"""What each objective is worth: one definition for plans and for what was carried out (docs/design.md, Meaning)."""
+"""The values of objectives: one definition for plans and for what was carried out (docs/design.md, Meaning)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Classes of the model whose fields are each declared once, with the kind of their values.
+"""The base of the model's classes: each field is declared once, with the kind of its value.
 
 From that one declaration follow reading a file, checking a mission built in Python, writing, the "did you mean" of
 unknown keys, the help of the class and the published JSON Schema, so that these cannot disagree.

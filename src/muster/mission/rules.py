@@ -1,4 +1,4 @@
-"""The rules of a mission: what counts, and how."""
+"""The rules of a mission: objective, usage, travel, suitability and other settings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a mission takes place: its origin on Earth, its map and zones, its tags and its travel tables."""
+"""The site of a mission: its origin on Earth, its map and zones, its tags and its travel tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a mission came from: the file and line of each of its values."""
+"""The source of a mission: the file and line of each of its values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What this version cannot plan and cannot judge yet: refused in one place, so that planner and judge agree."""
+"""Refuses features that this version can neither plan nor judge yet, for planner and judge alike."""
 
 from __future__ import annotations
 

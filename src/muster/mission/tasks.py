@@ -1,4 +1,4 @@
-"""The tasks of a mission, and what a robot does at them."""
+"""The tasks of a mission, and their actions."""
 
 from __future__ import annotations
 

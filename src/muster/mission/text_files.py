@@ -1,4 +1,4 @@
-"""The text of files: reading those that are given, writing those that are asked for."""
+"""Reads and writes text files, with errors of one line."""
 
 from __future__ import annotations
 

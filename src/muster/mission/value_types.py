@@ -1,4 +1,4 @@
-"""What a value of a mission may be.
+"""The types of values in a mission.
 
 The fields of the model are declared once, each with its *kind* (`records.py`).
 """

@@ -1,4 +1,4 @@
-"""Mission YAML (`schema: muster/1`) to a Mission, with the line of everything that is wrong.
+"""Reads mission YAML (`schema: muster/1`); every error names its line.
 
 PyYAML finds the structure; scalars are resolved here by the core schema of YAML 1.2, so that `no`, `1:30` or `0777`
 mean what they look like.

@@ -1,4 +1,4 @@
-"""Robots that look while a plan is carried out: what their cameras find becomes tasks ([tcf-thesis] 4.3, 7.3).
+"""Cameras during a mission: what they find becomes tasks ([tcf-thesis] 4.3, 7.3).
 
 Each camera looks at its own rate from where it truly is. Its robot takes itself to be where its telemetry says, and
 tilted as its inertial unit says, both with the world's noise. What a silent robot sees is lost.

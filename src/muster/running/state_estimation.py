@@ -1,4 +1,4 @@
-"""How robots of a simulated world are heard: as they are, or, where they err about their poses, fused by filters.
+"""State estimation in simulated worlds: telemetry as it is, or fused by filters where robots err about their poses.
 
 Filters run at the pace of the world, as those on board of a robot run at the pace of its sensors, whenever somebody
 asks. They count with the world's own noise, as one does who knows the data sheets of his sensors.

@@ -1,4 +1,4 @@
-"""Whether a figure that is stated agrees with the one that was found."""
+"""Whether a stated figure agrees with the recomputed one."""
 
 from __future__ import annotations
 

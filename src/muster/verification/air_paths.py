@@ -1,4 +1,4 @@
-"""The judge's own shortest ways of a drone over, below and around prisms: from above, and within about 0.5 %.
+"""The judge's own shortest paths of a drone over, below and around prisms, within about 0.5 % of the optimum.
 
 A shortest way in the air turns on upright edges and on rims of prisms. Points are taken on those edges, first few and
 on coarse outlines, then ever closer to the best way found so far, on the true ones ([papadimitriou1985] takes points on

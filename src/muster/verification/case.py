@@ -1,4 +1,4 @@
-"""The case before the judge: a mission, the measured routes of a plan, and the rules that are ignored."""
+"""The input of the judge: a mission, the measured routes of a plan, and the rules that are ignored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is seen from where among free cells: the exact sight of the judge in a GridSpace.
+"""Exact lines of sight among the free cells of a grid map, for the judge's shortest paths.
 
 All lengths here are in cells: x grows with the column, y with the row. Free cells are closed squares, and between two
 blocked cells that touch at a corner nothing passes. A shortest way turns only at corners of the lattice with one

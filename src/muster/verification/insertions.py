@@ -1,4 +1,4 @@
-"""One more task in a route, the others in their order: whether it can be reached, and the least usage of the route."""
+"""Inserts one more task in a route: whether the task can be reached, and the least usage of the route."""
 
 from __future__ import annotations
 

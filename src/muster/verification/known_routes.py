@@ -1,4 +1,4 @@
-"""The routes of a plan as far as its robots and tasks exist and do not repeat."""
+"""The part of a plan's routes whose robots and tasks exist and do not repeat."""
 
 from __future__ import annotations
 

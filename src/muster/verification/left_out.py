@@ -1,4 +1,4 @@
-"""Checks the list `unassigned` of a plan: the tasks left out, and the reasons given for each robot."""
+"""Checks the list `unassigned` of a plan: the tasks left out, and the reasons for each robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The judge's own shortest ways on a map: docs/design.md, Meaning: travel `map`.
+"""The judge's own shortest paths on a map (docs/design.md, Meaning: travel `map`).
 
 In the plane they are exact: a shortest way turns only at corners of what is blocked, so it is a shortest path in the
 graph of corners that see each other [lozano1979].

@@ -1,4 +1,4 @@
-"""What each route costs: docs/design.md, Meaning; [tcf-thesis] (3.8)-(3.10) and (3.28)-(3.29)."""
+"""The usage of each route (docs/design.md, Meaning; [tcf-thesis] (3.8)-(3.10) and (3.28)-(3.29))."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is seen from where in a region of the plane: the exact sight of the judge in a PolygonSpace.
+"""Exact lines of sight in a region of polygons, for the judge's shortest paths.
 
 A shortest way turns only at the region's inward corners, and leaves each along a line that both its sides lie on one
 side of. Sight is Shapely's, against the region made smaller by a hair: its corners are taken from one made smaller by

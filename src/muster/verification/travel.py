@@ -1,4 +1,4 @@
-"""How far it is from place to place: docs/design.md, Meaning; [tcf-thesis] (3.9)."""
+"""The judge's own distances between places (docs/design.md, Meaning; [tcf-thesis] (3.9))."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shortest ways along straight pieces between points: SciPy's Dijkstra, drawn towards the goal."""
+"""Shortest paths along straight lines between points: SciPy's Dijkstra, guided towards the goal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures like Figures 7 and 8: rangeBot's way and what its laser finds on the map, and the metrics as bars."""
+"""Pictures like Figures 7 and 8: rangeBot's path and its laser's findings on the map, and the metrics as bars."""
 
 from __future__ import annotations
 

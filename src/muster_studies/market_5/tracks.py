@@ -1,4 +1,4 @@
-"""Figure 8, errors and risk factor by where robots were and where they took themselves to be; and how far these differ.
+"""Figure 8, errors and risk factor by true and by estimated positions of robots; and how far these differ.
 
 The paper's robots steer by odometry, and its errors are by odometry: how well robots follow their own estimates. Ours
 steer by their true places, so no own error is of the same measure. All are shown; none has a check mark.

@@ -1,4 +1,4 @@
-"""Travel and work in whole numbers, as other solvers want them."""
+"""Travel and work as whole numbers, the input of other solvers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mission as other solvers want it: the tasks that can be done, places as nodes, whole numbers."""
+"""A mission as input of other solvers: the tasks that can be done, places as nodes, whole numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every peer is: a solver from elsewhere that answers an instance within a time."""
+"""The interface of a peer: a solver from elsewhere that solves an instance within a time."""
 
 from __future__ import annotations
 

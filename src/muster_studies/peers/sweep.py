@@ -1,4 +1,4 @@
-"""The best a user can do with a solver that minimises the total alone: cap every route, again and again.
+"""A solver that minimises the total, used for other objectives: solved repeatedly with lower and lower caps on routes.
 
 Each run minimises the total under a cap on the route length. What counts is the best of all runs by the objective; the
 time limit is split over them.

@@ -1,4 +1,4 @@
-"""What is run: a plan of the market, or a plan carried out, undisturbed, with noise, or with a robot that fails."""
+"""The runs of the study: a plan of the market, or one carried out undisturbed, with noise, or with a failing robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figure 7, reference against flown way of rangeBot; Figure 8, the metrics of all robots over repetitions."""
+"""Figure 7, reference against flown path of rangeBot; Figure 8, the metrics of all robots over repetitions."""
 
 from __future__ import annotations
 

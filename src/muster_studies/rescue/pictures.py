@@ -1,4 +1,4 @@
-"""Pictures like Figures 7 and 8: reference and flown way on the map, and the metrics as bars with their spread."""
+"""Pictures like Figures 7 and 8: reference and flown path on the map; the metrics as bars with standard deviations."""
 
 from __future__ import annotations
 

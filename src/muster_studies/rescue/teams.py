@@ -1,4 +1,4 @@
-"""Who is sent: the paper's team in an arena with obstacles, the same with two a skill, and the richer mission."""
+"""The teams of the study: the paper's with obstacles, the same with two robots per skill, the richer mission's."""
 
 from __future__ import annotations
 

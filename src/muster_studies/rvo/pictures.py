@@ -1,4 +1,4 @@
-"""Pictures like Figures A.4 to A.9 and A.15 to A.17: ways, least distance and velocities, all methods side by side."""
+"""Pictures like Figures A.4 to A.9 and A.15 to A.17: paths, least distance and velocities, all methods side by side."""
 
 from __future__ import annotations
 

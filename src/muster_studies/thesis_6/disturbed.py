@@ -1,4 +1,4 @@
-"""Tables `noise`, how much more robots use that are disturbed, and `capacity-reserve`, what a reserve is good for."""
+"""Table `noise`: how much more disturbed robots use. Table `capacity-reserve`: what a reserve of capacity achieves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures like Figures 6.3, 6.10, 6.13 and 6.14: where the robots went, with the ways of their tasks."""
+"""Pictures like Figures 6.3, 6.10, 6.13 and 6.14: the paths of the robots, and those of their tasks."""
 
 from __future__ import annotations
 

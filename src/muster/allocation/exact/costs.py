@@ -1,4 +1,4 @@
-"""What every robot's legs and work cost, as whole numbers."""
+"""The costs of robots' legs and work, as whole numbers."""
 
 from __future__ import annotations
 

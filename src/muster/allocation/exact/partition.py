@@ -1,4 +1,4 @@
-"""The best average over all ways to part the tasks among the robots, by dynamic programming over sets of tasks.
+"""The least `average` over all partitions of the tasks among the robots, by dynamic programming over sets of tasks.
 
 Routes are by [held-karp1962]. A
 set of tasks is a number, with one bit for each task.

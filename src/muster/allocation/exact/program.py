@@ -1,4 +1,4 @@
-"""The plans of a problem as a constraint program over whole numbers, for OR-Tools CP-SAT.
+"""A problem as a constraint program over whole numbers, for OR-Tools CP-SAT.
 
 Each robot's route is a circuit through its start and its tasks (`AddCircuit`; tasks of others are loops). Tasks with
 prerequisites have a rank that grows along every leg and from every prerequisite, so that no plan deadlocks; with

@@ -1,4 +1,4 @@
-"""Costs and weights as whole numbers, so that what a solver of whole numbers proves is true of the real ones."""
+"""Costs and weights scaled to whole numbers, so that bounds proven for these hold for the real ones."""
 
 from __future__ import annotations
 

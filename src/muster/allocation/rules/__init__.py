@@ -1,4 +1,4 @@
-"""The rules of a mission, one a file, in the order in which reasons are looked for.
+"""The rules of a mission, one a file, in the order in which reasons are sought.
 
 A rule says what it refuses, what it proves impossible, why a task is left out of a plan, what change would lift it, and
 says that change in words. A rule is added to `RULES`; problems, proofs of impossibility, reasons, remedies and their

@@ -1,4 +1,4 @@
-"""The robot's body can do the task's action: a camera that looks down, for one. It cannot be ignored."""
+"""The robot can do the task's action, which may need a camera that looks down. This rule cannot be ignored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a rule is, and the change that lifts one for a robot and a task."""
+"""The interface of a rule, and the change that lifts a rule for a robot and a task."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""There is a way for the robot to the task and along its action. It cannot be ignored."""
+"""The robot has a path to the task and along its action. This rule cannot be ignored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The two autopilots that Muster flies, and where they differ: modes, and what a mission begins with.
+"""The two supported autopilots and their differences: modes, and the first items of a mission.
 
 Modes: PX4's `px4_custom_mode` (main mode << 16 | sub mode << 24), ArduCopter's flight mode numbers. ArduPilot
 holds in BRAKE, not in LOITER, which obeys the sticks of a remote control that may not be there; and is armed in GUIDED.

@@ -1,4 +1,4 @@
-"""The messages of MAVLink as pymavlink has them, and bytes to messages and back.
+"""The messages of MAVLink by pymavlink: their encoding and decoding.
 
 pymavlink is LGPL-3: an optional part (extra `mavlink`), imported here alone, and nothing of it is copied.
 """

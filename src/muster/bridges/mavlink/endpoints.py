@@ -1,4 +1,4 @@
-"""How drones are reached: UDP, to listen or to call, or a serial line, with one drone or several on it."""
+"""Endpoints of drones: UDP, listening or connecting, or a serial line, with one drone or several on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is noticed of one drone that it did not answer: each a fault by its name."""
+"""Detects faults of one drone that are not answers to requests; each has a name."""
 
 from __future__ import annotations
 

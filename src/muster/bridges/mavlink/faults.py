@@ -1,4 +1,4 @@
-"""What can go wrong with a drone, by name, and what becomes of it: the table of docs/mavlink.md."""
+"""The faults of drones by name, and the reaction to each: the table of docs/mavlink.md."""
 
 from __future__ import annotations
 

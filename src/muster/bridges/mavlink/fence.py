@@ -1,4 +1,4 @@
-"""Where a drone may go: inside the map's boundary and outside the zones that are forbidden to it."""
+"""The fence of a drone: inside the map's boundary and outside the zones that are forbidden to it."""
 
 from __future__ import annotations
 

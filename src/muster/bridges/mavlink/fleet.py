@@ -1,4 +1,4 @@
-"""Drones behind MAVLink as a fleet: a session each, and the links by which they are reached.
+"""Drones behind MAVLink as a fleet: a session for each, and the links to them.
 
 A thread hears and speaks from `connect` to `close`, because drones must hear way points, and heartbeats, while the
 executor plans: PX4 leaves its offboard mode below 2 Hz. What it shares with the executor's is behind one lock.

@@ -1,4 +1,4 @@
-"""The map frame (ENU) as a drone has it: WGS84 with heights above home, and its local frame (NED).
+"""The map frame (ENU) in the frames of a drone: WGS84 with heights above home, and its local frame (NED).
 
 Heights. A drone is told heights above home (MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, GLOBAL_POSITION_INT.relative_alt), and
 home is as high as its start in the mission. Altitudes above the sea (AMSL) are neither read nor written, so that the

@@ -1,4 +1,4 @@
-"""Lines and the drones on them: whose a message is that comes in, and to whom one goes out.
+"""Links and the drones on them: the sender of each message that arrives, and the link for each that is sent.
 
 A telemetry radio, MAVProxy or mavlink-router brings several drones by one line; their system ids tell them apart.
 """

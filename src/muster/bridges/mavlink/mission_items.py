@@ -1,4 +1,4 @@
-"""Way points as the items of a mission, and which item is which way point (MISSION_ITEM_INT)."""
+"""Way points as the items of a mission (MISSION_ITEM_INT), and the way point of each item."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Way points that are sent one by one: SET_POSITION_TARGET_LOCAL_NED, again and again."""
+"""Way points sent one by one, repeatedly: SET_POSITION_TARGET_LOCAL_NED."""
 
 from __future__ import annotations
 

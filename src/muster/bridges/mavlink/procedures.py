@@ -1,4 +1,4 @@
-"""What is asked of an autopilot, step by step: modes, arming, the upload of a mission, its start.
+"""Procedures of requests to an autopilot, step by step: modes, arming, the upload of a mission, its start.
 
 Sources: mavlink.io, services `mission` and `command`; PX4 and ArduCopter say in their heartbeat in what mode they are
 and whether they are armed, which is the answer that counts: an acknowledgement may be lost, or be an earlier one.

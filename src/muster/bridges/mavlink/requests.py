@@ -1,4 +1,4 @@
-"""Asking, and asking again: what is said to a drone in order, each time until it is answered. Sans-I/O.
+"""Requests to a drone in order, each repeated until it is answered. Sans-I/O.
 
 A script is a generator that yields what it asks and is given the answer. It ends, or raises `FaultError`.
 """

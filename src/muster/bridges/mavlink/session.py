@@ -1,4 +1,4 @@
-"""One drone, sans-I/O: messages in, messages out, times given. Orders in, how far it is, why it cannot go on.
+"""The session of one drone, sans-I/O: messages and orders in; messages, progress and faults out; times are given.
 
 Without `settings.arm` a session says nothing but heartbeats and requests for telemetry: all leaves by `_say`.
 """

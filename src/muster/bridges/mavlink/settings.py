@@ -1,4 +1,4 @@
-"""How drones are flown: what Muster may do, and its limits."""
+"""Settings of flights: what Muster may command, and its limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A simulated autopilot, PX4-like or ArduPilot-like, with faults to order. Sans-I/O.
+"""A simulated autopilot, PX4-like or ArduPilot-like, with configurable faults. Sans-I/O.
 
 It speaks the protocol as the real ones do (missions, commands, modes, telemetry, way points one by one) and flies as a
 point. It is no proof that a real one behaves so: docs/mavlink.md says what was tested against what.

@@ -1,4 +1,4 @@
-"""Where on Earth a simulated drone is, by pymap3d itself: the bridge's own frames are what it is there to try."""
+"""The position of a simulated drone on Earth, by pymap3d alone, so that the bridge's own frames are tested."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What goes wrong with a simulated drone, to order."""
+"""The configurable faults of a simulated drone."""
 
 from __future__ import annotations
 

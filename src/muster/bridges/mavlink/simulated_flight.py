@@ -1,4 +1,4 @@
-"""A point that flies: how the simulated autopilot moves. NED, metres, from where it was switched on."""
+"""The motion model of the simulated drone: a point with limited speed. NED, metres, origin where it was powered up."""
 
 from __future__ import annotations
 

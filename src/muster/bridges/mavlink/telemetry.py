@@ -1,4 +1,4 @@
-"""What a drone has said of itself: messages of telemetry to place, velocity, heading, mode and battery."""
+"""The telemetry of a drone: messages to position, velocity, heading, mode and battery."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mission's clock: seconds since the beginning, but for pauses, in which it stands still."""
+"""The mission's clock: seconds since its beginning, without pauses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The node `/command_interface`: what a user asks of the team ([tcf-thesis], Table 5.1, 1).
+"""The node `/command_interface`: users' requests to the team ([tcf-thesis], Table 5.1, 1).
 
 Services (std_srvs/Trigger) `load`, `start`, `pause`, `cancel`; topic `add_task` (std_msgs/String with JSON). What
 is asked for goes to the controller, and its answer back to the user.

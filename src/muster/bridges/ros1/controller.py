@@ -1,4 +1,4 @@
-"""What the high-level controller of [tcf-thesis] is asked for, and what it is doing: one mission after the other.
+"""The high-level controller of [tcf-thesis]: its requests, and its state; it carries out one mission after the other.
 
 It answers the node `/command_interface` with the truth: an answer says whether what was asked for happens, or why not.
 """

@@ -1,4 +1,4 @@
-"""What the bridge needs of the system: rospy and the standard messages, which come with the system, not from PyPI."""
+"""The bridge's system packages: rospy and the standard messages, which come with the system, not from PyPI."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robots on ROS 1 as a fleet: those of a mission, and those that are discovered while it goes on.
+"""Robots on ROS 1 as a fleet: those of a mission, and those that are discovered during it.
 
 Three kinds of threads: ROS' own hear poses, one steers the robots, which goes on while planning takes its time, and one
 looks for robots. What they share is behind one lock; to the executor's thread `advance` tells what has happened. Time

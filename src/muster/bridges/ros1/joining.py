@@ -1,4 +1,4 @@
-"""Robots on ROS 1 that the mission does not name: found at the master, described on the parameter server."""
+"""Robots on ROS 1 that the mission does not name: found by the master, described on the parameter server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A ROS master of one's own on a free port of this computer, for benches and tests."""
+"""Starts a ROS master on a free port of this computer, for benches and tests."""
 
 from __future__ import annotations
 

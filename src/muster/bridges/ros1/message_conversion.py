@@ -1,4 +1,4 @@
-"""ROS' messages and Muster's values: both have metres, radians, east-north-up (REP-103), so only the shapes differ."""
+"""Converts messages of ROS to Muster's values and back. Both use metres, radians and east-north-up (REP-103)."""
 
 from __future__ import annotations
 

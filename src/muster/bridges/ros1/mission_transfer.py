@@ -1,4 +1,4 @@
-"""Missions on their way between processes, and those that users leave on the parameter server."""
+"""Transfers missions between processes, and reads those that users set on the parameter server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A process as a node of ROS: there is one a process."""
+"""The ROS node of this process; a process has one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The life of a node that the controller starts: until its standard input ends, so never longer than the controller."""
+"""The lifetime of a node that the controller starts: it ends with its standard input, so never after the controller."""
 
 from __future__ import annotations
 

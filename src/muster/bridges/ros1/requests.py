@@ -1,4 +1,4 @@
-"""One question at a time, from one node to another, and its answer: JSON on two latched topics.
+"""Requests from one node to another, one at a time, with answers: JSON on two latched topics.
 
 A service cannot be asked before it is there, nor left in the middle. A latched question waits for whoever starts late,
 and who asked may stop waiting.

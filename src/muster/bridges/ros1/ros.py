@@ -1,4 +1,4 @@
-"""All of ROS 1 that the bridge uses, imported in one place after the system's packages were found."""
+"""All imports of ROS 1 packages, in one place, after the system's packages were found."""
 
 from muster.bridges.ros1.extra import require_rospy
 

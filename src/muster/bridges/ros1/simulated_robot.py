@@ -1,4 +1,4 @@
-"""A node that looks like a real robot: `python -m muster.bridges.ros1.simulated_robot r_0 --at 0 0`.
+"""A node that behaves like a real robot: `python -m muster.bridges.ros1.simulated_robot r_0 --at 0 0`.
 
 It moves exactly by its kinematics, takes `<robot>/cmd_vel` (stands if that stops for half a second) and, where nobody
 tells it velocities, `<robot>/WP`; it says `<robot>/odom`, tf `map` -> `<robot>/base_link`, and on the parameter server

@@ -1,1 +1,1 @@
-"""ROS 2: its standard messages, without ROS and by DDS."""
+"""The bridge to robots on ROS 2, with or without an installed ROS: over rclpy or DDS."""

@@ -1,4 +1,4 @@
-"""A participant of DDS that speaks as nodes of ROS 2 do: their names of topics and types, their bytes.
+"""A DDS participant that is compatible with ROS 2 nodes in topic names, type names and encoding.
 
 A topic `/r_0/pose` of ROS 2 is `rt/r_0/pose` in DDS, and the type `geometry_msgs/msg/PoseStamped` is
 `geometry_msgs::msg::dds_::PoseStamped_` (design.ros2.org, "Topic and Service name mapping to DDS"). Samples are

@@ -1,4 +1,4 @@
-"""What a message of ROS is made of: read from its dataclass, to convert it to the types of DDS, rclpy and rosbags.
+"""The fields of a ROS message, read from its dataclass, for its conversion to the types of DDS, rclpy and rosbags.
 
 A message is a frozen dataclass with a `NAME` (`package/Type`) whose fields have the types below.
 """

@@ -1,4 +1,4 @@
-"""Robots of ROS 2 as a fleet: those of a mission, and those that are found while it goes on.
+"""Robots on ROS 2 as a fleet: those of a mission, and those that are discovered during it.
 
 Each is given goals, one after the other: as poses on `<robot>/goal_pose`, or by Nav2's action
 `<robot>/navigate_to_pose`. It has arrived when its pose (`port`), or Nav2, says so. All happens in the

@@ -1,4 +1,4 @@
-"""Goals of a robot, one at a time: as a pose on a topic, or by Nav2's action."""
+"""Goals of a robot, one at a time: by a pose on a topic, or by Nav2's action."""
 
 from __future__ import annotations
 

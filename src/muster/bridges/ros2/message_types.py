@@ -1,4 +1,4 @@
-"""The standard messages of ROS that Muster speaks, each described once for ROS 1 and ROS 2.
+"""The standard messages of ROS that Muster uses, each described once for ROS 1 and ROS 2.
 
 Names, fields and their order are those of std_msgs, builtin_interfaces, geometry_msgs, nav_msgs, tf2_msgs and
 visualization_msgs (ROS Noetic; ROS 2 Humble and later). Units and frames by REP-103 and REP-105: metres, radians, m/s,

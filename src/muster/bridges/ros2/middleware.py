@@ -1,4 +1,4 @@
-"""What carries messages of ROS 2 to and fro: DDS without ROS (`dds`), or rclpy (`rclpy_wire`). Both are polled."""
+"""The interface of a middleware of ROS 2: DDS without ROS (`dds`), or rclpy (`rclpy_middleware`). Both are polled."""
 
 from __future__ import annotations
 

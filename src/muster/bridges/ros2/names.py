@@ -1,4 +1,4 @@
-"""Ids of a mission as ROS can have them in the names of topics and frames."""
+"""Ids of a mission as valid ROS names of topics and frames."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a robot is on the map by its odometry: each pose ties that to the map anew, as localisation does (REP-105)."""
+"""A robot's position on the map by odometry, corrected by each pose on the map, as localisation does (REP-105)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A participant that looks like a real robot: `python -m muster.bridges.ros2.simulated_participant r_0 --at 0 0`.
+"""A participant that behaves like a real robot: `python -m muster.bridges.ros2.simulated_participant r_0 --at 0 0`.
 
 It moves exactly by its kinematics to `<robot>/goal_pose`, or as `<robot>/cmd_vel` says (until that stops for half a
 second); it says `<robot>/odom`, and once a second on `<robot>/muster` what it can do.

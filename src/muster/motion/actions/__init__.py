@@ -1,4 +1,4 @@
-"""What each kind of task makes a robot do: one action a file, known by the name that missions have for it."""
+"""The actions of tasks: one action a file, registered by its name in mission files."""
 
 from muster.mission.action_keys import ActionKeys
 from muster.motion.actions.action import Impossible, TaskAction, TaskMotion, along, duration_of, given, raised, staying

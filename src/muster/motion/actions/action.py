@@ -1,4 +1,4 @@
-"""What a robot does at a task: way points from its entry to its exit, and what they cost. No drawing, no driving.
+"""The interface of an action: way points from a task's entry to its exit, and their cost.
 
 Heights count in a 3-D mission alone. In a mission in the plane the way points of every action lie in the plane, and an
 action's height tells no more than how far away an observer stands.

@@ -1,4 +1,4 @@
-"""Go to the task's position: [tcf-thesis] section 4.2. Its cost is 0 but for what the mission types in."""
+"""Go to the task's position: [tcf-thesis] section 4.2. It costs the task's stated `actuation_cost`, 0 by default."""
 
 from __future__ import annotations
 

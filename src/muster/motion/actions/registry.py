@@ -1,4 +1,4 @@
-"""The actions by the names that missions have for them, those of installed packages included."""
+"""The actions by their names in mission files, including those of installed packages."""
 
 from __future__ import annotations
 

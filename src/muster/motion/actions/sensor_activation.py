@@ -1,4 +1,4 @@
-"""Switch a sensor on at the task's position and wait until it has measured (`duration_s`)."""
+"""Activate a sensor at the task's position and wait until it has measured (`duration_s`)."""
 
 from __future__ import annotations
 

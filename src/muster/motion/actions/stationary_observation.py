@@ -1,4 +1,4 @@
-"""Look at a place from where the camera sees a given width of it: [tcf-thesis] equations (4.26)-(4.30).
+"""Observe a place from a position where the camera sees a given width of it: [tcf-thesis] equations (4.26)-(4.30).
 
 Corrected: (4.29) puts the robot beyond the target, facing away. With the heading phi from robot to target the camera
 stands at s - r (cos phi, sin phi), and its mount is rotated by phi with the body. Its height is h, so that the body is

@@ -1,4 +1,4 @@
-"""Repeated requests: a request that is sent again, because its answer did not arrive, makes nothing again."""
+"""Repeated requests: a request that is sent again, because its answer did not arrive, creates nothing twice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Backups: a file of SQLite with the tables of either kind of database, which can be restored into either.
+"""Backups of a database: an SQLite file with the same tables, which can be restored into SQLite or PostgreSQL.
 
 A backup is a snapshot, also while a server writes: SQLite's online backup (https://sqlite.org/backup.html) reads in one
 transaction, PostgreSQL in one of REPEATABLE READ. A backup is complete or does not exist.

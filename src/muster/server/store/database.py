@@ -1,4 +1,4 @@
-"""Connections to a database and transactions. Every failure of the database becomes a StoreError of one line.
+"""Connections to a database, and transactions. Every failure of the database becomes a StoreError of one line.
 
 SQLite uses write-ahead logging (WAL): readers and one writer do not wait for each other. With synchronous=FULL commits
 survive a power failure, at one fsync per transaction. A writing transaction takes the lock at its beginning (BEGIN

@@ -1,4 +1,4 @@
-"""Plans. What a list shows of a plan (its head) is kept apart from the rest, which may be large."""
+"""Plans. The part that lists show (the head) is stored apart from the rest, which may be large."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is thrown away: what was over long ago, and what nothing refers to any more.
+"""Deletes old data: what ended long ago, and what nothing refers to any more.
 
 The room of it is used for what comes; the file of SQLite does not shrink. The log of a run is deleted with its run
 alone: a trigger refuses any other way (see `schema.pruning`).

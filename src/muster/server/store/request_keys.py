@@ -1,4 +1,4 @@
-"""Keys of requests: a request that is sent again makes nothing again, also after the server was started anew."""
+"""Keys of requests: a repeated request creates nothing twice, also after a restart of the server."""
 
 from __future__ import annotations
 

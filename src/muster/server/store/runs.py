@@ -1,4 +1,4 @@
-"""Runs: plans that are or were carried out. What happened in them is in their log."""
+"""Runs: plans that are or were carried out. Their events are in their log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables. What is changed here needs a migration, too: a test compares them.
+"""The tables. Every change here needs a migration; a test compares both.
 
 `HEAD` is the newest migration: a database that has it is opened without a look at the others.
 """

@@ -1,4 +1,4 @@
-"""What metrics say of a database: how many jobs and runs there are, and how good the newest plans were."""
+"""Statistics of a database for metrics: numbers of jobs and runs, and the quality of the newest plans."""
 
 from __future__ import annotations
 

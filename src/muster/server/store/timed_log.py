@@ -1,4 +1,4 @@
-"""The log of runs, of which it is told how long each writing took."""
+"""The log of runs, with the time that each write takes measured."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The triggers by which the log of a run only grows, as they are since migration 0001; others need a migration.
+"""The triggers that make the log of a run append-only, as of migration 0001; changes need a migration.
 
 A log takes an entry at its end alone, and none is changed or taken out, whoever asks. Refused are UPDATE, DELETE unless
 it prunes (see `schema.pruning`), and INSERT of an entry that is there (also as INSERT OR REPLACE) or leaves a gap.

@@ -1,4 +1,4 @@
-"""Which database a URL means, and how it is called in messages: without user, password and options."""
+"""The database that a URL means, and its name in messages: without user, password and options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules of the judge, one a file. A rule is added here, and nowhere else in this package.
+"""The rules of the judge, one a file. A new rule is registered here.
 
 A rule finds what is wrong with a route, and says whether it keeps a robot from one more task. The judge asks the latter
 of the reasons that a plan gives for tasks left out. That routes and prerequisites do not wait for each other in a cycle

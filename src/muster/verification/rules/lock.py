@@ -1,4 +1,4 @@
-"""A task with `only_robots` is done by one of these."""
+"""A task with `only_robots` is done by one of those robots."""
 
 from __future__ import annotations
 

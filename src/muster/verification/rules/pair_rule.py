@@ -1,4 +1,4 @@
-"""Rules on who may do what, whatever else is in the route."""
+"""Rules on a robot and a task alone, whatever else is in the route."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""There is a way for the robot along its route and along the way points of each action."""
+"""The robot has a path along its route and along the way points of each action."""
 
 from __future__ import annotations
 

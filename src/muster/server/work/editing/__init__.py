@@ -1,4 +1,4 @@
-"""Changing a mission's text as little as possible: comments, order and layout stay as somebody wrote them.
+"""Edits a mission's text as little as possible: comments, order and layout stay as they are.
 
 Workers alone do it, as the text is a stranger's.
 

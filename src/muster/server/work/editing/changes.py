@@ -1,4 +1,4 @@
-"""What a map and a form change in a mission's text: places, robots, tasks, single cells of tables."""
+"""Changes of a mission's text by map and form: places, robots, tasks, single cells of tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Setting, adding and removing values in a text of YAML, of which all else stays as it is, letter by letter.
+"""Sets, adds and removes values in a YAML text; all other text stays as it is, character by character.
 
 Every edit is checked: the new text must hold what the old one held, with the change and nothing else. Where that cannot
 be had by a small change (a value that other places share by an alias), the edit is refused.

@@ -1,4 +1,4 @@
-"""Where each value of a text of YAML stands: a tree of spans, made of the events of PyYAML.
+"""Positions of all values in a YAML text: a tree of spans, built from PyYAML's events.
 
 Only structure is read here; aliases are not followed, so a text costs no more than its length.
 """

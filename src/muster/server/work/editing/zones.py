@@ -1,4 +1,4 @@
-"""Zones that are drawn on a map: put into a mission's text, with the map that they need."""
+"""Adds zones that are drawn on a map to a mission's text, with the map that they need."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first tables, and the triggers by which the log of a run only grows."""
+"""The first tables, and the triggers that make the log of a run append-only."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Keys of requests."""
+"""The table of request keys."""
 
 import sqlalchemy as sa
 from alembic import op
