@@ -139,14 +139,14 @@ def test_a_mapping_is_explained_and_exported_as_its_plan_is(mission, plan):
 @pytest.mark.parametrize("wrong", [3, None, "plan.json"])
 def test_what_is_no_plan_is_refused(mission, wrong):
     for use in (muster.explain, muster.verify, muster.gantt, lambda m, p: muster.export(m, p, "csv")):
-        with pytest.raises(muster.ParameterError, match="plan: .*; expected a Plan, or a mapping"):
+        with pytest.raises(muster.ParameterError, match=r"plan: .*; expected a Plan, or a mapping"):
             use(mission, wrong)
 
 
 @pytest.mark.parametrize("wrong", [3, None, True, b"capacity"])
 def test_what_names_no_rules_cannot_be_ignored(mission, plan, wrong):
     for use in (muster.explain, muster.verify, muster.simulate):
-        with pytest.raises(muster.ParameterError, match="ignore: .*; expected a list of prerequisite, "):
+        with pytest.raises(muster.ParameterError, match=r"ignore: .*; expected a list of prerequisite, "):
             use(mission, plan, ignore=wrong)
 
 
