@@ -34,7 +34,7 @@ _FILE = click.Path(path_type=File)
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
 @click.option("--smooth", is_flag=True, help="Round the corners where the map leaves room.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of rrt-star.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
