@@ -27,7 +27,7 @@ _FILE = click.Path(path_type=File)
 
 @click.command()
 @mission_argument
-@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the way begins, metres.")
+@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the path begins, metres.")
 @click.option("--to", "goal", required=True, metavar="X,Y[,Z]", help="Where it ends.")
 @click.option("--planner", type=click.Choice(_PLANNERS), default="shortest", show_default=True, help="What finds it.")
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
