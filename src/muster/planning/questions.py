@@ -13,11 +13,10 @@ from muster.planning.request import require_mission
 if TYPE_CHECKING:
     from muster.planning.explaining import LeftOut, OneTask, Possible
 
-Rules = str | Collection[str]
 GivenPlan = Plan | Mapping[str, Any]
 
 
-def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.0) -> Possible:
+def check(mission: Mission, *, ignore: str | Collection[str] = (), time_limit: float | None = 2.0) -> Possible:
     """Find the tasks of a mission that can never be done, and whether one plan can do all others.
 
     Parameters
@@ -39,14 +38,16 @@ def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.
 
 
 @overload
-def explain(mission: Mission, plan: GivenPlan, task: None = None, *, ignore: Rules = ()) -> LeftOut: ...
+def explain(mission: Mission, plan: GivenPlan, task: None = None, *, ignore: str | Collection[str] = ()) -> LeftOut: ...
 
 
 @overload
-def explain(mission: Mission, plan: GivenPlan, task: str, *, ignore: Rules = ()) -> OneTask: ...
+def explain(mission: Mission, plan: GivenPlan, task: str, *, ignore: str | Collection[str] = ()) -> OneTask: ...
 
 
-def explain(mission: Mission, plan: GivenPlan, task: str | None = None, *, ignore: Rules = ()) -> LeftOut | OneTask:
+def explain(
+    mission: Mission, plan: GivenPlan, task: str | None = None, *, ignore: str | Collection[str] = ()
+) -> LeftOut | OneTask:
     """Explain why tasks are left out of a plan; or why a task is done by this robot and not by another.
 
     Parameters
