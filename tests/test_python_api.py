@@ -46,6 +46,7 @@ def test_the_help_of_a_robot_tells_of_every_field():
     assert "position : Point, m, required" in text
     assert "heading_deg : float, degrees, default 0.0" in text
     assert "work_capacity : float | None, unit of usage, default None" in text
+    assert "how it moves (holonomic or differential-drive or quadcopter)" in text
 
 
 def test_a_wrong_name_is_answered_in_one_line_with_the_near_match(mission, plan):
@@ -128,6 +129,31 @@ def test_a_mapping_is_judged_as_its_plan_is(mission, plan):
         muster.verify(mission, 3)
     with pytest.raises(muster.PlanError, match=r"routes\[0\].tasks: \"27\"; expected a list of ids"):
         muster.verify(mission, {"r_0": "27"})
+
+
+def test_a_mapping_is_explained_and_exported_as_its_plan_is(mission, plan):
+    plain = plan.as_dict()
+    assert muster.explain(mission, plain, "27").as_dict() == muster.explain(mission, plan, "27").as_dict()
+    assert muster.export(mission, plain, "csv") == muster.export(mission, plan, "csv")
+
+
+@pytest.mark.parametrize("wrong", [3, None, "plan.json"])
+def test_what_is_no_plan_is_refused(mission, wrong):
+    for use in (muster.explain, muster.verify, muster.gantt, lambda m, p: muster.export(m, p, "csv")):
+        with pytest.raises(muster.ParameterError, match=r"plan: .*; expected a Plan, or a mapping"):
+            use(mission, wrong)
+
+
+@pytest.mark.parametrize("wrong", [3, None, True, b"capacity"])
+def test_what_names_no_rules_cannot_be_ignored(mission, plan, wrong):
+    for use in (muster.explain, muster.verify, muster.simulate):
+        with pytest.raises(muster.ParameterError, match=r"ignore: .*; expected a list of prerequisite, "):
+            use(mission, plan, ignore=wrong)
+
+
+def test_an_explanation_is_short_in_the_shell(mission, plan):
+    for explanation in (muster.explain(mission, plan), muster.explain(mission, plan, "27")):
+        assert "Problem(" not in repr(explanation)
 
 
 def test_a_saved_mission_is_read_back(mission, tmp_path):

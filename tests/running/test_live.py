@@ -65,6 +65,14 @@ def test_a_fleet_carries_a_plan_out():
     assert fleet.stopped == 1
 
 
+def test_ignored_rules_do_not_hold_on_the_way():
+    small = tuple(Robot(id=f"r_{k}", position=(0.0, 3.0 * k), work_capacity=3.0) for k in range(2))
+    there = replace(mission(), robots=small)
+    plan = muster.solve(there, iterations=50, ignore="capacity")
+    assert muster.carry_out(there, plan, WorldAsFleet(there)).tasks_done == ()
+    assert len(muster.carry_out(there, plan, WorldAsFleet(there), ignore="capacity").tasks_done) == 4
+
+
 def test_who_fails_is_planned_for_and_who_is_discovered_helps():
     there = mission()
     joins = Robot(id="new", position=(9.0, 9.0), radius_m=0.2)

@@ -34,7 +34,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
 
 def completed(problem: Problem, start: Routes | None = None) -> Routes:
-    """Greedy routes, from others if they are given, whatever is due: what other algorithms begin with."""
+    """Complete routes (by default empty ones) greedily, without a time limit; other algorithms start from them."""
     return allocate(problem, Stop(), 0, Parameters(), start).routes
 
 

@@ -109,7 +109,7 @@ class Problem:
         )
 
     def __getstate__(self) -> dict[str, Any]:
-        """The fields alone: what is made of them is made anew where the problem arrives."""
+        """The fields alone; everything derived is computed again where the problem is unpickled."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @property

@@ -122,7 +122,7 @@ def _work() -> Any:
 
 
 def _head(address: str) -> str | None:
-    """HOST:PORT of what must be there as long as the cluster is; None where that cannot be told."""
+    """HOST:PORT that is reachable as long as the cluster exists; None where it is not known."""
     import ray
 
     if address.startswith("ray://"):
@@ -244,7 +244,7 @@ class Cluster:
 
 
 def _done_by_worker(job: Job) -> Offer:
-    """What a worker does: the job, until it is told to end."""
+    """The work of a worker: the job, until a request to end."""
     whole = Stop()
 
     with on_ctrl_c(whole.interrupt):

@@ -73,7 +73,7 @@ class KeptLowest:
         self._lowest = np.full(bidding.shape[0], np.inf)
 
     def note(self, robots: Sequence[int], sold: int | None = None) -> None:
-        """Find the lowest bids of these robots anew, and of those that bid for what is sold."""
+        """Find the lowest bids of these robots again, and of those that bid for the task that was sold."""
         if not self._bidding.shape[1]:
             return
         also = () if sold is None else np.flatnonzero(self._tasks == sold).tolist()
@@ -107,7 +107,7 @@ class LeastContested:
         self._bidder = np.zeros(tasks, dtype=np.int64)
 
     def note(self, robots: Sequence[int], sold: int | None = None) -> None:
-        """Take in these robots' bids anew."""
+        """Read these robots' bids again."""
         changed = np.zeros(len(self._bids), dtype=np.bool_)
         if sold is not None:
             self._bids[sold] = np.inf

@@ -112,7 +112,7 @@ def server_option(*in_this_process: str) -> Callable[[Verb], Verb]:
             "--token-file",
             type=click.Path(path_type=Path),
             metavar="FILE",
-            help=f"Holds the server's token.  [default: the variable {TOKEN_VARIABLE}]",
+            help=f"File with your token for the server.  [default: the variable {TOKEN_VARIABLE}]",
         )
         text = "Let mission control do it: http://HOST:8117 (muster serve)."
         return click.option("--server", metavar="URL", help=text)(token(with_backend))

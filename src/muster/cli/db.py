@@ -70,7 +70,7 @@ def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
 def backup(file: Path, url: str, quiet: bool, verbose: bool) -> int:
     """Copy the database into a new FILE.
 
-    The copy is a database of SQLite, of PostgreSQL, too, and `muster db restore` puts it into either. It holds the
+    The copy is an SQLite file, also of a PostgreSQL database, and `muster db restore` puts it into either. It holds the
     state of one moment, also while a server writes.
     """
     from muster.server.store.backup import backup as copy

@@ -61,7 +61,11 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
     help="qgc: around corners of a map join way points, no farther than this from the way; 0 keeps all.",
 )
 @click.option(
-    "--firmware", type=click.Choice(["px4", "ardupilot"]), default="px4", show_default=True, help="qgc: of the robots."
+    "--firmware",
+    type=click.Choice(["px4", "ardupilot"]),
+    default="px4",
+    show_default=True,
+    help="qgc: the autopilot of the robots.",
 )
 @ignore_option
 @quiet_option

@@ -40,10 +40,26 @@ if TYPE_CHECKING:
     help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it.",
 )
 @click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
-@click.option("--offboard", is_flag=True, help="Say way points one by one instead of uploading missions.")
-@click.option("--height", type=Finite(0.5, 500), metavar="M", help="Of flight above home, for a mission in the plane.")
-@click.option("--low-battery", type=Finite(1, 99), default=25, show_default=True, metavar="%", help="Return below it.")
-@click.option("--wait", type=Finite(0.1, 600), default=10, show_default=True, metavar="S", help="For drones to answer.")
+@click.option("--offboard", is_flag=True, help="Send way points one by one instead of uploading missions.")
+@click.option(
+    "--height", type=Finite(0.5, 500), metavar="M", help="Height of flight above home, for a mission in the plane."
+)
+@click.option(
+    "--low-battery",
+    type=Finite(1, 99),
+    default=25,
+    show_default=True,
+    metavar="%",
+    help="Battery level below which a drone returns.",
+)
+@click.option(
+    "--wait",
+    type=Finite(0.1, 600),
+    default=10,
+    show_default=True,
+    metavar="S",
+    help="Seconds to wait for drones to answer.",
+)
 @click.option(
     "--at-end",
     type=click.Choice(["hold", "return", "land"]),

@@ -162,7 +162,7 @@ def format_option(verb: Verb) -> Verb:
 
 def quiet_option(verb: Verb) -> Verb:
     """-q and -v."""
-    verb = click.option("-v", "--verbose", is_flag=True, help="Say more on standard error.")(verb)
+    verb = click.option("-v", "--verbose", is_flag=True, help="Print more messages on standard error.")(verb)
     return click.option("-q", "--quiet", is_flag=True, help="No progress or messages on standard error, errors aside.")(
         verb
     )

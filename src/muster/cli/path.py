@@ -27,14 +27,14 @@ _FILE = click.Path(path_type=File)
 
 @click.command()
 @mission_argument
-@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the way begins, metres.")
+@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the path begins, metres.")
 @click.option("--to", "goal", required=True, metavar="X,Y[,Z]", help="Where it ends.")
 @click.option("--planner", type=click.Choice(_PLANNERS), default="shortest", show_default=True, help="What finds it.")
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
 @click.option("--smooth", is_flag=True, help="Round the corners where the map leaves room.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of rrt-star.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option

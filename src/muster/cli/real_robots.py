@@ -62,14 +62,14 @@ def real_options(verb: Verb) -> Verb:
     options = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
         ignore_option,
-        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of planning."),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of planning."),
         click.option(
             "--time-limit",
             type=click.FloatRange(min=0),
             default=2.0,
             show_default=True,
             metavar="S",
-            help="Of planning.",
+            help="Seconds of planning.",
         ),
         record_option,
         drawing_options,
@@ -98,7 +98,7 @@ def ros_options(verb: Verb) -> Verb:
             callback=_namespace,
             default="",
             metavar="NAME",
-            help="In which the robots' own are.  [default: the root]",
+            help="Namespace that holds those of the robots.  [default: the root]",
         ),
         click.option(
             "--wait",
@@ -107,7 +107,7 @@ def ros_options(verb: Verb) -> Verb:
             default=10.0,
             show_default=True,
             metavar="S",
-            help="For the mission's robots.",
+            help="Seconds to wait for the mission's robots.",
         ),
         click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join."),
     )

@@ -28,7 +28,13 @@ _FILE = click.Path(path_type=Path)
 @click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap).")
 @click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag).")
 @click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has.")
-@click.option("--topic", "topics", multiple=True, metavar="ROBOT=TOPIC", help="Of it.  [default: /ROBOT/odom, or pose]")
+@click.option(
+    "--topic",
+    "topics",
+    multiple=True,
+    metavar="ROBOT=TOPIC",
+    help="Topic of a robot's poses in the reference.  [default: /ROBOT/odom, or pose]",
+)
 @click.option("--begins", type=Finite(-1e11, 1e11), metavar="S", help="When the mission began, on the clock of ROS.")
 @format_option
 @quiet_option

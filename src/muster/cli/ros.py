@@ -48,9 +48,21 @@ _LEFT = "the robots were told to stand"
 )
 @click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
 @click.option(
-    "--arrival", type=Finite(0.001, 100.0), default=0.1, show_default=True, metavar="M", help="From a way point."
+    "--arrival",
+    type=Finite(0.001, 100.0),
+    default=0.1,
+    show_default=True,
+    metavar="M",
+    help="Distance to a way point at which it counts as reached.",
 )
-@click.option("--rate", type=Finite(1.0, 200.0), default=20.0, show_default=True, metavar="HZ", help="Of velocities.")
+@click.option(
+    "--rate",
+    type=Finite(1.0, 200.0),
+    default=20.0,
+    show_default=True,
+    metavar="HZ",
+    help="Rate at which velocities are sent.",
+)
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @ros_options

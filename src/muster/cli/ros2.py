@@ -26,13 +26,13 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 
 @click.command()
 @mission_argument
-@click.option("--domain", type=int, metavar="N", help="Of ROS 2, 0 to 232.  [default: ROS_DOMAIN_ID, or 0]")
+@click.option("--domain", type=int, metavar="N", help="Domain of ROS 2, 0 to 232.  [default: ROS_DOMAIN_ID, or 0]")
 @click.option(
     "--give",
     type=click.Choice(["goals", "nav2"]),
     default="goals",
     show_default=True,
-    help="How robots are told where to go: goal_pose, or Nav2's navigate_to_pose.",
+    help="How goals are sent: goal_pose, or Nav2's navigate_to_pose.",
 )
 @click.option(
     "--by",
@@ -40,7 +40,12 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
     help="The middleware.  [default: rclpy if it can be imported, or dds]",
 )
 @click.option(
-    "--arrival", type=Finite(0.001, 100.0), default=0.25, show_default=True, metavar="M", help="From a way point."
+    "--arrival",
+    type=Finite(0.001, 100.0),
+    default=0.25,
+    show_default=True,
+    metavar="M",
+    help="Distance to a way point at which it counts as reached.",
 )
 @ros_options
 @real_options

@@ -27,7 +27,9 @@ _LOCAL = "local"
 
 @click.command()
 @click.argument("mission", required=False)
-@click.option("--host", default="127.0.0.1", show_default=True, metavar="NAME", help="Where it listens.")
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, metavar="NAME", help="Address on which the server listens."
+)
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8117, show_default=True, metavar="PORT", help="0: any free one."
 )
@@ -38,7 +40,12 @@ _LOCAL = "local"
     metavar="URL",
     help="sqlite:///FILE or postgresql://USER@HOST/NAME; also MUSTER_DB.  [default: a file of yours]",
 )
-@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="That plan at once.  [default: one a core]")
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 256),
+    metavar="N",
+    help="Workers that plan at the same time.  [default: one a core]",
+)
 @click.option(
     "--memory",
     "memory_mb",
@@ -46,10 +53,10 @@ _LOCAL = "local"
     default=2048,
     show_default=True,
     metavar="MB",
-    help="Of each worker, and of each simulated run.",
+    help="Memory of each worker, and of each simulated run.",
 )
 @click.option(
-    "--runs", type=click.IntRange(1, 1000), default=8, show_default=True, metavar="N", help="Carried out at once."
+    "--runs", type=click.IntRange(1, 1000), default=8, show_default=True, metavar="N", help="Runs at the same time."
 )
 @click.option(
     "--bridge",
@@ -61,26 +68,34 @@ _LOCAL = "local"
 )
 @click.option("--tokens", type=_FILE, metavar="FILE", help="Who may watch or command, a line each: ROLE NAME DIGEST.")
 @click.option("--new-token", metavar="NAME", help="Print a fresh token and its line, and end; with --tokens add it.")
-@click.option("--role", type=click.Choice(["watch", "command"]), help="Of the new token.  [default: watch]")
-@click.option("--user-header", metavar="NAME", help="In which a reverse proxy says who asks.")
+@click.option("--role", type=click.Choice(["watch", "command"]), help="Role of the new token.  [default: watch]")
+@click.option("--user-header", metavar="NAME", help="Header in which a reverse proxy names the user.")
 @click.option(
-    "--trusted-proxy", "trusted_proxies", multiple=True, metavar="ADDRESS", help="Whose headers are believed."
+    "--trusted-proxy",
+    "trusted_proxies",
+    multiple=True,
+    metavar="ADDRESS",
+    help="Address of the proxy whose headers are trusted.",
 )
 @click.option(
     "--proxy-secret",
     type=_FILE,
     metavar="FILE",
-    help="What the proxy shows in X-Muster-Proxy-Secret: with --user-header.",
+    help="Secret that the proxy sends in X-Muster-Proxy-Secret; with --user-header.",
 )
 @click.option("--tls-cert", "certificate", type=_FILE, metavar="PEM", help="Serve HTTPS with this certificate.")
-@click.option("--tls-key", "key", type=_FILE, metavar="PEM", help="Its key.")
+@click.option("--tls-key", "key", type=_FILE, metavar="PEM", help="Key of the certificate.")
 @click.option("--insecure-http", is_flag=True, help="Listen beyond this machine without TLS.")
 @click.option(
-    "--public-origin", "public_origins", multiple=True, metavar="URL", help="Under which browsers come through a proxy."
+    "--public-origin", "public_origins", multiple=True, metavar="URL", help="Origin that browsers use through a proxy."
 )
 @click.option("--tiles", type=_FILE, metavar="FOLDER", help="Map tiles Z/X/Y.png for missions on the earth.")
 @click.option(
-    "--log-format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="On standard error."
+    "--log-format",
+    type=click.Choice(["text", "json"]),
+    default="text",
+    show_default=True,
+    help="Format of the log on standard error.",
 )
 @click.option("--open", "opens", is_flag=True, help="Show it in the browser.")
 @quiet_option

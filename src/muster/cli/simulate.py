@@ -81,11 +81,18 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="WORLD",
     help="kinematic, physics, or a world of an installed package.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all random choices.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all random choices.")
 @click.option(
-    "--time-limit", type=click.FloatRange(min=0), default=2.0, show_default=True, metavar="S", help="Of planning."
+    "--time-limit",
+    type=click.FloatRange(min=0),
+    default=2.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds of planning.",
 )
-@click.option("--iterations", type=click.IntRange(min=0), metavar="N", help="Of planning, instead of the time limit.")
+@click.option(
+    "--iterations", type=click.IntRange(min=0), metavar="N", help="Iterations of planning, instead of the time limit."
+)
 @click.option(
     "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
 )
@@ -97,7 +104,11 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     help="X times real time, printing events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
 )
 @click.option(
-    "--noise", "noises", multiple=True, metavar="KIND=AMOUNT", help="Of motion and telemetry; see docs/simulation.md."
+    "--noise",
+    "noises",
+    multiple=True,
+    metavar="KIND=AMOUNT",
+    help="Noise of motion and telemetry; see docs/simulation.md.",
 )
 @record_option
 @drawing_options

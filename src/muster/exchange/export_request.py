@@ -1,4 +1,4 @@
-"""The formats of exported plans, their options, and the files that come out: data, without what makes the files."""
+"""The formats of exported plans, their options, and the resulting files, as data; exporters are loaded when used."""
 
 from __future__ import annotations
 

@@ -28,14 +28,15 @@ def _feature(feature: Feature) -> dict[str, Any]:
 
 def _geometry(feature: Feature) -> dict[str, Any]:
     if feature.kind == "route":
-        return _one_or_many("LineString", [_places(line, feature) for line in cut_line(feature.spots)])
+        return one_or_many("LineString", [_places(line, feature) for line in cut_line(feature.spots)])
     if feature.kind in AREAS:
         rings = [_places([*ring, ring[0]], feature) for ring in cut_ring(feature.spots)]
-        return _one_or_many("Polygon", [[ring] for ring in rings])
+        return one_or_many("Polygon", [[ring] for ring in rings])
     return {"type": "Point", "coordinates": _places(feature.spots, feature)[0]}
 
 
-def _one_or_many(kind: str, pieces: list[Any]) -> dict[str, Any]:
+def one_or_many(kind: str, pieces: list[Any]) -> dict[str, Any]:
+    """A geometry of one piece, or of its `Multi` kind."""
     if len(pieces) == 1:
         return {"type": kind, "coordinates": pieces[0]}
     return {"type": f"Multi{kind}", "coordinates": pieces}

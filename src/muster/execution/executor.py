@@ -193,7 +193,7 @@ class Executor:
         self._ask([Change(kind, data)])
 
     def end_elsewhere(self, task: str, robot: str) -> None:
-        """A robot that is none of the crew has done a task; work of the crew on it that was begun goes on."""
+        """A robot outside the crew has done a task; work of the crew on it that has begun continues."""
         at_work = any(state.activity is Activity.WORKING and state.route[0] == task for state in self.crew.values())
         if not at_work and task not in self.ledger.ends_s:
             self.ledger.end(task, robot, self.now_s)
@@ -216,7 +216,7 @@ class Executor:
         return self.events[first:]
 
     def set_clock(self, now: float) -> None:
-        """Let the clock go on without a look at anybody: what is reported or told next happens then."""
+        """Advance the clock without reading telemetry: reports and orders that follow happen at this time."""
         if now < self.now_s:
             raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
         self.now_s = now
@@ -242,7 +242,7 @@ class Executor:
         return None if "capacity" in self.planned.ignored else state.capacity
 
     def _recall(self, past: CompletedWork) -> None:
-        """Robots keep of their routes what is left to do; all of it is planned anew from where they are."""
+        """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
         past.recall(self.ledger, self.crew)
         left = {task.id for task in self.ledger.open} - past.barred.keys()
         for state in self.crew.values():

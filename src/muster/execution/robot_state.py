@@ -99,7 +99,7 @@ class RobotState:
 
     @property
     def refused(self) -> str:
-        """Why it will not get to the next way point of the last order; empty while it goes on."""
+        """Why the robot will not reach the next way point of its last order; empty while it makes progress."""
         return self.telemetry.refused if self.telemetry is not None and self.telemetry.order == self._order else ""
 
     @property

@@ -98,7 +98,7 @@ class Ledger:
         self.refusals.setdefault(task, {})[robot] = reason
 
     def unblock(self, robot: str) -> None:
-        """A robot that stood at tasks, broken, goes on: others may try again."""
+        """Unblock the tasks that a broken robot had blocked: it moves again, so other robots may try them."""
         for task in [task for task, by in self.blocked_by.items() if by == robot]:
             del self.blocked_by[task]
             self.refusals.pop(task, None)

@@ -83,7 +83,7 @@ class PluginError(MusterError):
 
 
 class TransformError(MusterError):
-    """The tree of frames cannot say where a frame is, or cannot take in what it is told."""
+    """The tree of frames does not connect two frames, or refuses a transform."""
 
 
 class UnknownFrameError(TransformError):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, Field
 from typing import Any
 
-from muster.mission.value_types import Many, Position
+from muster.mission.value_types import Choice, Many, Position
 
 _UNITS = {
     "m": "m",
@@ -29,7 +29,14 @@ def fields_text(fields: Sequence[Field[Any]]) -> str:
 def _lines(f: Field[Any]) -> tuple[str, str]:
     needed = f.default is MISSING and f.default_factory is MISSING
     default = "required" if needed else f"default {_shown(f.default)}"
-    return f"{f.name} : {', '.join(filter(None, (str(f.type), _unit(f), default)))}", f"    {f.metadata['doc']}"
+    head = f"{f.name} : {', '.join(filter(None, (str(f.type), _unit(f), default)))}"
+    return head, f"    {f.metadata['doc']}{_choices(f.metadata['kind'])}"
+
+
+def _choices(kind: object) -> str:
+    """The words of a choice; not of the open one of actions, so that importing the model loads no installed package."""
+    one = kind.kind if isinstance(kind, Many) else kind
+    return f" ({one.expected})" if isinstance(one, Choice) and isinstance(one.words, tuple) else ""
 
 
 def _unit(f: Field[Any]) -> str:

@@ -25,8 +25,10 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
     Raises
     ------
     ParameterError
-        for a word that names none.
+        for a word that names none, and for what is no collection of words.
     """
+    if not isinstance(words, Collection) or isinstance(words, bytes):
+        raise ParameterError(f"ignore: {shown(words)}; expected a list of {', '.join(IGNORABLE)}")
     named = set()
     for word in (words,) if isinstance(words, str) else words:
         rule = ignorable_rule(word)

@@ -1,4 +1,4 @@
-"""Excludes members that are heard but delay the others for too long."""
+"""Excludes members whose messages arrive but which delay the others for too long."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot bids, and where a task goes that is won: the rules of the auction in one process, for one robot.
+"""A robot's bids, and the place of a won task in its route: the rules of the auction in one process, for one robot.
 
 Every robot keeps all routes, since some bids depend on the team (`total+max`), or wait for others (`makespan`). It
 computes only its own bids. The same mission, terms and sales give exactly the same bids, so that robots follow each

@@ -1,4 +1,4 @@
-"""Obstacles of a laser scan: where they are, how large, of which shape ([tcf-thesis], section 2.1.2).
+"""Obstacles in a laser scan: position, size and shape ([tcf-thesis], section 2.1.2).
 
 The steps of its reference [22]: a median filter against salt and pepper, angle and distance to points (2.8), clusters,
 shapes by rules (circle, line, rectangle). Of its reference [23] (Figure 2.1): the obstacle is inflated, and its left

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 from muster.mission.keywords import require_known
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_of
 from muster.mission.text_files import write_text
 from muster.planning.request import require_mission
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def export(
     mission: Mission,
-    plan: Plan,
+    plan: Plan | Mapping[str, Any],
     to: str,
     path: str | Path | None = None,
     *,
@@ -29,6 +29,8 @@ def export(
 
     Parameters
     ----------
+    plan
+        a plan; or a mapping, as for `verify`.
     to
         qgc, geojson, gpx, kml, csv, or a format of an installed package.
     path
@@ -45,11 +47,11 @@ def export(
     Raises
     ------
     PlanError
-        if the plan is not admissible.
+        if the plan is not admissible, or a mapping is no plan.
     MissionError
         if the format needs a place on Earth and the mission has none.
     ParameterError
-        if there is no such format, or an option is wrong.
+        if the plan is none, there is no such format, or an option is wrong.
     """
     from muster.exchange.export_request import QgcOptions
     from muster.exchange.files import exported
@@ -57,7 +59,7 @@ def export(
 
     require_mission(mission)
     require_known(options, tuple(QgcOptions.__dataclass_fields__) if to == "qgc" else (), f"to {to}")
-    verdict = require_admissible(mission, plan, "<plan>", ignore)
+    verdict = require_admissible(mission, plan_of(plan), "<plan>", ignore)
     files = exported(mission, verdict, to, QgcOptions(**options))
     if path is not None:
         _write(files, Path(path), is_folder=to == "qgc" or len(files.texts) > 1)

@@ -67,9 +67,9 @@ class PlanningOptions:
         default_factory=dict, metadata={"help": "Parameters of the allocator, by name."}
     )
     objective: str | None = _option(None, "Instead of the mission's own.")
-    time_limit: float | None = _option(None, "Seconds.")
+    time_limit: float | None = _option(None, "Seconds of planning.")
     iterations: int | None = _option(None, "Stop after so many; then a seed gives one plan.")
-    seed: int = _option(0, "Of all random choices.")
+    seed: int = _option(0, "Seed of all random choices.")
     ignore: tuple[str, ...] = _option((), "Rules that do not hold.")
     bound: str | None = _option(None, "Prove how good the plan is: at once, or by an exact solver.")
     rewire: bool = _option(False, "Fill waiting with later tasks of the same robot: sooner, for some usage.")

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import TYPE_CHECKING, overload
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any, overload
 
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_of
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
     from muster.planning.explaining import LeftOut, OneTask, Possible
 
-Rules = str | Collection[str]
+GivenPlan = Plan | Mapping[str, Any]
 
 
-def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.0) -> Possible:
+def check(mission: Mission, *, ignore: str | Collection[str] = (), time_limit: float | None = 2.0) -> Possible:
     """Find the tasks of a mission that can never be done, and whether one plan can do all others.
 
     Parameters
@@ -38,18 +38,22 @@ def check(mission: Mission, *, ignore: Rules = (), time_limit: float | None = 2.
 
 
 @overload
-def explain(mission: Mission, plan: Plan, task: None = None, *, ignore: Rules = ()) -> LeftOut: ...
+def explain(mission: Mission, plan: GivenPlan, task: None = None, *, ignore: str | Collection[str] = ()) -> LeftOut: ...
 
 
 @overload
-def explain(mission: Mission, plan: Plan, task: str, *, ignore: Rules = ()) -> OneTask: ...
+def explain(mission: Mission, plan: GivenPlan, task: str, *, ignore: str | Collection[str] = ()) -> OneTask: ...
 
 
-def explain(mission: Mission, plan: Plan, task: str | None = None, *, ignore: Rules = ()) -> LeftOut | OneTask:
+def explain(
+    mission: Mission, plan: GivenPlan, task: str | None = None, *, ignore: str | Collection[str] = ()
+) -> LeftOut | OneTask:
     """Explain why tasks are left out of a plan; or why a task is done by this robot and not by another.
 
     Parameters
     ----------
+    plan
+        a plan; or a mapping, as for `verify`.
     task
         the id of one task; None: all that are left out.
     ignore
@@ -58,13 +62,14 @@ def explain(mission: Mission, plan: Plan, task: str | None = None, *, ignore: Ru
     Raises
     ------
     ParameterError
-        if the mission has no such task.
+        if the mission has no such task, or the plan is none.
     PlanError
-        if the plan is not one of this mission.
+        if the plan is not one of this mission, or a mapping is no plan.
     """
     from muster.planning.explaining import left_out, one_task, require_fit
 
     require_mission(mission)
     ignored = ignored_rules(ignore)
-    require_fit(mission, plan, "<plan>", ignored)
-    return left_out(mission, plan, ignored) if task is None else one_task(mission, plan, task, ignored)
+    explained = plan_of(plan)
+    require_fit(mission, explained, "<plan>", ignored)
+    return left_out(mission, explained, ignored) if task is None else one_task(mission, explained, task, ignored)

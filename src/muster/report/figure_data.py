@@ -1,4 +1,4 @@
-"""What a figure shows, as text: how two pictures are compared by their data, whatever their pixels."""
+"""The data of a figure as text, by which two pictures are compared regardless of their pixels."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ class CameraSearch:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a person should hear of."""
+        """Remarks for people, for the report."""
         return (*self._remarks.values(), *remarks(tuple(find.point for find in self.search.finds), self.search.seen))
 
     def join(self, robot: Robot) -> None:

@@ -38,7 +38,7 @@ class FleetWithMissionClock:
             self._off_s, self._paused_s = self._fleet.time_s - self._paused_s, None
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """See `Fleet`; while the clock stands still, hear for as long as it would have taken."""
+        """See `Fleet`; in a pause, receive telemetry for as long as the step would have taken."""
         return self._fleet.advance(self._fleet.time_s + until_s - self.time_s)
 
     def stop(self) -> None:

@@ -73,7 +73,7 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    live = Live(mission, plan, fleet, seed=seed, recorder=recorder)
+    live = Live(mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder)
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():
@@ -94,7 +94,7 @@ def carry_out_live(
 
 
 class Live:
-    """A plan that is being carried out by real robots: they are heard, and looked at, in turn.
+    """A plan that is being carried out by real robots: telemetry is received, and the executor advanced, in turn.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ class Live:
         self.tell_places()
 
     def hear(self, until_s: float) -> None:
-        """Hear and speak until a time of the mission's clock, or until something is due."""
+        """Send and receive until a time of the mission's clock, or until something is due."""
         for event in self._fleet.advance(min(until_s, self.executor.due_s)):
             self.executor.report_if_it_fits(event, reason_of(event))
 
@@ -248,7 +248,7 @@ def elsewhere(mission: Mission, there: Mission) -> list[str]:
 
 
 def _tell_places(recorder: Recorder, now: float, robots: Iterable[str], ports: Mapping[str, RobotPort]) -> None:
-    """A step of a record, by what robots last said; NaN of those that were not heard."""
+    """A step of a record, by the robots' last telemetry; NaN for robots without any."""
     rows = []
     for robot in robots:
         said = ports[robot].telemetry()

@@ -140,7 +140,7 @@ class Simulation:
 
     @property
     def positions(self) -> dict[str, tuple[float, ...]]:
-        """Where robots say that they are, metres: those that were heard."""
+        """Positions by telemetry, metres, of the robots that sent any."""
         told = {name: port.telemetry() for name, port in self._robots.ports.items()}
         return {name: said.position for name, said in told.items() if said is not None}
 

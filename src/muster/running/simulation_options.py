@@ -32,7 +32,7 @@ class RecordedWorldOptions(WorldOptions, total=False):
 
 
 class SimulationOptions(WorldOptions, total=False):
-    """How the world is, and how fast time goes on: `speed`, `on_event` and `halt`."""
+    """Options of the world, and of its clock: `speed`, `on_event` and `halt`."""
 
     speed: float | None
     on_event: Callable[[ExecutionEvent], None] | None

@@ -44,7 +44,7 @@ def with_state_estimation(world: SimulatedWorld) -> RobotsInWorld:
 
 
 class EstimatedWorld:
-    """A world whose robots are heard through `FusedPort`s that miss no step."""
+    """A world whose telemetry passes through `FusedPort`s, which receive every step."""
 
     def __init__(self, world: SimulatedWorld) -> None:
         self._world = world

@@ -54,7 +54,7 @@ def _false_reason(case: Case, routes: dict[str, MeasuredRoute], task: Task, reas
 
 
 def _contradiction(case: Case, route: MeasuredRoute, task: Task, reason: str) -> str | None:
-    """What speaks against a reason; None if it is true, or too close to say."""
+    """Why a reason is false; None if it is true, or too close to decide."""
     rules = rules_that_hold(case)
     if reason == "not-chosen":
         broken = next((rule.kind for rule in rules if rule.prevents(case, route, task)), None)

@@ -65,7 +65,7 @@ class MapPaths:
 
 
 class _Sight(Protocol):
-    """Who sees whom in a space. Positions of its own frame (`settled` gives them), whose unit is `unit_m` metres."""
+    """Lines of sight between positions of a space, in its own frame (see `settled`), whose unit is `unit_m` metres."""
 
     unit_m: float
     corners: Floats

@@ -94,7 +94,7 @@ class Heard:
             self._numbers.setdefault(robot, []).append(message.header.seq)
 
     def taken(self) -> tuple[list[float], int]:
-        """Latencies in order of length, and how many are missing among the numbers; then begin anew."""
+        """Sorted latencies, and how many numbers are missing; then start a new window."""
         with self._lock:
             latencies, numbers = sorted(self._latencies), self._numbers
             self._latencies, self._numbers = [], {}

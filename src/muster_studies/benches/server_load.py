@@ -53,7 +53,7 @@ class Watched:
                     self.late_s.append(time.time() - said["sent_at"])
 
     def taken(self, window_s: float, count: int) -> dict[str, float]:
-        """The figures of the window; then begin anew."""
+        """The figures of the window; then start a new one."""
         late, self.late_s = sorted(self.late_s), []
         return {
             "median_ms": 1000 * late[len(late) // 2],

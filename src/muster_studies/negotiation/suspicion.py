@@ -35,7 +35,7 @@ class Rate:
 
 
 def rate(loss: float, runs: int, seed: int, jitter_s: float = 0.0) -> Rate:
-    """The rate of two robots alone, whom nobody tells of each other: more robots suspect each other less often.
+    """The rate of two robots alone, without news of each other from others: larger teams suspect less often.
 
     They are the robots of the auction on the simulated network, idle; one of them is listened to.
     """
@@ -60,7 +60,7 @@ def _rate_of_a_run(loss: float, jitter_s: float, random: Random) -> float:
 
 @dataclass
 class _Provoked:
-    """A network's loss, for each word by itself; more of what the speaker says while `provokes`."""
+    """Loss of a network, independent for each message; higher for the sender's messages while `provokes`."""
 
     loss: float
     random: Random
@@ -94,7 +94,7 @@ def _words_an_hour(network: MemoryNetwork, provoked: _Provoked, for_s: float = 6
 
 
 def _trial(network: MemoryNetwork, provoked: _Provoked, listener: str) -> float:
-    """From a word that is heard to the next, or to a suspicion: its weight, or 0.
+    """One trial from a received message to the next, or to a suspicion: its weight, or 0.
 
     A word that gets through is still on its way when the trial ends; the listener may suspect until then.
     """

@@ -184,7 +184,7 @@ def standings_of(results: Iterable[Result]) -> Standings:
 
 
 def runs_of(matches: Iterable[Match], solvers: Sequence[str], seconds: float, seeds: int) -> list[Run]:
-    """The runs of all solvers on all matches, those on one match together, whatever else the machine does then."""
+    """The runs of all solvers on all matches; those on one match are adjacent: the load of the machine may change."""
     return [
         Run(match=match, solver=solver, seconds=seconds, seed=seed)
         for match in matches

@@ -64,7 +64,7 @@ def _weights(problem: Problem) -> list[int]:
 
 
 class _Run:
-    """The best plan so far, its tasks counted as the problem's; and what the program says that it is worth."""
+    """The best plan so far, with the problem's indices of tasks; and its objective by the program."""
 
     def __init__(self, instance: Instance, seed: int) -> None:
         try:

@@ -37,7 +37,7 @@ def search_flights(effort: Effort, mission: str, ignored: tuple[str, ...] = ()) 
 
 
 def best_of(flights: Sequence[Flight], found: Mapping[Flight, FlightResult]) -> FlightResult:
-    """The one with the best plan, whatever came of it."""
+    """The flight with the best plan, regardless of its outcome."""
 
     def rank(flight: Flight) -> tuple[float, float]:
         planned = found[flight].planned

@@ -64,6 +64,15 @@ def test_a_drone_that_does_not_answer_counts_as_flying():
     assert not states["r_1"].moving
 
 
+@KINDS
+def test_a_drone_that_falls_silent_as_it_arms_counts_as_flying(kind):
+    """Muster never hears that it is armed."""
+    _, _, states, drones = ended(kind, Faults(silent_at_s=0), "return")
+    assert drones["r_0"].armed
+    assert states["r_0"].moving
+    assert re.fullmatch(r"not answering for \d+ s; last seen: asked to arm", states["r_0"].state)
+
+
 def test_a_drone_that_returns_for_its_battery_is_not_told_to_land_on_its_way():
     _, _, states, drones = ended(PX4, Faults(low_battery_at_s=30), "land")
     assert states["r_0"].state == "returned, landed, not armed"

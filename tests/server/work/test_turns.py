@@ -88,6 +88,28 @@ def test_who_comes_later_waits_for_one_piece_of_another_at_most():
     assert in_yard(story, 1, 1) == ["w0", "w1", "a0"]
 
 
+def test_users_who_come_again_and_again_keep_nobody_waiting():
+    """Ada and Bob each ask anew as soon as the piece before is done: both are as new each time."""
+
+    async def story(yard):
+        for piece in ("w0", "w1", "w2"):
+            yard.ask("wall", piece)
+        await settle()
+        for k in range(3):
+            yard.ask("ada", f"a{k}")
+            await settle()
+            await yard.end(yard.begun[-1])
+            yard.ask("bob", f"b{k}")
+            await settle()
+            await yard.end(yard.begun[-1])
+        begun = list(yard.begun)
+        for task in yard.tasks.values():
+            task.cancel()
+        return begun
+
+    assert in_yard(story, 1, 1) == ["w0", "a0", "w1", "b0", "a1", "w2", "b1"]
+
+
 def test_what_is_cancelled_while_it_waits_or_in_the_moment_of_its_turn_keeps_no_place():
     async def story(yard):
         for piece in ("w0", "w1", "w2"):

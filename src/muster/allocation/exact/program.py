@@ -37,7 +37,7 @@ class Solved:
 
 
 def _run(solver: cp_model.CpSolver, model: cp_model.CpModel, interrupted: Callable[[], bool]) -> Any:
-    """Solve in a thread of its own, while this one hears Ctrl-C: CP-SAT's handler would keep it, and leave none."""
+    """Solve in another thread, while this one receives Ctrl-C: CP-SAT's own handler would replace Python's."""
     solver.parameters.catch_sigint_signal = False
     with ThreadPoolExecutor(1) as beside:
         run = beside.submit(solver.solve, model)

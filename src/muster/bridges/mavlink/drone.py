@@ -94,11 +94,14 @@ class Drone:
 
 
 def final_state_of(drone: Drone, now: float) -> FinalState:
-    """Where a drone is at the end and what it does; one that is armed counts as flying."""
+    """Where a drone is at the end and what it does; one that is armed, or may be, counts as flying."""
     telemetry, does = drone.telemetry, _activity(drone)
     silent_s = now - telemetry.heartbeat_s
-    state = does if silent_s <= drone.settings.link_lost_s else f"not answering for {silent_s:.0f} s; last seen: {does}"
-    return FinalState(drone.robot.id, state, telemetry.place, moving=telemetry.armed)
+    if silent_s <= drone.settings.link_lost_s:
+        return FinalState(drone.robot.id, does, telemetry.place, moving=telemetry.armed)
+    last = "asked to arm" if drone.stands and not telemetry.armed else does
+    state = f"not answering for {silent_s:.0f} s; last seen: {last}"
+    return FinalState(drone.robot.id, state, telemetry.place, moving=telemetry.armed or drone.stands)
 
 
 def _activity(drone: Drone) -> str:

@@ -43,7 +43,7 @@ class Line(Protocol):
 
 
 class UdpLine:
-    """Listens at an address and answers who spoke (`udp:`), or speaks to an address from the first (`udpout:`)."""
+    """Listens at an address and answers senders (`udp:`), or sends to an address from the start (`udpout:`)."""
 
     def __init__(self, host: str, port: int, *, listens: bool) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -137,7 +137,7 @@ class MavlinkFleet:
                 return events
 
     def stop(self) -> None:
-        """Let every drone that flies hover, and speak until they say that they do; on the ground none is left armed."""
+        """Let every flying drone hover, repeated until it is confirmed; on the ground none is left armed."""
         self._tell_all(Session.hold)
         self._speak_last_words()
         with self._lock:
@@ -203,7 +203,7 @@ class MavlinkFleet:
                 self._do(session, what)
 
     def _do(self, session: Session, what: Callable[..., object], *more: object) -> None:
-        """Do something with one drone, whatever it has said: an error ends its part, and not that of the others."""
+        """Do something with one drone; an error ends the session of this drone alone."""
         try:
             what(session, *more, self.time_s)
         except ParameterError:  # none that Muster flies
@@ -219,7 +219,7 @@ class MavlinkFleet:
             self._go_on()
 
     def _speak_on(self) -> None:
-        """The thread that speaks; whatever goes wrong `advance` raises."""
+        """The thread that sends and receives; `advance` raises its errors."""
         try:
             while not self._closed.is_set():
                 self._step()
@@ -234,7 +234,7 @@ class MavlinkFleet:
         self._wait(_STEP_S)
 
     def _step(self) -> None:
-        """Hear all links, let sessions think, speak."""
+        """Receive on all links, advance all sessions, send."""
         with self._lock:
             for link in self._links:
                 for name, message in link.hear():

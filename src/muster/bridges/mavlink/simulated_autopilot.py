@@ -29,7 +29,7 @@ def serve(
     until: Callable[[], bool] = lambda: False,
     speed: float = 1.0,
 ) -> None:
-    """Let a drone fly, `speed` times as fast as time goes, and speak to an address, until `until` says so."""
+    """Let a drone fly at `speed` times real time, and send to an address, until `until` is true."""
     drone_s, seen_s = 0.0, time.monotonic()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
         end.bind(("", 0))

@@ -139,7 +139,7 @@ class Ros1Fleet:
         return events
 
     def report(self, event: Event) -> None:
-        """Let `advance` tell of an event that somebody else knows of."""
+        """Add an event from elsewhere to those that `advance` returns."""
         with self._lock:
             self._events.append(event)
         self._news.set()
@@ -223,7 +223,7 @@ class Ros1Fleet:
             return dict(self._ports)
 
     def _tell_all(self, tell: Callable[[Ros1Port], object]) -> None:
-        """Tell every robot, whatever becomes of the others."""
+        """Send to every robot, even if sending to others fails."""
         deaf: dict[str, Exception] = {}
         for name, port in self._all().items():
             try:
@@ -239,7 +239,7 @@ class Ros1Fleet:
             raise self._failure
 
     def _steer_on(self) -> None:
-        """Tell robots their velocities at each interval; whatever goes wrong, they stand, and `advance` raises it."""
+        """Send velocities to the robots at each interval; on an error they stop, and `advance` raises it."""
         due_s, turn = self.clock.unpaused_s, 0
         try:
             while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):

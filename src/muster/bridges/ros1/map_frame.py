@@ -71,7 +71,7 @@ class MapFrame:
                 rospy.logwarn_throttle(10.0, f"tf: {error}")
 
     def _forget_if_time_went_back(self) -> None:
-        """A simulator that begins anew stamps messages with times that would be too old; so does tf2."""
+        """Forget all but static transforms when time goes back, as tf2 does: after a restart of a simulator."""
         now = rospy.get_time()
         if now < self._heard_s:
             self._tree = TransformTree()

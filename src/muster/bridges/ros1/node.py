@@ -112,7 +112,7 @@ def hear(topic: str, kind: Any, do: Callable[..., None], **how: Any) -> Any:
 
 
 def leave(within_s: float = 2.0) -> None:
-    """Say goodbye to the ROS master; what was said last has time to arrive. A master that hangs is not waited for."""
+    """Unregister at the ROS master, after time for the last messages to arrive; does not wait for a hanging master."""
     time.sleep(0.2)
     goodbye = threading.Thread(target=rospy.signal_shutdown, args=("done",), daemon=True)
     goodbye.start()

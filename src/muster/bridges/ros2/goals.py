@@ -43,7 +43,7 @@ class Goals(Protocol):
         ...
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
-        """Speak where that is due; the end of the goal that was given last, once, from who is told of it.
+        """Send what is due; return the end of the last goal once, where the robot reports it.
 
         Parameters
         ----------

@@ -24,7 +24,7 @@ class Writer(Protocol[Sent]):
     """Publishes messages of a type on a topic, reliably."""
 
     def write(self, message: Sent) -> None:
-        """Say it.
+        """Publish it.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Middleware(Protocol):
         ...
 
     def wait(self, seconds: float) -> None:
-        """Let so much time go by, and hear meanwhile."""
+        """Wait, and receive messages meanwhile."""
         ...
 
     def close(self) -> None:

@@ -22,7 +22,7 @@ class OdometryTracking:
         self._posed_s = -math.inf
 
     def tie(self, now: float, place: Place, heading: float) -> None:
-        """It is there on the map now, where its odometry is what it last said."""
+        """Tie the odometry frame to the map: the robot's last odometry is at this pose."""
         self._posed_s, self._pose = now, (place, heading)
         if self._odometry is not None:
             self._tie(*self._pose, *self._odometry)

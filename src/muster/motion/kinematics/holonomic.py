@@ -1,4 +1,4 @@
-"""A robot that goes in any direction at once: a point that moves as it is told."""
+"""Holonomic kinematics: a point that moves in any direction at once, as commanded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every kind of robot's kinematics can do, and what they share ([tcf-thesis], section 4.1).
+"""The interface of robots' kinematics, and their common parts ([tcf-thesis], section 4.1).
 
 A state is (n, 4): x, y, z in metres of the map frame and yaw in radians from east, one row a robot. What the inputs
 are, each kind says. All functions work on many robots of one kind at once.

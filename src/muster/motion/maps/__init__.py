@@ -1,4 +1,4 @@
-"""Maps: from image, ROS map file or polygons to what is free for a body of some radius."""
+"""Maps: from an image, a ROS map file or polygons to the free space of a body of some radius."""
 
 from muster.motion.maps.distances import clearance_to_blocked, inflated
 from muster.motion.maps.free_points import free

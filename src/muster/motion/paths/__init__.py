@@ -1,4 +1,4 @@
-"""Ways from a start to a goal: planners behind one interface, and the lengths of shortest ways between many places."""
+"""Paths from a start to a goal: planners behind one interface, and lengths of shortest paths between many places."""
 
 from muster.motion.paths.path_finder import PathFinder, travel_lengths
 from muster.motion.paths.planner import Planner

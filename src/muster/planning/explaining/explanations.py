@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from muster.allocation.allocator import routes_of
@@ -26,7 +26,7 @@ _IN_KNOTS = ("unknown-robot", "unknown-task", "repeated-robot", "repeated-task",
 class LeftOut:
     """The tasks that a plan leaves out, and for the first of them the smallest change with which each could be done."""
 
-    problem: Problem
+    problem: Problem = field(repr=False)
     unassigned: tuple[Unassigned, ...]
     changes: Mapping[str, Remedy | None]
 
@@ -56,7 +56,7 @@ class OneTask:
         the award of the task in a plan of an auction.
     """
 
-    problem: Problem
+    problem: Problem = field(repr=False)
     plan: Plan
     verdict: Verdict
     task: str

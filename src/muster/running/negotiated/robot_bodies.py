@@ -117,7 +117,7 @@ class RobotBodies:
         self._take_agreement()
 
     def _check_cameras(self) -> None:
-        """Evaluate the cameras. One robot is told of tasks that follow from what they find, and tells the others."""
+        """Evaluate the cameras. Tasks from their findings go to one robot, which sends them to the others."""
         if self.camera_search is None:
             return
         unheard = self._world.ports.keys() - self._connected

@@ -182,7 +182,7 @@ class RobotControl:
             self._negotiator.release(route.pop())
 
     def _is_known(self, task: Task) -> bool:
-        """Whether the robot has heard of this new task, even if it has moved since."""
+        """Whether the robot knows this new task, even if the task has moved since."""
         content = content_of(task)
         return any(fact.kind == "added" and fact.content == content for fact in self._negotiator.facts)
 

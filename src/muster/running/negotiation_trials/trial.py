@@ -224,7 +224,7 @@ class Trial:
         return groups
 
     def _hears_others(self, group: Sequence[str]) -> bool:
-        """Whether a group hears robots that do not belong to it."""
+        """Whether a group receives messages of robots outside of it."""
         links, others = self.scenario.links or frozenset(), self.network.nodes.keys() - set(group)
         return any((a, b) in links for a in others for b in group)
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from muster.exchange.antimeridian import cut_line
 from muster.exchange.earth import Earth, Spot
+from muster.exchange.geojson import one_or_many
 from muster.exchange.spreadsheet import cell
 from muster.exchange.xml_text import add, decimal, text_of
 from muster.mission.event_descriptions import event_line
@@ -48,7 +49,7 @@ def geojson_file(recording: Recording, _: Log) -> dict[str, str]:
     features = []
     for robot, times, spots in _tracks(recording, "GeoJSON"):
         pieces = [[[spot.lon, spot.lat, spot.alt] for spot in line] for line in cut_line(spots)]
-        shape = _one_or_many("LineString", [piece if len(piece) > 1 else piece * 2 for piece in pieces])
+        shape = one_or_many("LineString", [piece if len(piece) > 1 else piece * 2 for piece in pieces])
         features.append(_feature(shape, {"name": robot, "kind": "track", "times_s": times}))
     outcome = recording.outcome
     for name, spot in zip(outcome.tasks, _task_spots(recording, "GeoJSON"), strict=True):
@@ -125,12 +126,6 @@ def _task_spots(recording: Recording, purpose: str) -> list[Spot]:
 
 def _feature(geometry: Mapping[str, Any], properties: Mapping[str, Any]) -> dict[str, Any]:
     return {"type": "Feature", "geometry": geometry, "properties": properties}
-
-
-def _one_or_many(kind: str, pieces: list[Any]) -> dict[str, Any]:
-    if len(pieces) == 1:
-        return {"type": kind, "coordinates": pieces[0]}
-    return {"type": f"Multi{kind}", "coordinates": pieces}
 
 
 def _below_180(lon: float) -> float:

@@ -187,7 +187,7 @@ def _delete_others(connection: Connection, old: _Old) -> Pruned:
 
 
 def _let_nobody_write(connection: Connection) -> None:
-    """Until the transaction ends, as with SQLite: each statement finds what goes anew, and all are to find the same."""
+    """Lock out writers until the transaction ends, as SQLite does: all statements must see the same rows."""
     if connection.dialect.name == "postgresql":
         names = ", ".join(table.name for table in _DECIDE)
         connection.execute(text(f"LOCK TABLE {names} IN SHARE ROW EXCLUSIVE MODE"))

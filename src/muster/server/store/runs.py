@@ -33,7 +33,7 @@ class RunTable:
         by: User | None = None,
         request: RequestKey | None = None,
     ) -> Run:
-        """A new run, starting; in the same transaction the action of whoever starts it, so that none is without.
+        """Add a run in state *starting*, and in the same transaction the action of the user who starts it.
 
         Raises
         ------

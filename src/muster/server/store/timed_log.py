@@ -11,7 +11,7 @@ from muster.server.store.log import LogTable
 
 
 class TimedLog(LogTable):
-    """As a log is; `observe` is told the seconds of each `append`, whether it failed or not."""
+    """A log whose `observe` receives the seconds of each `append`, also of one that failed."""
 
     def __init__(self, database: Database, observe: Callable[[float], None]) -> None:
         super().__init__(database)

@@ -59,7 +59,7 @@ def shown(url: URL) -> str:
 
 
 def whereabouts(url: URL) -> str:
-    """Server and name of a database of PostgreSQL, the same for all spellings of its URL that can be told from it."""
+    """Server and name of a PostgreSQL database, equal for all spellings of its URL where the URL shows that."""
     port = url.port or url.query.get("port") or _PORT
     return f"{_host(url).lower()}:{port}/{url.database or url.username or ''}"  # which has the user's name by default
 

@@ -7,7 +7,6 @@ from collections import Counter, deque
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from contextvars import ContextVar
-from itertools import count
 
 from muster.exchange.mission_control import BusyError
 
@@ -18,8 +17,8 @@ CURRENT_USER: ContextVar[str] = ContextVar("muster_current_user", default="")
 class Turns:
     """A number of places for tasks, given to users in turn.
 
-    A free place goes to the user with the fewest places, and among those to the one whose last turn is longest ago. The
-    tasks of one user run in the order of their requests.
+    A free place goes to the user with the fewest places, and among those to the one whose last turn is longest ago, or
+    who has waited longest without one. The tasks of one user run in the order of their requests.
 
     Parameters
     ----------
@@ -39,8 +38,8 @@ class Turns:
         self._most_waiting = (waiting, waiting_of_one)
         self._queues: dict[str, deque[asyncio.Event]] = {}
         self._held: Counter[str] = Counter()
-        self._last_turn: dict[str, int] = {}  # of users who hold a place or wait for one
-        self._numbers = count(1)
+        self._last_turn: dict[str, float] = {}  # of users who hold a place or wait for one
+        self._newest_turn = 0.0
 
     @property
     def taken(self) -> int:
@@ -71,6 +70,7 @@ class Turns:
         self._require_room(user)
         granted = asyncio.Event()
         self._queues.setdefault(user, deque()).append(granted)
+        self._last_turn.setdefault(user, self._newest_turn - 0.5)  # behind all who wait already
         self._grant()
         try:
             await granted.wait()
@@ -96,10 +96,11 @@ class Turns:
             may = [user for user, queue in self._queues.items() if queue and self._held[user] < self._most_of_one]
             if not may:
                 return
-            user = min(may, key=lambda each: (self._held[each], self._last_turn.get(each, 0)))
+            user = min(may, key=lambda each: (self._held[each], self._last_turn[each]))
             self._queues[user].popleft().set()
             self._held[user] += 1
-            self._last_turn[user] = next(self._numbers)
+            self._newest_turn += 1
+            self._last_turn[user] = self._newest_turn
 
     def _release(self, user: str) -> None:
         self._held[user] -= 1
