@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import UTC, datetime
 from functools import cache
 
@@ -15,6 +15,8 @@ from muster.server.pages.frame import frame
 from muster.server.pages.missions.new_mission import named, open_new_mission
 from muster.server.pages.notices import errors_shown, offer, say
 from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
+
+Refresh = Callable[[], Awaitable[None]]
 
 _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"
@@ -36,15 +38,20 @@ async def view() -> None:
                 new.classes("control")
 
         @ui.refreshable
-        async def listed() -> None:
-            with errors_shown():
-                _table(await the_services().missions.list(), listed)
+        def listed(entries: Sequence[MissionEntry]) -> None:
+            _table(entries, refresh)
 
-        await listed()
+        async def refresh() -> None:
+            """Show the list as it is now. It is read first: two refreshes at a time would each add a table."""
+            listed.refresh(await the_services().missions.list())
+
+        with errors_shown():
+            listed(())
+            await refresh()
         ui.label("No mission has such a name.").classes("quiet none-found").props("hidden")
 
 
-def _table(entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _table(entries: Sequence[MissionEntry], refresh: Refresh) -> None:
     own = sorted((e for e in entries if not e.shipped), key=lambda e: _when(e.changed_at), reverse=True)
     with (
         ui.element("div").classes("panel scrolling"),
@@ -61,21 +68,21 @@ def _table(entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # 
             ):
                 with ui.element("th").classes(classes).props('scope="col"'):
                     ui.label(name)
-        _group("Missions of this server", own, listed)
-        _group("Shipped with Muster", [e for e in entries if e.shipped], listed)
+        _group("Missions of this server", own, refresh)
+        _group("Shipped with Muster", [e for e in entries if e.shipped], refresh)
 
 
-def _group(title: str, entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _group(title: str, entries: Sequence[MissionEntry], refresh: Refresh) -> None:
     if not entries:
         return
     with ui.element("tbody"):
         with ui.element("tr").classes("group"), ui.element("th").props('colspan="6" scope="rowgroup"'):
             ui.label(title)
         for entry in entries:
-            _row(entry, listed)
+            _row(entry, refresh)
 
 
-def _row(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _row(entry: MissionEntry, refresh: Refresh) -> None:
     with _named_row(entry):
         with ui.element("td"):
             ui.link(entry.name, f"/plan/{entry.id}").classes("mission-link")
@@ -92,7 +99,7 @@ def _row(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[t
             ui.label(f"version {entry.version}, {ago(entry.changed_at)}" if entry.version and entry.changed_at else "")
         with ui.element("td").classes("acts"):
             if may_command():
-                _acts(entry, listed)
+                _acts(entry, refresh)
 
 
 @cache
@@ -107,25 +114,25 @@ def _named_row(entry: MissionEntry) -> ui.element:
     return row
 
 
-def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _acts(entry: MissionEntry, refresh: Refresh) -> None:
     async def duplicate() -> None:
         missions = the_services().missions
         old = await missions.get(entry.id)
         name = f"{entry.name} copy"
         new = await missions.create(the_user(), await named(old.text, name), dict(old.files), name)
         say(f"{new.mission} is a copy of {entry.name}.")
-        listed.refresh()
+        await refresh()
 
     async def delete() -> None:
         with errors_shown():
             await the_services().missions.delete(the_user(), entry.id)
-            listed.refresh()
-            offer(f"{entry.name} is deleted.", "Undo", restore)
+            offer(f"{entry.name} is deleted.", "Undo", restore)  # before the row that this handler belongs to goes
+            await refresh()
 
     async def restore() -> None:
         with errors_shown():
             await the_services().missions.restore(the_user(), entry.id)
-            listed.refresh()
+            await refresh()
 
     _icon("content_copy", f"Duplicate {entry.name}", once(duplicate))
     if not entry.shipped:
