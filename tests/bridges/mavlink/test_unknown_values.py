@@ -58,7 +58,11 @@ def test_an_error_over_one_drone_ends_its_part_alone_and_all_hover(verb):
         raise KeyError(9)
 
     one = fleet.sessions["r_0"]
-    where = {"hear": (one.drone.telemetry, "hear"), "tick": (one._watch, "check_clock"), "hold": (one, "_take_order")}
+    where = {
+        "hear": (one.drone.telemetry, "hear"),
+        "tick": (one._fault_detector, "check_clock"),
+        "hold": (one, "_take_order"),
+    }
     setattr(*where[verb], fails)
     if verb != "hold":
         assert [event.robot_fails for event in fleet.advance(fleet.time_s + 2.0)] == ["r_0"]
