@@ -382,3 +382,42 @@ def test_options_of_cameras_that_make_no_sense(muster, arguments, message):
     code, out, err = muster("simulate", *arguments)
     assert (code, out) == (2, "")
     assert message in err
+
+
+@pytest.fixture
+def ordered(tmp_path):
+    """A mission with a task that waits for another, and a function that writes a plan of it."""
+    mission = tmp_path / "ordered.yaml"
+    mission.write_text(
+        "schema: muster/1\nname: ordered\nrobots:\n  - {id: a, position: [0, 0]}\ntasks:\n"
+        "  - {id: first, position: [10, 0]}\n  - {id: second, position: [20, 0], prerequisites: [first]}\n",
+        encoding="utf-8",
+    )
+
+    def plan(tasks, **figures):
+        file = tmp_path / "plan.json"
+        document = {"schema": "muster-plan/1", "routes": [{"robot": "a", "tasks": tasks}], **figures}
+        file.write_text(json.dumps(document), encoding="utf-8")
+        return str(mission), "--plan", str(file)
+
+    return plan
+
+
+def test_what_was_planned_is_the_judge_s_figure_not_the_plan_s(muster, ordered):
+    stale = {"objective": {"name": "total+max", "value": 7.0}}
+    code, out, err = muster("simulate", *ordered(["first", "second"], **stale), "--format", "json")
+    assert code == 0
+    assert json.loads(out)["objective"]["planned"] == pytest.approx(40.0)
+    assert "the judge rejects this plan" in err
+    assert "7" in err
+
+
+def test_a_plan_that_breaks_a_rule_is_named(muster, ordered):
+    code, _, err = muster("simulate", *ordered(["second", "first"]), "--format", "json")
+    assert code == 0
+    assert re.search(r"warning: .*plan\.json: the judge rejects this plan: .*(deadlock|prerequisite|cycle)", err)
+    assert muster("simulate", *ordered(["second", "first"]), "--format", "json", "-q")[2] == ""
+
+
+def test_an_admissible_plan_is_simulated_without_a_word(muster, ordered):
+    assert muster("simulate", *ordered(["first", "second"]), "--format", "json")[::2] == (0, "")

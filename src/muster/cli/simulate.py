@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -182,6 +182,7 @@ def command(
     elif plan is not None:
         planned = read_plan(plan)
         say_of_plan(planned, plan, loaded, ignore, quiet=quiet, verbose=verbose)
+        planned = _judged(loaded, planned, plan, ignore, quiet=quiet)
     else:
         limit = None if iterations is not None else time_limit
         options = PlanningOptions(seed=seed, time_limit=limit, iterations=iterations, ignore=ignore)
@@ -252,6 +253,17 @@ def _negotiation(method: str, transport: str, others: Mapping[str, Any], setting
 
     terms = terms_of(method_named(method), others, settings)
     return Negotiation(method=method, transport=transport, params=terms)
+
+
+def _judged(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...], *, quiet: bool) -> Plan:
+    """The plan with the judge's objective. A plan that breaks rules is simulated after a warning that names them."""
+    from muster.verification import verify
+
+    verdict = verify(mission, plan, ignore, plan.objective)
+    if not verdict.valid and not quiet:
+        details = "; ".join(f"{found.kind} {found.detail}" for found in verdict.violations[:3])
+        click.echo(f"warning: {file}: the judge rejects this plan: {details}", err=True)
+    return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 
 def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
