@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import asyncio
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import UTC, datetime
 from functools import cache
 
@@ -16,6 +17,7 @@ from muster.server.pages.missions.new_mission import named, open_new_mission
 from muster.server.pages.notices import errors_shown, offer, say
 from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
 
+Refresh = Callable[[], Awaitable[None]]
 _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"
 
@@ -35,16 +37,23 @@ async def view() -> None:
                 new = ui.button("New mission", icon="add", on_click=open_new_mission).props('unelevated id="new"')
                 new.classes("control")
 
-        @ui.refreshable
-        async def listed() -> None:
-            with errors_shown():
-                _table(await the_services().missions.list(), listed)
+        one_at_a_time = asyncio.Lock()
 
-        await listed()
+        @ui.refreshable
+        def listed(entries: Sequence[MissionEntry]) -> None:
+            _table(entries, refresh)
+
+        async def refresh() -> None:
+            """Read the list before the old one is cleared: two that cleared first and read then would each add one."""
+            async with one_at_a_time:
+                listed.refresh(await the_services().missions.list())
+
+        with errors_shown():
+            listed(await the_services().missions.list())
         ui.label("No mission has such a name.").classes("quiet none-found").props("hidden")
 
 
-def _table(entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _table(entries: Sequence[MissionEntry], refresh: Refresh) -> None:
     own = sorted((e for e in entries if not e.shipped), key=lambda e: _when(e.changed_at), reverse=True)
     with (
         ui.element("div").classes("panel scrolling"),
@@ -61,21 +70,21 @@ def _table(entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # 
             ):
                 with ui.element("th").classes(classes).props('scope="col"'):
                     ui.label(name)
-        _group("Missions of this server", own, listed)
-        _group("Shipped with Muster", [e for e in entries if e.shipped], listed)
+        _group("Missions of this server", own, refresh)
+        _group("Shipped with Muster", [e for e in entries if e.shipped], refresh)
 
 
-def _group(title: str, entries: Sequence[MissionEntry], listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _group(title: str, entries: Sequence[MissionEntry], refresh: Refresh) -> None:
     if not entries:
         return
     with ui.element("tbody"):
         with ui.element("tr").classes("group"), ui.element("th").props('colspan="6" scope="rowgroup"'):
             ui.label(title)
         for entry in entries:
-            _row(entry, listed)
+            _row(entry, refresh)
 
 
-def _row(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _row(entry: MissionEntry, refresh: Refresh) -> None:
     with _named_row(entry):
         with ui.element("td"):
             ui.link(entry.name, f"/plan/{entry.id}").classes("mission-link")
@@ -92,7 +101,7 @@ def _row(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[t
             ui.label(f"version {entry.version}, {ago(entry.changed_at)}" if entry.version and entry.changed_at else "")
         with ui.element("td").classes("acts"):
             if may_command():
-                _acts(entry, listed)
+                _acts(entry, refresh)
 
 
 @cache
@@ -107,25 +116,25 @@ def _named_row(entry: MissionEntry) -> ui.element:
     return row
 
 
-def _acts(entry: MissionEntry, listed: ui.refreshable) -> None:  # type: ignore[type-arg]
+def _acts(entry: MissionEntry, refresh: Refresh) -> None:
     async def duplicate() -> None:
         missions = the_services().missions
         old = await missions.get(entry.id)
         name = f"{entry.name} copy"
         new = await missions.create(the_user(), await named(old.text, name), dict(old.files), name)
         say(f"{new.mission} is a copy of {entry.name}.")
-        listed.refresh()
+        await refresh()
 
     async def delete() -> None:
         with errors_shown():
             await the_services().missions.delete(the_user(), entry.id)
-            listed.refresh()
+            await refresh()
             offer(f"{entry.name} is deleted.", "Undo", restore)
 
     async def restore() -> None:
         with errors_shown():
             await the_services().missions.restore(the_user(), entry.id)
-            listed.refresh()
+            await refresh()
 
     _icon("content_copy", f"Duplicate {entry.name}", once(duplicate))
     if not entry.shipped:
