@@ -446,9 +446,7 @@ def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape
     """
 
 def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
-    """
-    New velocities by hybrid reciprocal velocity obstacles ([snape2011]).
-    """
+    """New velocities by hybrid reciprocal velocity obstacles ([snape2011])."""
 
 class VelocityObstacle:
     """VO_{i,k} of [tcf-thesis] (A.5)."""

@@ -18,6 +18,7 @@ from muster.server.pages.notices import errors_shown, offer, say
 from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
 
 Refresh = Callable[[], Awaitable[None]]
+
 _KEYS = {"/": "search", "n": "new mission"}
 _FILTER = "event => window.musterFilter(event.target.value, 'missions')"
 
@@ -44,12 +45,13 @@ async def view() -> None:
             _table(entries, refresh)
 
         async def refresh() -> None:
-            """Read the list before the old one is cleared: two that cleared first and read then would each add one."""
-            async with one_at_a_time:
+            """Show the list as it is now. It is read first: two refreshes at a time would each add a table."""
+            async with one_at_a_time:  # else an older list could come last
                 listed.refresh(await the_services().missions.list())
 
         with errors_shown():
-            listed(await the_services().missions.list())
+            listed(())
+            await refresh()
         ui.label("No mission has such a name.").classes("quiet none-found").props("hidden")
 
 
@@ -128,8 +130,8 @@ def _acts(entry: MissionEntry, refresh: Refresh) -> None:
     async def delete() -> None:
         with errors_shown():
             await the_services().missions.delete(the_user(), entry.id)
+            offer(f"{entry.name} is deleted.", "Undo", restore)  # before the row that this handler belongs to goes
             await refresh()
-            offer(f"{entry.name} is deleted.", "Undo", restore)
 
     async def restore() -> None:
         with errors_shown():
