@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable, Sequence
 from datetime import UTC, datetime
 from functools import cache
@@ -37,13 +38,16 @@ async def view() -> None:
                 new = ui.button("New mission", icon="add", on_click=open_new_mission).props('unelevated id="new"')
                 new.classes("control")
 
+        one_at_a_time = asyncio.Lock()
+
         @ui.refreshable
         def listed(entries: Sequence[MissionEntry]) -> None:
             _table(entries, refresh)
 
         async def refresh() -> None:
             """Show the list as it is now. It is read first: two refreshes at a time would each add a table."""
-            listed.refresh(await the_services().missions.list())
+            async with one_at_a_time:  # else an older list could come last
+                listed.refresh(await the_services().missions.list())
 
         with errors_shown():
             listed(())
