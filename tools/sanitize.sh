@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
-# and runs the tests that exercise it; those of the Ray cluster, which is not installed there, are skipped. The first
+# and runs the tests that exercise it; those of the Ray cluster, which is not installed there, are skipped, and so are
+# those of the planning doors: a server's worker may take too little memory for the sanitizers' shadow of it. The first
 # report of a sanitizer ends the run with an error.
 set -eu
 python=${PYTHON:-python3}
@@ -19,4 +20,4 @@ LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.s
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
     "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance \
-    tests/motion tests/simulation
+    tests/motion tests/simulation --ignore tests/conformance/test_planning_doors.py
