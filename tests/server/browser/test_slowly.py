@@ -88,7 +88,8 @@ def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client,
     page.locator("table.robots").wait_for()
     held = hold(Plans, "get", only=lambda plan: plan == older)
 
-    (built,) = (one for one in PageClient.instances.values() if one.page.path == "/plan/{mission}")
+    # the newest: the page of a test before may not have been put away yet
+    *_, built = (one for one in PageClient.instances.values() if one.page.path == "/plan/{mission}")
     selects = (one for one in built.elements.values() if isinstance(one, ui.select))
     (choice,) = (one for one in selects if one.props.get("id") == "plans")
 
