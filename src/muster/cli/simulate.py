@@ -57,6 +57,7 @@ _IN_THIS_PROCESS = (
     "foxglove",
 )
 _AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -96,6 +97,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.option(
     "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
 )
+@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",
@@ -139,6 +141,7 @@ def command(
     time_limit: float,
     iterations: int | None,
     avoidance: str,
+    law: str,
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
@@ -197,6 +200,7 @@ def command(
             seed=seed,
             dt_s=dt,
             avoidance=avoidance,
+            law=law,
             noise=noise,
             speed=speed,
             record=file,

@@ -14,11 +14,16 @@ namespace muster {
 
 constexpr double kNever = -1.0;  // a time before all others
 
+// How a robot comes to its velocity: profiles of speed and turns on the spot, or the control laws of [tcf-thesis].
+enum class Law { profile, thesis };
+
 struct Body {
   double radius, speed, yaw_rate, acceleration, priority;
   bool faces_its_way;  // drives only where it looks
   bool flies;
   int walls;  // which set of walls stops it
+  Law law = Law::profile;
+  double climb = 0.0;  // above 0: it climbs at up to this speed, whatever its speed over ground, by (4.12)
 };
 
 struct Waypoint {
@@ -75,6 +80,7 @@ struct CrowdRobot {
   Phase phase = Phase::idle;
   double hold_until = 0.0;
   double slowed = 1.0;
+  double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 

@@ -14,7 +14,7 @@ from muster.mission.value_types import shown
 from muster.running.worlds import WORLDS
 
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {"seed": int, "ignore": list, **_WORLD},
     "physics": {"seed": int, "ignore": list, **_WORLD},
@@ -35,6 +35,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "law": ("profile", "thesis"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
