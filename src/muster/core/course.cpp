@@ -7,6 +7,7 @@ namespace muster {
 namespace {
 
 constexpr double kRounding = 1e-9;  // metres
+constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
 constexpr double kClimbs = 0.5;     // seconds: the constant interval of (4.12)
 
 // The way between two places; over ground alone where the robot climbs by a law of its own.
