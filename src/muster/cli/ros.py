@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from muster.cli.real_robots import (
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -79,7 +80,7 @@ def command(
     known_only: bool,
     on_start: bool,
     stay: bool,
-    **asked: Any,
+    options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
@@ -92,7 +93,6 @@ def command(
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
-    options = RealRunOptions(**asked)
     if mission is None:
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
@@ -113,11 +113,17 @@ def command(
 
     become_node("muster", master)
     try:
-        own = ("--seed", str(options.seed), "--time-limit", str(options.time_limit))
+        own = ("--planning", json.dumps(_as_data(options)))
         node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
         return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
     finally:
         leave()
+
+
+def _as_data(options: RealRunOptions) -> dict[str, Any]:
+    """The planning options for the node /mission_planner, with the plans of --start and --fixed."""
+    plans = {name: file for name in ("start", "fixed") if (file := getattr(options, name)) is not None}
+    return options.planning.as_dict() | {name: read_plan(file).as_dict() for name, file in plans.items()}
 
 
 def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
@@ -211,7 +217,7 @@ def _through(
         if controller.halt.is_set():
             return None
         there = from_here(mission, fleet)
-        plan = work.plan or controller.plan(there, seed=options.seed, time_limit=options.time_limit)
+        plan = work.plan or controller.plan(there, _as_data(options))
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from muster.execution import (
     Executor,
-    Reallocation,
     Recorder,
     Status,
     broken_off,
@@ -25,7 +24,9 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
+from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
@@ -58,6 +59,8 @@ class Simulation:
         how robots pass each other: orca, rvo, hrvo or none.
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+    planning
+        options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
@@ -85,6 +88,7 @@ class Simulation:
         dt_s: float = 0.1,
         avoidance: str = "orca",
         noise: Noise = NO_NOISE,
+        planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
@@ -102,7 +106,7 @@ class Simulation:
             self._robots.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
-            replan=Reallocation(travel=travel, seed=seed),
+            replan=reallocation_by(planning, travel, seed),
             observer=recorder,
             now=self._world.time_s,
         )

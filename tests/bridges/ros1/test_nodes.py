@@ -153,6 +153,13 @@ def test_without_a_mission_robots_are_watched_and_planned_for(ros):
     plan = user.do(last="/mission_planner/plan")
     assert plan == {"mission": "near", "time_s": 0.0, "task_sequences": {"r_0": ["t_1", "t_2"]}}  # [9, 0] would turn it
     assert user.do(last="/r_0/task_sequence") == ["t_1", "t_2"]
+
+    # the thesis' GrdTA or GrdGenTA (Table 5.1, 3): by a parameter, for who does not start the command
+    user.do(set="/mission_planner/planning", to={"allocator": "greedy+genetic", "iterations": 3})
+    assert user.call("/mission_planner/plan") == (True, told)
+    user.do(set="/mission_planner/planning", to={"allocator": "greedi"})
+    succeeded, message = user.call("/mission_planner/plan")
+    assert (succeeded, "greedi" in message, "greedy" in message) == (False, True, True)
     assert carried.poll() is None
 
 

@@ -36,7 +36,7 @@ class StepResult:
     poses, lags
         (n, 4): x, y, z and heading, and by how much each would still change after a command to stand.
     counted
-        (n,) metres that wheel encoders counted; NaN for robots without wheels.
+        (n, 2) metres and radians that wheel encoders counted; NaN for robots without wheels.
     """
 
     poses: Floats
@@ -70,8 +70,9 @@ class WheelController:
         self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
 
     def odometers(self) -> Floats:
-        counted: Floats = (self._radius - SUNK_M) * self.group.data.qpos[self._angles].mean(axis=1)
-        return counted
+        angles, rolling = self.group.data.qpos[self._angles], self._radius - SUNK_M
+        turned = rolling * (angles[:, 1] - angles[:, 0]) / (2 * self._half_track)
+        return np.column_stack([rolling * angles.mean(axis=1), turned])
 
 
 class ForceController:
@@ -183,9 +184,11 @@ class CommandFollower:
         return self.controller.lags(self._motion)
 
     def counted(self) -> Floats:
-        """Metres (n,) that wheel encoders counted since the last call; NaN for robots without wheels."""
+        """Metres and radians (n, 2) that wheel encoders counted since the last call; NaN for robots without wheels."""
         before, self._odometers = self._odometers, self.controller.odometers()
-        return np.abs(self._odometers - before)
+        counted = self._odometers - before
+        counted[:, 0] = np.abs(counted[:, 0])
+        return counted
 
     def begin(self, commands: Commands) -> None:
         """Begin a step of the world: the references of robots that move start at their predicted poses."""
@@ -236,7 +239,7 @@ class Control:
             for follower in self._followers:
                 follower.measure(self._simulated.step_s)
         robots = len(self._simulated.robots)
-        done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
+        done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty((robots, 2)))
         for follower in self._followers:
             who = follower.controller.group.who
             done.poses[who], done.lags[who], done.counted[who] = follower.poses, follower.lags, follower.counted()

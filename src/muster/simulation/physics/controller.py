@@ -55,12 +55,12 @@ class Controller(Protocol):
         ...
 
     def odometers(self) -> Floats:
-        """Metres ahead that wheels have rolled so far (n,); NaN for robots without wheels."""
+        """Metres ahead and radians to the left that wheels have rolled so far (n, 2); NaN for robots without wheels."""
         ...
 
 
 def no_wheels(group: Group) -> Floats:
-    return np.full(len(group.who), np.nan)
+    return np.full((len(group.who), 2), np.nan)
 
 
 def lags_of(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float) -> Floats:
