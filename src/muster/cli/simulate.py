@@ -17,6 +17,7 @@ from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
     Finite,
     MissionFile,
+    avoidance_option,
     format_option,
     mission_argument,
     quiet_option,
@@ -58,7 +59,6 @@ _IN_THIS_PROCESS = (
     "still",
     "foxglove",
 )
-_AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -83,9 +83,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="WORLD",
     help="kinematic, physics, or a world of an installed package.",
 )
-@click.option(
-    "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
-)
+@avoidance_option
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",

@@ -18,6 +18,7 @@ from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
+from muster.motion.avoidance.names import require_avoidance
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
@@ -29,7 +30,6 @@ from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "none")
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
 """How high drones fly in a mission in the plane."""
@@ -307,12 +307,7 @@ def _lowest(mission: Mission) -> float:
 
 
 def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:
-    if avoidance not in AVOIDANCE:
-        raise ParameterError(
-            f"avoidance: {avoidance}; expected {', '.join(AVOIDANCE)}{did_you_mean(avoidance, AVOIDANCE)}"
-        )
-    if avoidance in ("rvo", "hrvo") and mission.dimensions == 3:
-        raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
+    require_avoidance(avoidance, mission.dimensions)
     if not 0 <= seed < 2**64:
         raise ParameterError(f"seed: {seed}; expected 0 to 2^64 - 1")
     for name, number in numbers.items():

@@ -26,6 +26,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "drive": str,
         "frame": str,
         "rate_hz": float,
+        "avoidance": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
