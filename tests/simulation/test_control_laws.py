@@ -144,5 +144,5 @@ def test_the_law_of_holonomic_robots_stays():
 
 
 def test_a_law_that_there_is_not_is_named():
-    with pytest.raises(ParameterError, match="law: these; expected .*did you mean 'thesis'"):
+    with pytest.raises(ParameterError, match=r"law: these; expected .*did you mean 'thesis'"):
         KinematicWorld(mission(robot()), law="these")
