@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
+from muster.cli.options import (
+    Finite,
+    MissionFile,
+    avoidance_option,
+    optional_mission_argument,
+    require_none_without_mission,
+)
 from muster.cli.real_robots import (
     RealRunOptions,
     carried_out,
@@ -64,6 +70,7 @@ _LEFT = "the robots were told to stand"
     metavar="HZ",
     help="Rate at which velocities are sent.",
 )
+@avoidance_option
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @ros_options
@@ -77,6 +84,7 @@ def command(
     wait_s: float,
     arrival: float,
     rate: float,
+    avoidance: str,
     known_only: bool,
     on_start: bool,
     stay: bool,
@@ -96,6 +104,7 @@ def command(
     if mission is None:
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
+    _require_steering(drive, avoidance)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -108,6 +117,7 @@ def command(
             frame=frame,
             arrival_m=arrival,
             rate_hz=rate,
+            avoidance=avoidance,
             joins=not known_only,
         )
 
@@ -131,6 +141,12 @@ def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
     for name in ("record", "html", "plot", "gantt"):
         if stay and getattr(options, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+
+
+def _require_steering(drive: str, avoidance: str) -> None:
+    """Refuse --avoidance for robots that find their way themselves."""
+    if drive == "goals" and avoidance != "orca":
+        raise ParameterError(f"--avoidance {avoidance} with --drive goals; expected --drive cmd_vel")
 
 
 @dataclass(frozen=True)

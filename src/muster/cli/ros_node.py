@@ -32,7 +32,7 @@ def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any]) 
         from muster import load
         from muster.bridges.ros1.command_interface import CommandInterface
 
-        return CommandInterface(load)
+        return CommandInterface(load, topics=topics)
 
     def system_monitor() -> object:
         from muster.bridges.ros1.system_monitor import SystemMonitor

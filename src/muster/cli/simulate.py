@@ -17,6 +17,7 @@ from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
     Finite,
     MissionFile,
+    avoidance_option,
     format_option,
     mission_argument,
     quiet_option,
@@ -58,7 +59,7 @@ _IN_THIS_PROCESS = (
     "still",
     "foxglove",
 )
-_AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -83,9 +84,8 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="WORLD",
     help="kinematic, physics, or a world of an installed package.",
 )
-@click.option(
-    "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
-)
+@avoidance_option
+@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",
@@ -127,6 +127,7 @@ def command(
     negotiate: bool,
     world: World,
     avoidance: str,
+    law: str,
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
@@ -181,6 +182,7 @@ def command(
             seed=options.seed,
             dt_s=dt,
             avoidance=avoidance,
+            law=law,
             noise=noise,
             speed=speed,
             record=file,

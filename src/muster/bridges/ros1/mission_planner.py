@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from muster.bridges.ros1.heard_robots import robots_heard
 from muster.bridges.ros1.message_conversion import text_of
 from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, unpacked
 from muster.bridges.ros1.node import hear, publish
@@ -91,7 +92,8 @@ class MissionPlanner:
         """That of the parameter; without one, the one that the controller has."""
         if rospy.get_param(MISSION, None) is None and "/muster/mission" in self._heard:
             return unpacked(self._heard["/muster/mission"])
-        return mission_on(MISSION, self._load)
+        rows = self._heard.get("/system_monitor/robots", [])
+        return mission_on(MISSION, self._load, lambda size: robots_heard(rows, self._topics, size))
 
     def _from_where_they_stand(self, mission: Mission) -> tuple[Mission, list[str]]:
         """The mission with the poses that the system monitor knows, and the robots that have one."""
