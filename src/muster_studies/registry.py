@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
@@ -29,7 +29,8 @@ from muster_studies.thesis_6_1 import THESIS_6_1
 class Study(Protocol):
     """A published experiment that can be repeated.
 
-    `tables` are the numbers of its tables, `extras` the optional parts of Muster that it needs.
+    `tables` are the numbers of its tables, `figures` the pictures that it draws, `extras` the optional parts of Muster
+    that it needs.
     """
 
     @property
@@ -42,16 +43,12 @@ class Study(Protocol):
     def tables(self) -> tuple[str, ...]: ...
 
     @property
+    def figures(self) -> tuple[StudyFigure, ...]: ...
+
+    @property
     def extras(self) -> tuple[str, ...]: ...
 
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
-
-
-@runtime_checkable
-class Illustrated(Protocol):
-    """A study with pictures of its tables."""
-
-    def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
 
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
