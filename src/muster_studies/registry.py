@@ -19,6 +19,7 @@ from muster_studies.negotiation.study import NEGOTIATION
 from muster_studies.peers import peers_study
 from muster_studies.repetition import OnDone
 from muster_studies.rescue import RESCUE
+from muster_studies.rotors.study import ROTORS
 from muster_studies.rvo import RVO
 from muster_studies.tables import Report
 from muster_studies.thesis_3_3 import THESIS_3_3
@@ -63,6 +64,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     RESCUE,
     MARKET_5,
     LOCALISATION,
+    ROTORS,
     NEGOTIATION,
 )
 
