@@ -59,6 +59,7 @@ _IN_THIS_PROCESS = (
     "still",
     "foxglove",
 )
+_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -84,6 +85,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     help="kinematic, physics, or a world of an installed package.",
 )
 @avoidance_option
+@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",
@@ -125,6 +127,7 @@ def command(
     negotiate: bool,
     world: World,
     avoidance: str,
+    law: str,
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
@@ -179,6 +182,7 @@ def command(
             seed=options.seed,
             dt_s=dt,
             avoidance=avoidance,
+            law=law,
             noise=noise,
             speed=speed,
             record=file,

@@ -105,6 +105,7 @@ class ServerBackend:
         seed: int,
         dt_s: float,
         avoidance: str,
+        law: str,
         noise: Noise,
         speed: float | None,
         record: Path | None,
@@ -115,7 +116,8 @@ class ServerBackend:
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
-        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "ignore": list(ignore)}
+        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "law": law}
+        settings["ignore"] = list(ignore)
         if planning is not None and (replanning := _replanning(planning)):
             settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:

@@ -57,6 +57,8 @@ class Simulation:
         step of the world in seconds.
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
+    law
+        how robots move: profile, or thesis, by the control laws of [tcf-thesis].
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
     planning
@@ -87,6 +89,7 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = "orca",
+        law: str = "profile",
         noise: Noise = NO_NOISE,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
@@ -96,7 +99,9 @@ class Simulation:
     ) -> None:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
-        self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+        self._world = recorded_world(
+            world, mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+        )
         if on_world is not None:
             on_world(self._world)
         self._robots = with_state_estimation(self._world)

@@ -14,11 +14,12 @@ if TYPE_CHECKING:
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance`, `noise` and `ignore` as `Simulation` takes them."""
+    """How the world is: `world`, `dt_s`, `avoidance`, `law`, `noise` and `ignore` as `Simulation` takes them."""
 
     world: str
     dt_s: float
     avoidance: str
+    law: str
     noise: Noise
     ignore: str | Collection[str]
     on_look: OnLook | None

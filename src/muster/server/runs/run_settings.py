@@ -16,7 +16,7 @@ from muster.running.worlds import WORLDS
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {**_PLANNING, **_WORLD},
     "physics": {**_PLANNING, **_WORLD},
@@ -44,6 +44,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "law": ("profile", "thesis"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
