@@ -12,6 +12,7 @@ class AllocatorParameters(TypedDict, total=False):
     battery_weight: float
     bid: str | None
     blink: float
+    bounds: str
     bundle_size: int
     cold: float
     crossover_probability: float
