@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
+    from muster.running.localisation import Localise
     from muster.running.negotiated.simulation import Negotiation
     from muster.simulation import Noise
     from muster.verification import Verdict
@@ -75,6 +76,8 @@ class Backend(Protocol):
         dt_s: float,
         avoidance: str,
         noise: Noise,
+        pose: str | None,
+        localise: Localise | None,
         speed: float | None,
         record: Path | None,
         on_line: OnLine | None,

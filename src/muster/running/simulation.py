@@ -26,7 +26,8 @@ from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
-from muster.running.state_estimation import with_state_estimation
+from muster.running.localisation import Localise
+from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 from muster.verification import verify
@@ -57,7 +58,9 @@ class Simulation:
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
     noise
-        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+        of motion and telemetry.
+    pose, localise
+        what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
@@ -85,6 +88,8 @@ class Simulation:
         dt_s: float = 0.1,
         avoidance: str = "orca",
         noise: Noise = NO_NOISE,
+        pose: str | None = None,
+        localise: Localise | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
@@ -95,7 +100,7 @@ class Simulation:
         self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world)
+        self._robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -188,6 +193,8 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        if isinstance(self._robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, self._robots.remark))
         return with_found(report, self._camera_search)
 
     @property

@@ -14,7 +14,7 @@ from muster.mission.value_types import shown
 from muster.running.worlds import WORLDS
 
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {"seed": int, "ignore": list, **_WORLD},
     "physics": {"seed": int, "ignore": list, **_WORLD},
@@ -35,6 +35,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "pose": ("true", "estimate"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
@@ -79,6 +80,10 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
         for kind in noise:
             _require_choice("noise", kind, NOISE)
             _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
+        if settings.get("localise"):
+            from muster.running.localisation import sensors_of
+
+            sensors_of(settings["localise"])
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
 
