@@ -75,6 +75,7 @@ class Backend(Protocol):
         seed: int,
         dt_s: float,
         avoidance: str,
+        law: str,
         noise: Noise,
         pose: str | None,
         localise: Localise | None,

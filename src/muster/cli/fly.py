@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -77,7 +77,7 @@ def command(
     low_battery: float,
     wait: float,
     at_end: AtEnd,
-    **asked: Any,
+    options: RealRunOptions,
 ) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 
@@ -87,7 +87,6 @@ def command(
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
 
-    options = RealRunOptions(**asked)
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
+from muster.cli.options import (
+    Finite,
+    MissionFile,
+    avoidance_option,
+    optional_mission_argument,
+    require_none_without_mission,
+)
 from muster.cli.real_robots import (
     RealRunOptions,
     carried_out,
@@ -24,7 +31,7 @@ from muster.cli.real_robots import (
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -63,6 +70,7 @@ _LEFT = "the robots were told to stand"
     metavar="HZ",
     help="Rate at which velocities are sent.",
 )
+@avoidance_option
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @ros_options
@@ -76,10 +84,11 @@ def command(
     wait_s: float,
     arrival: float,
     rate: float,
+    avoidance: str,
     known_only: bool,
     on_start: bool,
     stay: bool,
-    **asked: Any,
+    options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
@@ -92,10 +101,10 @@ def command(
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
-    options = RealRunOptions(**asked)
     if mission is None:
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
+    _require_steering(drive, avoidance)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -108,16 +117,23 @@ def command(
             frame=frame,
             arrival_m=arrival,
             rate_hz=rate,
+            avoidance=avoidance,
             joins=not known_only,
         )
 
     become_node("muster", master)
     try:
-        own = ("--seed", str(options.seed), "--time-limit", str(options.time_limit))
+        own = ("--planning", json.dumps(_as_data(options)))
         node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
         return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
     finally:
         leave()
+
+
+def _as_data(options: RealRunOptions) -> dict[str, Any]:
+    """The planning options for the node /mission_planner, with the plans of --start and --fixed."""
+    plans = {name: file for name in ("start", "fixed") if (file := getattr(options, name)) is not None}
+    return options.planning.as_dict() | {name: read_plan(file).as_dict() for name, file in plans.items()}
 
 
 def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
@@ -125,6 +141,12 @@ def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
     for name in ("record", "html", "plot", "gantt"):
         if stay and getattr(options, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+
+
+def _require_steering(drive: str, avoidance: str) -> None:
+    """Refuse --avoidance for robots that find their way themselves."""
+    if drive == "goals" and avoidance != "orca":
+        raise ParameterError(f"--avoidance {avoidance} with --drive goals; expected --drive cmd_vel")
 
 
 @dataclass(frozen=True)
@@ -211,7 +233,7 @@ def _through(
         if controller.halt.is_set():
             return None
         there = from_here(mission, fleet)
-        plan = work.plan or controller.plan(there, seed=options.seed, time_limit=options.time_limit)
+        plan = work.plan or controller.plan(there, _as_data(options))
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)

@@ -21,7 +21,7 @@ from muster.mission.errors import Finding, MissionError, MusterError, NetworkErr
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.planning.options import OPTIONS
+from muster.planning.options import OPTIONS, PlanningOptions
 from muster.planning.request import Request
 
 if TYPE_CHECKING:
@@ -106,6 +106,7 @@ class ServerBackend:
         seed: int,
         dt_s: float,
         avoidance: str,
+        law: str,
         noise: Noise,
         pose: str | None,
         localise: Localise | None,
@@ -113,11 +114,15 @@ class ServerBackend:
         record: Path | None,
         on_line: Callable[[float, str], None] | None,
         ignore: Sequence[str] = (),
+        planning: PlanningOptions | None = None,
         **in_this_process: Any,
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
-        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "ignore": list(ignore)}
+        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "law": law}
+        settings["ignore"] = list(ignore)
+        if planning is not None and (replanning := _replanning(planning)):
+            settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:
             settings["noise"] = amounts
         if pose is not None:
@@ -143,6 +148,12 @@ class ServerBackend:
         entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
+
+
+def _replanning(planning: PlanningOptions) -> dict[str, Any]:
+    """The options that bear on planning again while a plan is carried out, where they are not the defaults."""
+    usual, asked = PlanningOptions().as_dict(), planning.as_dict()
+    return {name: asked[name] for name in ("allocator", "parameters", "rewire") if asked[name] != usual[name]}
 
 
 def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say) -> ServerPlan:

@@ -513,8 +513,10 @@ class CrowdWorld:
         Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.
         """
 
-    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int) -> int:
-        """Returns the number of the robot, from 0."""
+    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
+        """
+        Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by (4.12).
+        """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """

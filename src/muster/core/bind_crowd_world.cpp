@@ -36,6 +36,12 @@ Avoidance avoidance_named(const std::string& name) {
   throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
 }
 
+Law law_named(const std::string& name) {
+  if (name == "profile") return Law::profile;
+  if (name == "thesis") return Law::thesis;
+  throw std::invalid_argument("law must be profile or thesis");
+}
+
 WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
   WallSet walls{{}, {}, ground};
   for (std::size_t k = 0; k < faces.shape(0); ++k) {
@@ -110,12 +116,16 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
       .def(
           "add",
           [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,
-             double acceleration, double priority, bool faces_its_way, bool flies, int walls) {
-            return w.add({radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls}, {position},
-                         heading);
+             double acceleration, double priority, bool faces_its_way, bool flies, int walls, const std::string& law,
+             double climb) {
+            return w.add(
+                {radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls, law_named(law), climb},
+                {position}, heading);
           },
           "position"_a, "heading"_a, nb::kw_only(), "radius"_a, "speed"_a, "yaw_rate"_a, "acceleration"_a, "priority"_a,
-          "faces_its_way"_a, "flies"_a, "walls"_a, "Returns the number of the robot, from 0.")
+          "faces_its_way"_a, "flies"_a, "walls"_a, "law"_a = "profile", "climb"_a = 0.0,
+          "Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by "
+          "(4.12).")
       .def(
           "send",
           [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {

@@ -17,11 +17,16 @@ constexpr double kNoWheels = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTrack = 0.287 / 0.3;  // between the wheels, in radii: the Wafflebot's at its inflated radius
 constexpr double kNominalRadius = 0.3;  // in place of one of 0
 
+// How a robot comes to its velocity: profiles of speed and turns on the spot, or the control laws of [tcf-thesis].
+enum class Law { profile, thesis };
+
 struct Body {
   double radius, speed, yaw_rate, acceleration, priority;
   bool faces_its_way;  // drives only where it looks
   bool flies;
   int walls;  // which set of walls stops it
+  Law law = Law::profile;
+  double climb = 0.0;  // above 0: it climbs at up to this speed, whatever its speed over ground, by (4.12)
 };
 
 struct Waypoint {
@@ -98,6 +103,7 @@ struct CrowdRobot {
   std::vector<Waypoint> told;  // the order as it came; `way` is where it leads, by `belief`
   Belief belief;
   double slowed = 1.0;
+  double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 

@@ -9,7 +9,7 @@ namespace muster {
 namespace {
 
 constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
-constexpr double kExact = 1e-3;    // metres from its post at which a robot is back
+constexpr double kTurned = 0.01;   // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
 constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
 constexpr std::uint64_t kWheels = 0x5eed0fc0de0d0e7cULL;  // what wheels do by themselves is drawn apart from the rest
 
@@ -35,6 +35,7 @@ int CrowdWorld::add(const Body& body, const Vec<3>& position, double heading) {
   robot.body = body;
   robot.position = robot.post = position;
   robot.heading = wrapped(heading);
+  if (body.law == Law::thesis) robot.exact = settings_.tolerances.arrival;
   const std::uint64_t seed = settings_.seed * 0x9e3779b97f4a7c15ULL + 2 * robots_.size();
   robot.noise = Random(seed);
   robot.whims = Random(seed + 1);
@@ -276,8 +277,9 @@ void CrowdWorld::take_note(int i) {
   }
   if (robot.phase == Phase::turning) {
     const Waypoint& point = robot.way[robot.next];
-    if (!std::isnan(point.heading) && std::abs(wrapped(point.heading - robot.heading)) > settings_.tolerances.heading)
-      return;
+    const double turned = robot.body.law == Law::thesis ? kTurned : 0.0;
+    const double off = std::isnan(point.heading) ? 0.0 : wrapped(point.heading - robot.heading);
+    if (std::abs(off) > std::max(turned, settings_.tolerances.heading)) return;
     robot.phase = Phase::holding;
     robot.hold_until = time() + point.hold;
   }
@@ -289,7 +291,7 @@ void CrowdWorld::settle(int i) {
   CrowdRobot& robot = robots_[i];
   const double away = norm(robot.post - robot.position);
   const bool no_nearer = robot.turned_aside || away >= norm(robot.post - before_[i]);
-  const bool back = away <= (no_nearer ? settings_.tolerances.arrival : kExact);
+  const bool back = away <= (no_nearer ? settings_.tolerances.arrival : robot.exact);
   if (robot.is_away(time())) robot.patience.note(robot, settings_.dt);
   if ((back && robot.asked_until < time()) || robot.failed || robot.stopping) robot.post = robot.position;
   if (robot.commanded == Vec<3>{}) robot.stopping = false;

@@ -103,8 +103,8 @@ class Controller:
                     return self._mission
         return None
 
-    def plan(self, mission: Mission, **how: Any) -> Plan | None:
-        """Ask the mission planner; None if that was halted.
+    def plan(self, mission: Mission, options: Mapping[str, Any]) -> Plan | None:
+        """Ask the mission planner, with planning options as plain data; None if that was halted.
 
         Raises
         ------
@@ -114,8 +114,8 @@ class Controller:
             with what the planner says is wrong.
         """
         self._become("planning")
-        question = {"mission": packed(mission), **how}
-        within = _PLANS_WITHIN_S + how["time_limit"]
+        question = {"mission": packed(mission), "options": dict(options)}
+        within = _PLANS_WITHIN_S + (options["time_limit"] or 0.0)
         answer = self._planning.ask(question, wait_s=within, halted=self.halt.is_set)
         if self.halt.is_set():
             return None

@@ -25,6 +25,7 @@ from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
+from muster.motion.avoidance.names import require_avoidance
 from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths
@@ -53,6 +54,8 @@ class Ros1Fleet:
         from a way point, where a robot counts as there.
     rate_hz
         how often velocities are told.
+    avoidance
+        with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
     joins
         whether robots that the mission does not name may join.
     clock
@@ -75,6 +78,7 @@ class Ros1Fleet:
         frame: str = "map",
         arrival_m: float = 0.1,
         rate_hz: float = 20.0,
+        avoidance: str = "orca",
         joins: bool = True,
         clock: MissionClock | None = None,
         on_pose: Callable[[str, Any], None] | None = None,
@@ -82,6 +86,7 @@ class Ros1Fleet:
         for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
             if not number > 0:
                 raise ParameterError(f"{name}: {number}; expected a number above 0")
+        require_avoidance(avoidance, mission.dimensions)
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
@@ -89,7 +94,7 @@ class Ros1Fleet:
         """The namespace of a robot's topics, such as `/r_0`."""
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
-        self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=avoidance)
         self._yielding = Yielding(arrival_m=arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()

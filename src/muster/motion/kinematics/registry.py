@@ -10,6 +10,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.mission.near_matches import did_you_mean
 from muster.motion.kinematics.differential_drive import DifferentialDrive
+from muster.motion.kinematics.hexacopter import Hexacopter
 from muster.motion.kinematics.holonomic import Holonomic
 from muster.motion.kinematics.kinematics import Kinematics
 from muster.motion.kinematics.quadcopter import Quadcopter
@@ -17,7 +18,7 @@ from muster.motion.limits import Limits
 
 USUAL_YAW_RATE_RADPS = math.pi / 2
 
-_IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter())
+_IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter(), Hexacopter())
 
 KINEMATICS: Mapping[str, Kinematics] = MappingProxyType({k.name: k for k in _IMPLEMENTATIONS})
 

@@ -11,18 +11,27 @@ from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
 
+_PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "noise": dict, "pose": str, "localise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
-    "kinematic": {"seed": int, "ignore": list, **_WORLD},
-    "physics": {"seed": int, "ignore": list, **_WORLD},
-    "ros1": {"seed": int, "ignore": list, "master": str, "drive": str, "frame": str, "rate_hz": float, **_ROS},
-    "ros2": {"seed": int, "ignore": list, "domain": int, "give": str, "by": str, **_ROS},
+    "kinematic": {**_PLANNING, **_WORLD},
+    "physics": {**_PLANNING, **_WORLD},
+    "ros1": {
+        **_PLANNING,
+        "master": str,
+        "drive": str,
+        "frame": str,
+        "rate_hz": float,
+        "avoidance": str,
+        **_ROS,
+    },
+    "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
     "mavlink": {
-        "seed": int,
-        "ignore": list,
+        **_PLANNING,
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
@@ -36,6 +45,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
     "pose": ("true", "estimate"),
+    "law": ("profile", "thesis"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
@@ -73,6 +83,7 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
     for name, value in settings.items():
         _require_setting(world, name, value)
     ignored_rules(settings.get("ignore", ()))
+    options_from(settings.get("planning", {}))
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
     if world in WORLDS:
         _require_number(settings, "dt_s", 0.001, 1.0)
