@@ -10,7 +10,8 @@ import click
 
 from muster.cli.exits import DONE
 from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
-from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.outputs import require_csv, require_drawable, require_writable
+from muster.cli.smooth_path import SmoothPath, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from muster.motion.map_world import Body, World
 
 _PLANNERS = ("shortest", "theta-star", "a-star", "dijkstra", "rrt-star")
-_STEP_M = 0.1
 _FILE = click.Path(path_type=File)
 
 
@@ -33,7 +33,16 @@ _FILE = click.Path(path_type=File)
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
-@click.option("--smooth", is_flag=True, help="Round the corners where the map leaves room.")
+@click.option("--smooth", is_flag=True, help="Round the corners by a radius that the robot can drive.")
+@click.option(
+    "--turning-radius",
+    type=float,
+    metavar="R",
+    help="With --smooth: the least radius, metres.  [default: the robot's at full speed, else 0.1]",
+)
+@click.option(
+    "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
@@ -47,6 +56,8 @@ def command(
     radius: float | None,
     kind: str | None,
     smooth: bool,
+    turning_radius: float | None,
+    trajectory: File | None,
     seed: int,
     form: str,
     plot: File | None,
@@ -58,22 +69,30 @@ def command(
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
     the reason, and no error. Without a map the path is straight.
     """
-    require_writable(None, (plot,), mission.files, ())
+    require_writable(None, (plot, trajectory), mission.files, ())
     require_drawable(plot)
+    require_csv(trajectory, "--trajectory")
+    require_turning_radius(turning_radius, smooth=smooth)
     loaded = mission.load(verbose=verbose)
     ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
     body = _body(loaded, robot, radius, kind)
     world = _world(loaded)
     found = _found(world, body, planner, ends, seed)
-    bend = None
+    rounded = None
+    mover = None if robot is None else _robot(loaded, robot)
     if smooth and isinstance(found, Path):
-        found, bend = _smoothed(world, body, found)
+        rounded = smooth_path(world, body, found, mover, turning_radius)
+        found = rounded.path
+    if trajectory is not None and isinstance(found, Path):
+        from muster.motion.curve import Curve
+
+        write_trajectory(trajectory, Curve.along(found) if rounded is None else rounded.curve, mover)
     if plot is not None:
         _draw(loaded, world, body, found, ends, planner, plot)
     if form == "json":
-        click.echo(json_text(_answer(found) | ({} if bend is None else {"max_curvature_per_m": bend})), nl=False)
+        click.echo(json_text(_answer(found) | ({} if rounded is None else rounded.answer())), nl=False)
     else:
-        _print(found, loaded, body, planner, bend)
+        _print(found, loaded, body, planner, rounded)
     return DONE
 
 
@@ -98,15 +117,6 @@ def _found(
         return RobotPaths(world).path(body, start, goal)
     found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
     return found if isinstance(found, NoPath) else with_heights(found, start, goal)
-
-
-def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, float]:
-    """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
-    from muster.motion.curve import Curve
-    from muster.motion.robot_paths import RobotPaths
-
-    curve = Curve.along(path) if world is None else RobotPaths(world).curve(body, path)
-    return Path(curve.sample(_STEP_M)), curve.max_curvature
 
 
 def _point(mission: Mission, option: str, text: str) -> list[float]:
@@ -148,7 +158,7 @@ def _reason(found: NoPath) -> str:
     return f"{found.reason}: {found.detail}" if found.detail else found.reason
 
 
-def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, bend: float | None) -> None:
+def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, rounded: SmoothPath | None) -> None:
     import numpy as np
 
     from muster.cli.tables import counted, print_table
@@ -156,9 +166,11 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, ben
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")
         return
-    if bend is not None:
-        how = f"{_facts(body, planner)}, smooth"
-        click.echo(f"{mission.name}: {found.length_m:.3f} m, greatest curvature {bend:.3f} per metre; {how}")
+    if rounded is not None:
+        bends, *rest = rounded.lines()
+        click.echo(f"{mission.name}: {found.length_m:.3f} m, {bends}; {_facts(body, planner)}, smooth")
+        for line in rest:
+            click.echo(line)
         return
     turns = found.turns
     legs = np.linalg.norm(np.diff(turns, axis=0), axis=1)
