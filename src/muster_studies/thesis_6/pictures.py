@@ -1,37 +1,54 @@
-"""Pictures like Figures 6.3, 6.10, 6.13 and 6.14: the paths of the robots, and those of their tasks."""
+"""Figures 6.3, 6.10, 6.13 and 6.14: the trajectories of the robots, and those of their tasks."""
 
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from muster.report import save_figure
 from muster.report.record import RecordWriter, read_record
 from muster.report.recorded_tracks import plot_flown
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.flights import Flight, carried_out, mission_with
 from muster_studies.thesis_6.published import plans
 
-FIGURES = {"6.2": "6.3", "6.6": "6.10", "6.8": "6.13", "6.9": "6.14"}
-"""The published picture of what was flown, by table of routes."""
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_FLOWN = {
+    "6.3": ("6.2", "the trajectories of three drones over the tasks of 16T-3R in Gazebo"),
+    "6.10": ("6.6", "the trajectories of six ground robots over the tasks of 31T-6R50 in Gazebo"),
+    "6.13": ("6.8", "the trajectories of two Wafflebots over the tasks of 6T-2R, in truth and in Gazebo"),
+    "6.14": ("6.9", "the trajectories of two Wafflebots over the tasks of 11T-2R, in truth and in Gazebo"),
+}
+"""By published figure the table of routes that was carried out, and what the print shows."""
 
 
-def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
-    """One file for each plan that was flown, of the tables of routes asked for or all of `actions`; the files made."""
-    made = []
-    for number in ActionPaths().routes:
-        if number in numbers or ActionPaths().number in numbers:
-            (plan,) = (plan for plan in plans(number) if plan.with_actions)
-            path = folder / f"{number}-like-figure-{FIGURES[number]}.png"
-            _draw(plan.flight(plan.with_actions), path)
-            made.append(path)
-    return made
+def _flown(table: str, effort: Effort) -> Axes:
+    """The one plan of a table of routes that was carried out, its tasks as ways."""
+    (plan,) = (plan for plan in plans(table) if plan.with_actions)
+    return _recorded(plan.flight(plan.with_actions))
 
 
-def _draw(flight: Flight, path: Path) -> None:
+def _recorded(flight: Flight) -> Axes:
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "record.mcap"
         with RecordWriter(record, mission_with(flight)) as recorder:
             carried_out(flight, recorder)
-        save_figure(plot_flown(read_record(record)), path)
+        return plot_flown(read_record(record))
+
+
+FIGURES = tuple(
+    StudyFigure(
+        number=number,
+        source="tcf-thesis",
+        shows=shows,
+        draw=partial(_flown, table),
+        tables=(table, ActionPaths().number),
+        differs="the kinematic world in place of Gazebo and of real robots",
+    )
+    for number, (table, shows) in _FLOWN.items()
+)
