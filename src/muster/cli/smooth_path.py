@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from muster.motion.limits import Limits
     from muster.motion.map_world import Body, World
 
-USUAL_RADIUS_M = 0.1
-"""The turning radius of a robot that nothing limits."""
 _STEP_M = 0.1
 _STEP_S = 0.05
 
@@ -57,15 +55,17 @@ class SmoothPath:
 
 def smooth_path(world: World | None, body: Body, path: Path, robot: Robot | None, radius: float | None) -> SmoothPath:
     """Round the corners of a path by a turning radius; None: that of the robot at full speed, or 0.1 m."""
+    from muster.motion.kinematics.registry import FREE_RADIUS_M, turning_radius_of
     from muster.motion.robot_paths import RobotPaths
     from muster.motion.smoothing import smoothed
 
-    radius_m = radius if radius is not None else _radius_of(robot)
+    if radius is None:
+        radius = FREE_RADIUS_M if robot is None else turning_radius_of(robot)
     if world is None:
-        found = smoothed(path, lambda _: True, radii_m=(radius_m,))
+        found = smoothed(path, lambda _: True, radii_m=(radius,))
     else:
-        found = RobotPaths(world).smoothed(body, path, radius_m)
-    return SmoothPath(found.curve, radius_m, tuple(tuple(corner) for corner in found.corners.tolist()))
+        found = RobotPaths(world).smoothed(body, path, radius)
+    return SmoothPath(found.curve, radius, tuple(tuple(corner) for corner in found.corners.tolist()))
 
 
 def require_turning_radius(radius: float | None, *, smooth: bool) -> None:
@@ -91,15 +91,6 @@ def write_trajectory(file: File, curve: Curve, robot: Robot | None) -> None:
     motion = timed(curve, _limits(robot), faces_its_way=faces, start_heading=heading)
     text = trajectory_csv(motion.sample(_STEP_S), track_m=track_m, faces_its_way=faces)
     file.write_text(text, encoding="utf-8", newline="")
-
-
-def _radius_of(robot: Robot | None) -> float:
-    from muster.motion.kinematics.registry import kinematics_named
-
-    if robot is None:
-        return USUAL_RADIUS_M
-    faces = kinematics_named(robot.kinematics).faces_its_way
-    return _limits(robot).turning_radius_m(faces_its_way=faces) or USUAL_RADIUS_M
 
 
 def _limits(robot: Robot | None) -> Limits:
