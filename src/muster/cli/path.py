@@ -11,7 +11,7 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.smooth_path import SmoothPath, require_turning_radius, smooth_path, write_trajectory
+from muster.cli.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
@@ -21,7 +21,18 @@ from muster.motion.path import NoPath, Path
 if TYPE_CHECKING:
     from muster.motion.map_world import Body, World
 
-_PLANNERS = ("shortest", "theta-star", "a-star", "dijkstra", "rrt-star")
+_PLANNERS = (
+    "shortest",
+    "theta-star",
+    "a-star",
+    "dijkstra",
+    "rrt-star",
+    "rrt",
+    "bug",
+    "potential-field",
+    "dubins",
+)
+_GUIDANCE = ("pure-pursuit", "virtual-target", "synthetic-waypoint")
 _FILE = click.Path(path_type=File)
 
 
@@ -38,12 +49,16 @@ _FILE = click.Path(path_type=File)
     "--turning-radius",
     type=float,
     metavar="R",
-    help="With --smooth: the least radius, metres.  [default: the robot's at full speed, else 0.1]",
+    help="Of --smooth, metres  [default: the robot's at full speed, else 0.1], and of the planner dubins  [default: 0.5].",
 )
 @click.option(
     "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star.")
+@click.option(
+    "--follow", type=click.Choice(_GUIDANCE), help="Drive the path by this law of guidance; show what is driven."
+)
+@click.option("--lookahead", type=float, metavar="M", help="Of --follow: how far ahead the target is.  [default: 0.5]")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star and rrt.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
@@ -58,6 +73,8 @@ def command(
     smooth: bool,
     turning_radius: float | None,
     trajectory: File | None,
+    follow: str | None,
+    lookahead: float | None,
     seed: int,
     form: str,
     plot: File | None,
@@ -72,27 +89,30 @@ def command(
     require_writable(None, (plot, trajectory), mission.files, ())
     require_drawable(plot)
     require_csv(trajectory, "--trajectory")
-    require_turning_radius(turning_radius, smooth=smooth)
+    require_turning_radius(turning_radius)
     loaded = mission.load(verbose=verbose)
     ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
     body = _body(loaded, robot, radius, kind)
     world = _world(loaded)
-    found = _found(world, body, planner, ends, seed)
-    rounded = None
+    found = _found(world, body, planner, ends, seed, _parameters(planner, turning_radius, smooth=smooth))
+    driven: dict[str, Any] = {}
+    curve = None
     mover = None if robot is None else _robot(loaded, robot)
     if smooth and isinstance(found, Path):
         rounded = smooth_path(world, body, found, mover, turning_radius)
-        found = rounded.path
+        found, driven, curve = rounded.path, rounded.answer(), rounded.curve
     if trajectory is not None and isinstance(found, Path):
-        from muster.motion.curve import Curve
-
-        write_trajectory(trajectory, Curve.along(found) if rounded is None else rounded.curve, mover)
+        write_trajectory(trajectory, curve, found, mover)
+    if lookahead is not None and follow is None:
+        raise ParameterError(f"--lookahead: {lookahead:g}; expected --follow beside it")
+    if follow is not None and isinstance(found, Path):
+        found, driven = _followed(loaded, robot, body, found, follow, 0.5 if lookahead is None else lookahead)
     if plot is not None:
         _draw(loaded, world, body, found, ends, planner, plot)
     if form == "json":
-        click.echo(json_text(_answer(found) | ({} if rounded is None else rounded.answer())), nl=False)
+        click.echo(json_text(_answer(found) | driven), nl=False)
     else:
-        _print(found, loaded, body, planner, rounded)
+        _print(found, loaded, body, planner, driven)
     return DONE
 
 
@@ -102,8 +122,19 @@ def _world(mission: Mission) -> World | None:
     return None if mission.map is None else World.of(mission)
 
 
+def _parameters(planner: str, turning_radius: float | None, *, smooth: bool) -> Any:
+    """Parameters of the planner; None for its own."""
+    if turning_radius is None or (smooth and planner != "dubins"):
+        return None
+    if planner != "dubins":
+        raise ParameterError(f"--turning-radius: {turning_radius:g}; expected --smooth or --planner dubins beside it")
+    from muster.motion.paths.dubins import Parameters
+
+    return Parameters(turning_radius_m=turning_radius)
+
+
 def _found(
-    world: World | None, body: Body, planner: str, ends: tuple[list[float], list[float]], seed: int
+    world: World | None, body: Body, planner: str, ends: tuple[list[float], list[float]], seed: int, params: Any
 ) -> Path | NoPath:
     import numpy as np
 
@@ -115,8 +146,33 @@ def _found(
         return Path(np.array(ends))
     if planner == "shortest":
         return RobotPaths(world).path(body, start, goal)
-    found = planner_named(planner).find(world.free_space(body.radius_m, body.kind), start, goal, seed=seed)
+    found = planner_named(planner).find(
+        world.free_space(body.radius_m, body.kind), start, goal, seed=seed, params=params
+    )
     return found if isinstance(found, NoPath) else with_heights(found, start, goal)
+
+
+def _followed(
+    mission: Mission, robot: str | None, body: Body, path: Path, law: str, lookahead: float
+) -> tuple[Path, dict[str, Any]]:
+    """The path as a robot drives it: the one that was named, else a differential drive, or a quadcopter in the air."""
+    import numpy as np
+
+    from muster.motion.guidance import follow
+    from muster.motion.kinematics.registry import kinematics_named, limits_of
+
+    usual = "quadcopter" if body.kind == "air" else "differential-drive"
+    own = Robot(id="robot", position=(0.0, 0.0), kinematics=usual) if robot is None else _robot(mission, robot)
+    tracked = follow(path, law, kinematics_named(own.kinematics), limits_of(own), lookahead_m=lookahead)
+    figures = {
+        "law": law,
+        "kinematics": own.kinematics,
+        "arrived": tracked.arrived,
+        "duration_s": tracked.duration_s,
+        "max_cross_track_m": float(tracked.cross_track_m.max()),
+        "rms_cross_track_m": float(np.sqrt((tracked.cross_track_m**2).mean())),
+    }
+    return Path(tracked.path.points[:, : path.points.shape[1]]), figures
 
 
 def _point(mission: Mission, option: str, text: str) -> list[float]:
@@ -158,7 +214,7 @@ def _reason(found: NoPath) -> str:
     return f"{found.reason}: {found.detail}" if found.detail else found.reason
 
 
-def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, rounded: SmoothPath | None) -> None:
+def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, driven: dict[str, Any]) -> None:
     import numpy as np
 
     from muster.cli.tables import counted, print_table
@@ -166,11 +222,10 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, rou
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")
         return
-    if rounded is not None:
-        bends, *rest = rounded.lines()
-        click.echo(f"{mission.name}: {found.length_m:.3f} m, {bends}; {_facts(body, planner)}, smooth")
-        for line in rest:
-            click.echo(line)
+    if driven:
+        click.echo(f"{mission.name}: {found.length_m:.3f} m, {_driving(driven)}; {_facts(body, planner)}")
+        if driven.get("corners"):
+            click.echo(corners_of(driven))
         return
     turns = found.turns
     legs = np.linalg.norm(np.diff(turns, axis=0), axis=1)
@@ -180,6 +235,14 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, rou
     print_table(columns, rows, right=columns)
     pieces = counted(len(legs), "straight piece")
     click.echo(f"{mission.name}: {found.length_m:.3f} m in {pieces}; {_facts(body, planner)}")
+
+
+def _driving(driven: dict[str, Any]) -> str:
+    if "law" not in driven:
+        return bends_of(driven)
+    end = "" if driven["arrived"] else ", not arrived"
+    off = f"off the path {driven['max_cross_track_m']:.3f} m at most, {driven['rms_cross_track_m']:.3f} m rms"
+    return f"{driven['duration_s']:.2f} s{end}, {off}; {driven['law']}, {driven['kinematics']}"
 
 
 def _facts(body: Body, planner: str) -> str:

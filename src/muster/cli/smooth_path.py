@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
@@ -41,16 +42,17 @@ class SmoothPath:
             "corners": [list(corner) for corner in self.corners],
         }
 
-    def lines(self) -> list[str]:
-        """What people are told of it."""
-        radius = f"turning radius {self.radius_m:.3g} m"
-        lines = [f"greatest curvature {self.curve.max_curvature:.3f} per metre, {radius}"]
-        if self.corners:
-            places = ", ".join("(" + ", ".join(f"{value:.3f}" for value in corner) + ")" for corner in self.corners)
-            lines.append(
-                f"the map has no room for that radius at {len(self.corners)} of its corners, which stay: {places}"
-            )
-        return lines
+
+def bends_of(answer: Mapping[str, Any]) -> str:
+    """How a smooth path bends, for people."""
+    radius = f"turning radius {answer['turning_radius_m']:.3g} m"
+    return f"smooth, greatest curvature {answer['max_curvature_per_m']:.3f} per metre, {radius}"
+
+
+def corners_of(answer: Mapping[str, Any]) -> str:
+    """Where no radius fitted, for people."""
+    places = ", ".join("(" + ", ".join(f"{value:.3f}" for value in corner) + ")" for corner in answer["corners"])
+    return f"the map has no room for that radius at {len(answer['corners'])} of its corners, which stay: {places}"
 
 
 def smooth_path(world: World | None, body: Body, path: Path, robot: Robot | None, radius: float | None) -> SmoothPath:
@@ -68,19 +70,16 @@ def smooth_path(world: World | None, body: Body, path: Path, robot: Robot | None
     return SmoothPath(found.curve, radius, tuple(tuple(corner) for corner in found.corners.tolist()))
 
 
-def require_turning_radius(radius: float | None, *, smooth: bool) -> None:
-    """Refuse a radius that is no radius, and one without --smooth."""
-    if radius is None:
-        return
-    if not smooth:
-        raise ParameterError("--turning-radius given; expected it together with --smooth")
-    if not (math.isfinite(radius) and radius > 0):
+def require_turning_radius(radius: float | None) -> None:
+    """Refuse a radius that is no radius."""
+    if radius is not None and not (math.isfinite(radius) and radius > 0):
         raise ParameterError(f"--turning-radius: {radius:g}; expected a finite number above 0")
 
 
-def write_trajectory(file: File, curve: Curve, robot: Robot | None) -> None:
-    """Write the trajectory of a robot along a curve, as fast as its limits allow, a moment each 0.05 s."""
+def write_trajectory(file: File, curve: Curve | None, path: Path, robot: Robot | None) -> None:
+    """Write the trajectory of a robot along a curve, else a path, as fast as its limits allow: a row each 0.05 s."""
     from muster.exchange.trajectory_table import trajectory_csv
+    from muster.motion.curve import Curve
     from muster.motion.kinematics.registry import kinematics_named
     from muster.motion.velocity import timed
     from muster.motion.wheels import TRACK_RADII
@@ -88,7 +87,9 @@ def write_trajectory(file: File, curve: Curve, robot: Robot | None) -> None:
     faces = robot is None or kinematics_named(robot.kinematics).faces_its_way
     track_m = TRACK_RADII * (robot.radius_m if robot is not None and robot.radius_m > 0 else 0.3) if faces else None
     heading = None if robot is None or faces else math.radians(robot.heading_deg)
-    motion = timed(curve, _limits(robot), faces_its_way=faces, start_heading=heading)
+    motion = timed(
+        Curve.along(path) if curve is None else curve, _limits(robot), faces_its_way=faces, start_heading=heading
+    )
     text = trajectory_csv(motion.sample(_STEP_S), track_m=track_m, faces_its_way=faces)
     file.write_text(text, encoding="utf-8", newline="")
 
