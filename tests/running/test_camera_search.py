@@ -173,7 +173,7 @@ def test_a_find_elsewhere_moves_its_task():
     tag = int(task["id"].removeprefix("found-"))
     (find,) = [find for find in camera_search.search.finds if find.tag == tag]
     moved = replace(find, point=replace(find.point, position=find.point.position + 0.5))
-    event = camera_search._event(moved, simulation.time_s)
+    event = camera_search.tasks.event(moved, simulation.time_s)
     assert event.move_task == MovedTask(task=task["id"], position=(*(round(p, 4) for p in moved.point.position), 0.0))
 
 

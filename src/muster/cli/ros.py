@@ -28,6 +28,7 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
+from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
@@ -73,6 +74,7 @@ _LEFT = "the robots were told to stand"
 @avoidance_option
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
+@target_options
 @ros_options
 @real_options
 def command(
@@ -88,6 +90,7 @@ def command(
     known_only: bool,
     on_start: bool,
     stay: bool,
+    targets: TargetOptions | None,
     options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
@@ -98,6 +101,8 @@ def command(
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
+    if targets is not None:
+        require_rospy(("sensor_msgs", "visualization_msgs"))
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
@@ -123,9 +128,10 @@ def command(
 
     become_node("muster", master)
     try:
-        own = ("--planning", json.dumps(_as_data(options)))
+        own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
         node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
-        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
+        work = _Work(fleet_of, given, wait_s, stay, targets is not None, options)
+        return _with_nodes(loaded, work, node, master, begins=not on_start)
     finally:
         leave()
 
@@ -157,6 +163,7 @@ class _Work:
     plan: Plan | None
     wait_s: float
     stay: bool
+    finds_targets: bool
     options: RealRunOptions
 
 
@@ -174,7 +181,7 @@ def _with_nodes(
     """
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
-    from muster.bridges.ros1.node_processes import NodeProcesses
+    from muster.bridges.ros1.node_processes import DUTIES, NodeProcesses
 
     controller = Controller()
     if mission is not None:
@@ -184,7 +191,13 @@ def _with_nodes(
     elif not work.options.quiet:
         click.echo("waits for command_interface/load and start", err=True)
     with ctrl_c_halts(TO_END) as asked:
-        children = NodeProcesses(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        children = NodeProcesses(
+            node,
+            master_address(master),
+            asked_to_end=asked.is_set,
+            on_end=controller.end_all,
+            duties=(*DUTIES, "target_localization") if work.finds_targets else DUTIES,
+        )
         with children:
             code = _one(controller, work, children)
             while work.stay and not controller.ending.is_set():
