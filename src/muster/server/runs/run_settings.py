@@ -66,6 +66,7 @@ NOISE = (
     "gyro_radps",
     "gyro_bias_radps",
     "accelerometer_mps2",
+    "camera_delay_s",
 )
 """The kinds of a simulation's noise."""
 _KINDS = {
