@@ -63,7 +63,7 @@ def test_poses_in_a_frame_count_as_tf_ties_it_to_the_map(ros, one):
 
 
 def test_odometry_that_begins_at_the_start_counts_from_there(ros, tmp_path):
-    """(4.2)-(4.4) of [tcf-thesis]: nothing ties r_0/odom to the map but the start in the mission: at (10, -5), north."""
+    """(4.2)-(4.4) of [tcf-thesis]: r_0/odom is tied to the map by the start in the mission alone."""
     (tmp_path / "m.yaml").write_text(
         ONE.replace("[0, 0]", "[10, -5], heading_deg: 90, camera: {fov_deg: 60, tilt_deg: 30, mount: [0.1, 0, 0.2]}")
         .replace("[2, 0]", "[12, -5]")
