@@ -49,7 +49,7 @@ _FILE = click.Path(path_type=File)
     "--turning-radius",
     type=float,
     metavar="R",
-    help="Of --smooth, metres  [default: the robot's at full speed, else 0.1], and of the planner dubins  [default: 0.5].",
+    help="Metres: of --smooth  [default: the robot's at full speed, else 0.1], of the planner dubins  [default: 0.5]",
 )
 @click.option(
     "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
