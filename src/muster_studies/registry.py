@@ -12,12 +12,14 @@ from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
+from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
 from muster_studies.peers import peers_study
 from muster_studies.repetition import OnDone
 from muster_studies.rescue import RESCUE
+from muster_studies.rotors.study import ROTORS
 from muster_studies.rvo import RVO
 from muster_studies.tables import Report
 from muster_studies.thesis_3_3 import THESIS_3_3
@@ -61,6 +63,8 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     RVO,
     RESCUE,
     MARKET_5,
+    LOCALISATION,
+    ROTORS,
     NEGOTIATION,
 )
 

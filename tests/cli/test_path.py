@@ -171,3 +171,34 @@ def test_check_tells_of_a_robot_in_a_wall_in_both_forms(muster, tmp_path):
     assert (code, err) == (2, "")
     (error,) = json.loads(out)["errors"]
     assert (error["line"], error["field"], error["expected"]) == (10, "robots[0].position", expected)
+
+
+def test_a_turning_radius_bends_the_way(muster, walled):
+    sharp, wide = (
+        answer(muster, walled, "--from", "1,1", "--to", "9,1", "--planner", "dubins", "--turning-radius", radius)
+        for radius in ("0.2", "1")
+    )
+    shortest = answer(muster, walled, "--from", "1,1", "--to", "9,1")
+    assert shortest["length_m"] < sharp["length_m"] < wide["length_m"] < 1.2 * shortest["length_m"]
+    code, _, err = muster("path", walled, "--from", "1,1", "--to", "9,1", "--turning-radius", "1")
+    assert code == 2
+    assert "--turning-radius: 1; expected --planner dubins beside it" in err
+
+
+@pytest.mark.parametrize("law", ["pure-pursuit", "virtual-target", "synthetic-waypoint"])
+def test_a_law_of_guidance_tells_how_far_off_the_path_it_is(muster, walled, law):
+    found = answer(muster, walled, "--from", "1,1", "--to", "9,1", "--robot", "rover", "--follow", law)
+    assert found["arrived"]
+    assert 0 < found["rms_cross_track_m"] < found["max_cross_track_m"] < 0.5
+    assert found["points"][-1] == pytest.approx([9, 1], abs=0.05)
+    code, out, _ = muster("path", walled, "--from", "1,1", "--to", "9,1", "--follow", law)
+    assert code == 0
+    assert f"rms; {law}, differential-drive" in out
+    code, _, err = muster("path", walled, "--from", "1,1", "--to", "9,1", "--lookahead", "1")
+    assert (code, "--lookahead: 1; expected --follow beside it" in err) == (2, True)
+
+
+def test_a_local_minimum_is_an_answer(muster, walled):
+    code, out, _ = muster("path", walled, "--from", "1,1", "--to", "9,1", "--planner", "potential-field")
+    assert code == 0
+    assert out.startswith("no path: not found: a local minimum at (")

@@ -7,6 +7,7 @@ from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.thesis_6_1 import drift_pictures, pictures
 from muster_studies.thesis_6_1.clusters import Clusterings
+from muster_studies.thesis_6_1.delays import Delays
 from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
@@ -29,6 +30,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
         thesis={"error_real": "real", "error": "Gazebo"},
     ),
     Clusterings(),
+    Delays(),
     Drifts(),
 )
 

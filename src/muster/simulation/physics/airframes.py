@@ -2,7 +2,7 @@
 
 `FIREFLY` is the AscTec Firefly of RotorS [furrer2016]: its vehicle parameters, its motor model and the gains of its
 controller. `RB5` is the quadcopter of [tcf-thesis] with the mass, thrust and flight time of Table A.19. Its motors are
-those that [px4-models2024] models, so that it has their constants; where its rotors sit and its inertia are ours.
+those that [dronecode2024] models, so that it has their constants; where its rotors sit and its inertia are ours.
 """
 
 from __future__ import annotations

@@ -29,9 +29,16 @@ OBSERVER_S = 0.3
 
 
 class RotorcraftController:
-    """Drones at the level of rotors."""
+    """Drones at the level of rotors.
 
-    def __init__(self, simulated: SimulatedModel) -> None:
+    Parameters
+    ----------
+    compensates
+        whether it holds against drag and estimated disturbances; the controller of [furrer2016] does not.
+    """
+
+    def __init__(self, simulated: SimulatedModel, *, compensates: bool = True) -> None:
+        self._compensates = compensates
         self.group = simulated.group(BodyKind.ROTORCRAFT)
         airframes = [body.rotorcraft for body in self.group.robots]
         self._step_s, self._state = simulated.step_s, simulated.rotors
@@ -92,10 +99,17 @@ class RotorcraftController:
     def _fed_forward(self, motion: Motion) -> Floats:
         """(n, 3): the acceleration that holds against the drag of calm air and against the estimated disturbance."""
         who = self.group.who
+        if not self._compensates:
+            return np.zeros_like(motion.velocities)
+        return self._calm_drag(motion) - self._state.disturbances[who]
+
+    def _calm_drag(self, motion: Motion) -> Floats:
+        """(n, 3): the deceleration by the drag of rotors in air that stands."""
+        who = self.group.who
         drag = (self._rotors.drag * self._state.speeds[who]).sum(axis=1) / self._law.mass
         up = motion.axes[:, :, 2]
         across = motion.velocities - (motion.velocities * up).sum(axis=1, keepdims=True) * up
-        found: Floats = drag[:, None] * across - self._state.disturbances[who]
+        found: Floats = drag[:, None] * across
         return found
 
     def _apply(self, motion: Motion, rates: Floats) -> None:
@@ -116,7 +130,7 @@ class RotorcraftController:
     def _observe(self, motion: Motion, thrust: Floats) -> None:
         """Low-pass the difference of the measured acceleration and that of thrust, weight and the drag of calm air."""
         who, state = self.group.who, self._state
-        calm = self._fed_forward(motion) + state.disturbances[who]
+        calm = self._calm_drag(motion)
         if self._expected is not None:
             measured = (motion.velocities - self._velocities) / self._step_s
             estimate = state.disturbances[who]
