@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 @click.option("--namespace", default="")
 @click.option("--frame", default="map")
 @click.option("--planning", type=json.loads, default="{}")
-@click.argument("duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner"]))
-def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any]) -> None:
+@click.option("--targets", default="")
+@click.argument(
+    "duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner", "target_localization"])
+)
+def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], targets: str) -> None:
     """Run a node until standard input ends."""
     from muster.bridges.discovery import topics_in
     from muster.bridges.ros1.node_lifetime import live
@@ -50,7 +53,18 @@ def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any]) 
 
         return MissionPlanner(load, solve, topics=topics, options=planning)
 
-    duties: Sequence[Callable[[], object]] = (command_interface, system_monitor, mission_planner)
+    def target_localization() -> object:
+        from muster.bridges.ros1.target_localization import TargetLocalization
+        from muster.cli.ros_targets import targets_from
+
+        return TargetLocalization(topics=topics, frame=frame, settings=targets_from(targets).settings())
+
+    duties: Sequence[Callable[[], object]] = (
+        command_interface,
+        system_monitor,
+        mission_planner,
+        target_localization,
+    )
     live(duty, {do.__name__: do for do in duties}[duty])
 
 

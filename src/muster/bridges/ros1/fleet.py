@@ -20,6 +20,7 @@ from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
+from muster.bridges.ros1.static_frames import Odometry, static_frames
 from muster.bridges.steering import STILL, Steering
 from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
@@ -56,6 +57,8 @@ class Ros1Fleet:
         how often velocities are told.
     avoidance
         with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
+    odometry
+        of which frame robots' odometry is: see `static_frames`.
     joins
         whether robots that the mission does not name may join.
     clock
@@ -79,6 +82,7 @@ class Ros1Fleet:
         arrival_m: float = 0.1,
         rate_hz: float = 20.0,
         avoidance: str = "orca",
+        odometry: Odometry = "map",
         joins: bool = True,
         clock: MissionClock | None = None,
         on_pose: Callable[[str, Any], None] | None = None,
@@ -102,6 +106,9 @@ class Ros1Fleet:
         self._closed = threading.Event()
         self._failure: Exception | None = None  # of the thread that steers
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+        if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=odometry):
+            publish(self._static, TFMessage(frames))
         self._ports: dict[str, Ros1Port] = {}
         self._events: list[Event] = []
         for robot in mission.robots:
@@ -205,6 +212,7 @@ class Ros1Fleet:
         self._newcomers.close()
         self._frame.close()
         self._tf.unregister()
+        self._static.unregister()
 
     def _reached(self, robot: Robot) -> Ros1Port:
         if not NAME.fullmatch(robot.id):

@@ -27,6 +27,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "frame": str,
         "rate_hz": float,
         "avoidance": str,
+        "odometry": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
@@ -35,6 +36,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
+        "local_frame": str,
         "height_m": float,
         "low_battery": float,
         "wait_s": float,
@@ -46,9 +48,11 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
     "pose": ("true", "estimate"),
     "law": ("profile", "thesis"),
+    "odometry": ("map", "start"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
+    "local_frame": ("north", "forward"),
     "at_end": ("hold", "return", "land"),
 }
 """What settings that are words may be; those who understand them take long to import."""
@@ -63,6 +67,7 @@ NOISE = (
     "gyro_radps",
     "gyro_bias_radps",
     "accelerometer_mps2",
+    "camera_delay_s",
 )
 """The kinds of a simulation's noise."""
 _KINDS = {
