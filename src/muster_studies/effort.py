@@ -26,6 +26,8 @@ class Effort:
         few and short runs, to see that everything works.
     tables
         the numbers of the tables to make; all by default.
+    figures
+        the numbers of the figures to draw, or `all`; by default those of the tables.
 
     Raises
     ------
@@ -37,6 +39,7 @@ class Effort:
     iterations: int | None = None
     quick: bool = False
     tables: tuple[str, ...] = ()
+    figures: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.seeds is not None and self.seeds < 1:

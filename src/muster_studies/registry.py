@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
+from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
 from muster_studies.peers import peers_study
 from muster_studies.repetition import OnDone
 from muster_studies.rescue import RESCUE
+from muster_studies.rotors.study import ROTORS
 from muster_studies.rvo import RVO
 from muster_studies.tables import Report
 from muster_studies.thesis_3_3 import THESIS_3_3
@@ -28,7 +30,8 @@ from muster_studies.thesis_6_1 import THESIS_6_1
 class Study(Protocol):
     """A published experiment that can be repeated.
 
-    `tables` are the numbers of its tables, `extras` the optional parts of Muster that it needs.
+    `tables` are the numbers of its tables, `figures` the pictures that it draws, `extras` the optional parts of Muster
+    that it needs.
     """
 
     @property
@@ -41,16 +44,12 @@ class Study(Protocol):
     def tables(self) -> tuple[str, ...]: ...
 
     @property
+    def figures(self) -> tuple[StudyFigure, ...]: ...
+
+    @property
     def extras(self) -> tuple[str, ...]: ...
 
     def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
-
-
-@runtime_checkable
-class Illustrated(Protocol):
-    """A study with pictures of its tables."""
-
-    def draw(self, effort: Effort, folder: Path) -> list[Path]: ...
 
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
@@ -64,6 +63,8 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     RVO,
     RESCUE,
     MARKET_5,
+    LOCALISATION,
+    ROTORS,
     NEGOTIATION,
 )
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.processes import run_cases
 from muster_studies.runs import Case, Sample
 from muster_studies.tables import Report, Table
@@ -75,6 +75,8 @@ class Repetition(Generic[Job, Found]):
         raises what an effort, or a part that is not installed, does not allow.
     remarks
         lines of the legend that depend on the effort and on what was found.
+    figures
+        the pictures that it draws, in order.
     """
 
     name: str
@@ -88,6 +90,7 @@ class Repetition(Generic[Job, Found]):
     always: tuple[str, ...] = ()
     check: Callable[[Effort], None] = _accept
     remarks: Callable[[Effort, Mapping[Job, Found]], tuple[str, ...]] = _no_remarks
+    figures: tuple[StudyFigure, ...] = ()
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -116,23 +119,6 @@ class Repetition(Generic[Job, Found]):
             legend=(*self.legend, *self.remarks(effort, done.found)),
             tables=tuple(table.table(effort, done.found) for table in wanted),
         )
-
-
-@dataclass(frozen=True, kw_only=True)
-class IllustratedRepetition(Repetition[Job, Found]):
-    """One with pictures: `pictures` draws those of some tables into a folder, and returns the files made."""
-
-    pictures: Callable[[Effort, Path, tuple[str, ...]], list[Path]]
-
-    def draw(self, effort: Effort, folder: Path) -> list[Path]:
-        """Draw the pictures of the tables that `effort` names; the files made.
-
-        Raises
-        ------
-        ParameterError
-            if there is no such table.
-        """
-        return self.pictures(effort, folder, effort.wanted(self.tables))
 
 
 def one_by_one(do: Callable[[Job], Found]) -> Performer[Job, Found]:

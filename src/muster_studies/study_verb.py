@@ -18,6 +18,8 @@ from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
+    from muster_studies.effort import Effort
+    from muster_studies.registry import Study
     from muster_studies.tables import Cell, Report, Table
 
 _SHORT_HEADERS = {"iterations": "iter."}  # what is wider than its numbers
@@ -43,7 +45,10 @@ _LEAST_SECONDS = 0.01
     help="Write the tables (.json, .md, or text).",
 )
 @click.option(
-    "--plot", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Draw its pictures into a folder."
+    "--plot", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Draw its figures into a folder."
+)
+@click.option(
+    "--figures", metavar="N,N", help="With --plot: draw only these figures, such as 3.6,A.1, or all; make no tables."
 )
 @quiet_option
 def command(
@@ -57,6 +62,7 @@ def command(
     form: str,
     output: Path | None,
     plot: Path | None,
+    figures: str | None,
     quiet: bool,
     verbose: bool,
 ) -> int:
@@ -65,28 +71,52 @@ def command(
     All own numbers are the judge's. Without NAME the studies are listed.
     """
     from muster_studies.effort import Effort
-    from muster_studies.registry import Illustrated, study_named
+    from muster_studies.registry import study_named
 
     if name is None or list_studies:
         _list(form)
         return DONE
     study = study_named(name)
-    wanted = tuple(number.strip() for number in (tables or "").split(",") if number.strip())
-    effort = Effort(seeds=seeds, iterations=iterations, quick=quick, tables=wanted)
+    effort = Effort(seeds=seeds, iterations=iterations, quick=quick, tables=_numbers(tables), figures=_numbers(figures))
     if output is not None and (output.is_dir() or not output.parent.is_dir()):
         raise ParameterError(f"{output}: cannot be written; expected a file in a folder that exists")
-    if plot is not None and not isinstance(study, Illustrated):
-        raise ParameterError(f"--plot: study {study.name} has no pictures; expected one that has, such as rvo")
-    with _progress_bar(not quiet, study.name) as on_done:
-        report = study.run(effort, workers or os.cpu_count() or 1, on_done)
-    _show(report, form, output)
-    if plot is not None and isinstance(study, Illustrated):
-        plot.mkdir(parents=True, exist_ok=True)
-        for path in study.draw(effort, plot):
-            click.echo(f"drew {path}", err=True)
-    if verbose:
-        click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)
+    _check_figures(study, effort, plot)
+    if not effort.figures:
+        with _progress_bar(not quiet, study.name) as on_done:
+            report = study.run(effort, workers or os.cpu_count() or 1, on_done)
+        _show(report, form, output)
+        if verbose:
+            click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)
+    if plot is not None:
+        _draw(study, effort, plot)
     return DONE
+
+
+def _numbers(given: str | None) -> tuple[str, ...]:
+    return tuple(number.strip() for number in (given or "").split(",") if number.strip())
+
+
+def _check_figures(study: Study, effort: Effort, plot: Path | None) -> None:
+    """Raise what is wrong about figures before the runs, which can take long."""
+    from muster_studies.figures import wanted_figures
+
+    if plot is None:
+        if effort.figures:
+            raise ParameterError(f"--figures {','.join(effort.figures)}: --plot missing; expected --plot DIR beside it")
+        return
+    if not study.figures:
+        raise ParameterError(f"--plot: study {study.name} has no figures; expected one that has, such as rvo")
+    if effort.figures and effort.tables:
+        raise ParameterError("--figures: given with --tables; expected one of them")
+    wanted_figures(study.figures, effort)
+
+
+def _draw(study: Study, effort: Effort, folder: Path) -> None:
+    from muster_studies.figures import draw_figures
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in draw_figures(study.figures, effort, folder):
+        click.echo(f"drew {path}", err=True)
 
 
 def _list(form: str) -> None:
@@ -95,13 +125,23 @@ def _list(form: str) -> None:
     from muster_studies.tables import span
 
     if form == "json":
-        studies = [
-            {"name": s.name, "summary": s.summary, "tables": s.tables, "extras": s.extras} for s in STUDIES.values()
-        ]
-        click.echo(_json(studies))
+        click.echo(_json([_as_dict(study) for study in STUDIES.values()]))
         return
-    rows = [(s.name, s.summary, span(s.tables), ", ".join(s.extras)) for s in STUDIES.values()]
-    print_table(("study", "what it is", "tables", "extras"), rows)
+    rows = [
+        (s.name, s.summary, span(s.tables), str(len(s.figures) or ""), ", ".join(s.extras)) for s in STUDIES.values()
+    ]
+    print_table(("study", "what it is", "tables", "figures", "extras"), rows, right=("figures",))
+
+
+def _as_dict(study: Study) -> dict[str, object]:
+    figures = [{"number": one.number, "source": one.source, "shows": one.shows} for one in study.figures]
+    return {
+        "name": study.name,
+        "summary": study.summary,
+        "tables": study.tables,
+        "figures": figures,
+        "extras": study.extras,
+    }
 
 
 def _show(report: Report, form: str, output: Path | None) -> None:

@@ -12,13 +12,12 @@ from muster.cli import real_robots as real
 from muster.cli.main import run
 from muster.cli.real_robots import RealRunOptions, carried_out, reported
 from muster.mission.interrupts import TO_END, ctrl_c_halts
+from muster.planning.options import PlanningOptions
 from muster.running.live import wait_for_robots
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
-    "ignore": (),
-    "seed": 0,
-    "time_limit": 0.1,
+    "planning": PlanningOptions(time_limit=0.1),
     "require_complete": False,
     "form": "table",
     "quiet": True,

@@ -291,6 +291,16 @@ def test_a_full_disk(muster):
     assert err.startswith("/dev/full: No space left on device")
 
 
+def test_a_plan_is_made_by_the_allocator_that_is_asked_for(muster, eventful):
+    """What is planned is what `solve` has with the same options; searching finds another figure."""
+    asked = ("--allocator", "auction", "--winner", "least-contested", "--objective", "max")
+    planned = json.loads(muster("solve", eventful, *asked, "--format", "json")[1])
+    code, out, err = muster("simulate", eventful, *asked, "--format", "json", "-q")
+    assert (code, err) == (0, "")
+    assert json.loads(out)["objective"]["name"] == "max"
+    assert json.loads(out)["objective"]["planned"] == pytest.approx(planned["objective"]["value"])
+
+
 class TestNegotiate:
     """`--negotiate`: no plan; robots are processes."""
 
@@ -313,8 +323,11 @@ class TestNegotiate:
         [
             (["--negotiate", "--plan", "plan.json"], "--plan given; expected it without --negotiate"),
             (["--negotiate", "--iterations", "3"], "--iterations given; expected it without --negotiate"),
-            (["--bid", "total"], "--bid given; expected it together with --negotiate"),
-            (["--set", "battery_weight=1"], "--set given; expected it together with --negotiate"),
+            (["--negotiate", "--allocator", "greedy"], "--allocator given; expected it without --negotiate"),
+            (["--negotiate", "--set", "hot=1"], "auction has no parameter hot"),
+            (["--method", "auction"], "--method given; expected it together with --negotiate"),
+            (["--bid", "total"], "--bid: search takes none; expected --allocator auction or market"),
+            (["--set", "battery_weight=1"], "search has no parameter battery_weight"),
             (["--negotiate", "--method", "danse"], "method: danse; expected auction or consensus-bundle"),
         ],
     )

@@ -56,6 +56,19 @@ def after_a_failure(mission, **options):
     return executor, out, before
 
 
+def test_greedy_plans_all_that_is_left_afresh():
+    executor, out, _ = after_a_failure(muster.load("31T-6R50"), allocator=greedy.GREEDY, parameters=greedy.Parameters())
+    problem = remaining_problem(asked[-1], travel_of(executor.mission)).problem.ready()
+    beginnings = [problem.beginning(i) for i in range(len(problem.robots))]
+    afresh = greedy.completed(problem, [list(beginning) for beginning in beginnings])
+    names = {
+        robot.id: tuple(problem.tasks[j].id for j in route[len(beginning) :])
+        for robot, route, beginning in zip(problem.robots, afresh, beginnings, strict=True)
+    }
+    assert out not in names
+    assert executor.revisions[-1].routes == names
+
+
 def figures(problem, revision):
     routes = [
         [*problem.beginning(i), *(problem.task_index[name] for name in revision.routes[robot.id])]

@@ -126,7 +126,7 @@ ROBOT_KEYS = {
             "heading_deg": numbers,
             "radius_m": not_negative,
             "kind": st.sampled_from(["ground", "air"]),
-            "kinematics": st.sampled_from(["holonomic", "differential-drive", "quadcopter"]),
+            "kinematics": st.sampled_from(["holonomic", "differential-drive", "quadcopter", "hexacopter"]),
             "yaw_rate_radps": maybe_positive,
             "acceleration_mps2": maybe_positive,
             "avoidance_priority": not_negative,

@@ -16,7 +16,7 @@ from muster.mission.model import (
     Rules,
     Task,
 )
-from muster.mission.thesis_csv import read_csv, write_csv
+from muster.mission.thesis_csv import read_csv, read_csv_for, write_csv
 
 
 def csv_files(folder):
@@ -111,3 +111,19 @@ def test_csv_as_people_write_it(tmp_path):
     assert [task.type for task in mission.tasks] == ["D", "D", None, "D", "D", "D"]
     assert [robot.work_capacity for robot in mission.robots] == [None, None, None, 50]
     assert mission.robots[1].position == (10, 0)
+
+
+@pytest.mark.parametrize(("header", "row", "size"), [("x,y", "1,2", 2), ("x,y,z", "1,2,3", 3)])
+def test_a_task_list_alone_is_for_robots_from_elsewhere(tmp_path, header, row, size):
+    file = tmp_path / "six.csv"
+    file.write_text(f"index,{header},type,actuation_cost,prerequisites\n7,{row},D,4,\n", encoding="utf-8")
+    asked = []
+
+    def robots(dimensions):
+        asked.append(dimensions)
+        return [{"id": "r_0", "position": [0.0] * dimensions}]
+
+    mission = read_csv_for(robots, file)
+    assert asked == [size]
+    assert (mission.name, [task.id for task in mission.tasks]) == ("six", ["7"])
+    assert [robot.id for robot in mission.robots] == ["r_0"]

@@ -6,8 +6,8 @@ import pytest
 
 from muster.mission.errors import ParameterError
 from muster_studies.effort import Effort
-from muster_studies.registry import Illustrated
-from muster_studies.repetition import IllustratedRepetition, Repetition, one_by_one
+from muster_studies.figures import StudyFigure, draw_figures
+from muster_studies.repetition import Repetition, one_by_one
 from muster_studies.tables import Table
 
 
@@ -30,8 +30,7 @@ def squares(**more):
         done.append(number)
         return number**2
 
-    kind = IllustratedRepetition if more else Repetition
-    study = kind(
+    study = Repetition(
         name="squares",
         summary="",
         document="",
@@ -63,8 +62,35 @@ def test_only_what_wanted_tables_need_is_done():
         study.run(Effort(tables=("4",)))
 
 
-def test_pictures_of_wanted_tables(tmp_path):
-    study, _ = squares(pictures=lambda effort, folder, numbers: [folder / number for number in numbers])
-    assert isinstance(study, Illustrated)
-    assert study.draw(Effort(tables=("3", "1")), tmp_path) == [tmp_path / "3", tmp_path / "1"]
-    assert not isinstance(squares()[0], Illustrated)
+def blank(effort):
+    from muster.report.canvas import new_figure
+
+    return new_figure(1.0, 1.0)
+
+
+FIGURES = (
+    StudyFigure(number="4.1", source="market-paper", shows="it", draw=blank, tables=("1",)),
+    StudyFigure(number="A.2", source="market-paper", shows="it", draw=blank, tables=("2", "3")),
+    StudyFigure(number="own", shows="it", draw=blank),
+)
+
+
+@pytest.mark.parametrize(
+    ("effort", "names"),
+    [
+        (Effort(), ["figure-4.1.png", "figure-A.2.png", "own.png"]),
+        (Effort(figures=("all",)), ["figure-4.1.png", "figure-A.2.png", "own.png"]),
+        (Effort(tables=("3", "1")), ["figure-4.1.png", "figure-A.2.png"]),
+        (Effort(figures=("own", "4.1")), ["figure-4.1.png", "own.png"]),
+    ],
+)
+def test_figures_of_an_effort(tmp_path, effort, names):
+    pytest.importorskip("matplotlib")
+    study, _ = squares(figures=FIGURES)
+    assert [path.name for path in draw_figures(study.figures, effort, tmp_path)] == names
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+
+
+def test_a_figure_that_there_is_not(tmp_path):
+    with pytest.raises(ParameterError, match=r"figure: 4.2; expected all or 4.1 or A.2 or own; did you mean"):
+        list(draw_figures(FIGURES, Effort(figures=("4.2",)), tmp_path))

@@ -101,13 +101,35 @@ def test_pictures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert muster(["study", "rvo", "--tables", "A.22", "--seeds", "1", "--plot", str(tmp_path / "new")]) == 0
     made = sorted(path.name for path in (tmp_path / "new").iterdir())
-    assert made == ["A.22-1.png", "A.22-2.png", "A.22-3.png"]
+    assert made == ["figure-A.15.png", "figure-A.16.png", "figure-A.17.png"]
     assert capsys.readouterr().err.count("drew ") == 3
 
 
-def test_a_study_without_pictures(capsys):
-    assert muster(["study", "auction-5", "--plot", "pictures"]) == 2
-    assert "--plot: study auction-5 has no pictures" in capsys.readouterr().err
+def test_a_study_without_figures(capsys):
+    assert muster(["study", "peers", "--plot", "pictures"]) == 2
+    assert "--plot: study peers has no figures" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--figures", "A.4"], "--plot missing"),
+        (["--figures", "A.4", "--tables", "A.17", "--plot", "new"], "given with --tables"),
+        (["--figures", "A.3", "--plot", "new"], "figure: A.3; expected all or A.4 or "),
+    ],
+)
+def test_refuses_figures(capsys, arguments, message):
+    assert muster(["study", "rvo", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert captured.out == ""
+
+
+def test_one_figure_without_tables(tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    assert muster(["study", "rvo", "--figures", "A.8", "--plot", str(tmp_path)]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["figure-A.8.png"]
+    assert capsys.readouterr().out == ""
 
 
 def test_the_scene_of_the_bench():

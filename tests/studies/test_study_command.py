@@ -30,9 +30,13 @@ def test_lists_studies(capsys, arguments):
 
 def test_lists_studies_as_json(capsys):
     assert run(["study", "--format", "json"]) == 0
-    studies = {study["name"]: study["tables"] for study in json.loads(capsys.readouterr().out)}
+    listed = json.loads(capsys.readouterr().out)
+    studies = {study["name"]: study["tables"] for study in listed}
     counts = {"thesis-3.3": 21, "auction-5": 22, "market-rescue": 3}
     assert {name: len(studies[name]) for name in counts} == counts
+    (rvo,) = [study["figures"] for study in listed if study["name"] == "rvo"]
+    assert [figure["number"] for figure in rvo] == [f"A.{k}" for k in (4, 5, 6, 7, 8, 9, 15, 16, 17)]
+    assert {figure["source"] for figure in rvo} == {"tcf-thesis"}
 
 
 @pytest.mark.parametrize(

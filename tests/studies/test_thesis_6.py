@@ -253,7 +253,7 @@ def test_the_command(tmp_path, capsys):
     captured = capsys.readouterr()
     (table,) = json.loads(captured.out)["tables"]
     assert [row["robot"] for row in table["rows"]] == ["r_0", "r_1"]
-    assert [path.name for path in tmp_path.iterdir()] == ["6.9-like-figure-6.14.png"]
+    assert [path.name for path in tmp_path.iterdir()] == ["figure-6.14.png"]
     assert captured.err.count("drew ") == 1
 
 

@@ -69,14 +69,17 @@ class Allocator:
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
         if problem.fixed and not self.keeps_fixed:
             raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search or greedy")
-        routes = _first_routes(problem, start)
-        returned = self.algorithm(problem, stop, seed, params or self.parameters(), routes)
-        if isinstance(returned, Outcome):
-            outcome = returned
-        else:
-            outcome = Outcome(checked_routes(problem, returned, self.name))
-            stop.improved(*problem.value(outcome.routes))
+        outcome = self.outcome(problem, stop, seed, params or self.parameters(), _first_routes(problem, start))
         return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
+
+    def outcome(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Outcome:
+        """What the algorithm arrives at from the routes of `start`; its routes are checked."""
+        returned = self.algorithm(problem, stop, seed, params, start)
+        if isinstance(returned, Outcome):
+            return returned
+        outcome = Outcome(checked_routes(problem, returned, self.name))
+        stop.improved(*problem.value(outcome.routes))
+        return outcome
 
 
 def _first_routes(problem: Problem, start: Plan | None) -> Routes | None:

@@ -1,20 +1,20 @@
 """Steers robots to their way points by velocities, around each other: the thesis' RVO_planner and velocity_publisher.
 
-[tcf-thesis], Table 5.2. Here ORCA chooses the velocity (`motion/avoidance/orca.py`), and the robot's kinematics turn it
-into what it can do within its limits. Robots on the ground give way to each other in the plane; those in the air too,
-in space where the mission is in space; nobody to those of the other kind.
+[tcf-thesis], Table 5.2. A method of `motion/avoidance` chooses the velocity, ORCA by default or the thesis' RVO, and
+the robot's kinematics turn it into what it can do within its limits. Robots on the ground give way to each other in the
+plane; those in the air too, in space where the mission is in space; nobody to those of the other kind.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from muster.mission.model import Robot
-from muster.motion.avoidance import Agents, Orca
+from muster.motion.avoidance import Agents, Hrvo, Method, Orca, Rvo
 from muster.motion.avoidance.orca import Parameters
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
@@ -28,6 +28,13 @@ SETTLES_S = 0.4
 """How fast robots come to their way points at the end: several times the delay from a pose to what is done about it."""
 _STANDS = 1e9
 """Priority of a robot that stands: the others go around it."""
+
+_METHODS: Mapping[str, Method | None] = {
+    "orca": Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0)),
+    "rvo": Rvo(),
+    "hrvo": Hrvo(),
+    "none": None,
+}
 
 Velocity = tuple[float, float, float, float]
 """Ahead, left, up in m/s, and yaw rate in rad/s: of a body."""
@@ -74,13 +81,15 @@ class Steering:
         whether those that fly have heights.
     margin_m
         by which robots are taken for larger.
+    avoidance
+        how they pass each other: orca, rvo or hrvo (in the plane), or none.
     """
 
-    def __init__(self, *, interval_s: float, space: bool, margin_m: float = 0.05) -> None:
+    def __init__(self, *, interval_s: float, space: bool, margin_m: float = 0.05, avoidance: str = "orca") -> None:
         self._interval_s = interval_s
         self._space = space
         self._margin_m = margin_m
-        self._orca = Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0))
+        self._method = _METHODS[avoidance]
         self._before: dict[str, Floats] = {}
 
     def velocities(self, team: Sequence[SteeredRobot]) -> dict[str, Velocity]:
@@ -98,7 +107,7 @@ class Steering:
         self._before.pop(robot, None)
 
     def _chosen(self, crowd: Sequence[SteeredRobot], size: int) -> Floats:
-        """Velocities (n, 3) on which nobody meets anybody.
+        """Velocities (n, 3) on which nobody meets anybody, as far as the method goes.
 
         ORCA starts from what robots would do, not from what they do ([berg2011], section 5.2): the latter
         lags behind, and where a robot alone must give way it would forbid it to brake beside one that is far away.
@@ -117,7 +126,10 @@ class Steering:
             priorities=np.array([steered.robot.avoidance_priority if steered.goes else _STANDS for steered in crowd]),
         )
         chosen = np.zeros((len(crowd), 3))
-        chosen[:, :size] = self._orca.velocities(agents, dt=self._interval_s)
+        if self._method is None:
+            chosen[:, :size] = preferred
+        else:
+            chosen[:, :size] = self._method.velocities(agents, dt=self._interval_s)
         chosen[[not steered.goes for steered in crowd]] = 0.0
         return chosen
 

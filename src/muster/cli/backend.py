@@ -74,6 +74,7 @@ class Backend(Protocol):
         seed: int,
         dt_s: float,
         avoidance: str,
+        law: str,
         noise: Noise,
         speed: float | None,
         record: Path | None,

@@ -183,6 +183,20 @@ def objective_option(verb: Verb) -> Verb:
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
+AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+
+
+def avoidance_option(verb: Verb) -> Verb:
+    """--avoidance."""
+    return click.option(
+        "--avoidance",
+        type=click.Choice(AVOIDANCE),
+        default="orca",
+        show_default=True,
+        help="How robots pass each other.",
+    )(verb)
+
+
 def require_complete_option(verb: Verb) -> Verb:
     """--require-complete."""
     return click.option("--require-complete", is_flag=True, help="Exit with 3 if a task is left out or impossible.")(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
 from functools import wraps
@@ -15,8 +15,11 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
+from muster.mission.model import Mission
+from muster.mission.plan import read_plan
 from muster.mission.value_types import shown
 from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
+from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
@@ -25,19 +28,39 @@ _FILE = click.Path(path_type=Path)
 _PARAMETERS = ("threads", "ray", "bid", "placement", "winner")  # of allocators, with options of their own
 
 
-def planning_options(verb: Verb) -> Verb:
-    """The options of a planning request, as `PlanningOptions`; and the files `start` and `fixed`."""
+def planning_options(*, time_limit_s: float | None = None) -> Callable[[Verb], Verb]:
+    """The options of a planning request, as `PlanningOptions`; and the files `start` and `fixed`.
 
+    Parameters
+    ----------
+    time_limit_s
+        of a verb that plans for less than the usual time unless told otherwise.
+    """
+    return lambda verb: _with_planning_options(verb, time_limit_s)
+
+
+def _with_planning_options(verb: Verb, time_limit_s: float | None) -> Verb:
     @wraps(verb)
     def with_options(*, settings: tuple[str, ...], **given: Any) -> Any:
         named = {name: given.pop(name) for name in _PARAMETERS}
         parameters = settings_of(settings, named)
-        _require_taken(given["allocator"], named)
+        if not given.get("negotiate"):  # then the method of the negotiation takes them
+            _require_taken(given["allocator"], named)
+        if given["iterations"] is None and given["time_limit"] is None:
+            given["time_limit"] = time_limit_s
         names = ("allocator", "objective", "ignore", "seed", "time_limit", "iterations", "bound", "rewire")
         options = PlanningOptions(parameters=parameters, **{name: given.pop(name) for name in names})
         return verb(options=options, **given)
 
-    declared = (
+    decorated: Any = with_options
+    for option in reversed(_declared(time_limit_s)):
+        decorated = option(decorated)
+    return cast("Verb", decorated)
+
+
+def _declared(time_limit_s: float | None) -> tuple[Callable[[Any], Any], ...]:
+    seconds = 5 if time_limit_s is None else time_limit_s
+    return (
         click.option(
             "-a",
             "--allocator",
@@ -61,7 +84,7 @@ def planning_options(verb: Verb) -> Verb:
             "--time-limit",
             type=float,
             metavar="S",
-            help=f"{HELP['time_limit']}  [default: 5, without --iterations]",
+            help=f"{HELP['time_limit']}  [default: {seconds:g}, without --iterations]",
         ),
         click.option("--iterations", type=int, metavar="N", help=HELP["iterations"]),
         click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]"),
@@ -88,10 +111,6 @@ def planning_options(verb: Verb) -> Verb:
         ),
         click.option("--rewire", is_flag=True, help=HELP["rewire"]),
     )
-    decorated: Any = with_options
-    for option in reversed(declared):
-        decorated = option(decorated)
-    return cast("Verb", decorated)
 
 
 def _bound(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
@@ -131,6 +150,12 @@ def _require_taken(allocator: str, named: Mapping[str, Any]) -> None:
         takers = [a.name for a in ALLOCATORS.values() if name in {f.name for f in fields(a.parameters)}]
         if allocator in ALLOCATORS and allocator not in takers:
             raise ParameterError(f"--{name}: {allocator} takes none; expected --allocator {' or '.join(takers)}")
+
+
+def request_of(options: PlanningOptions, mission: Mission, start: Path | None, fixed: Path | None) -> Request:
+    """The request for a mission, with the plans of --start and --fixed."""
+    plans = {name: read_plan(file) for name, file in (("start", start), ("fixed", fixed)) if file is not None}
+    return Request.of(options, mission, **plans)
 
 
 @contextmanager

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
@@ -17,18 +18,19 @@ from muster.cli.options import (
     Finite,
     Verb,
     format_option,
-    ignore_option,
     load_plan,
     quiet_option,
     require_admissible,
     require_complete_option,
 )
 from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.planning_options import planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
+from muster.planning.options import PlanningOptions
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -43,9 +45,9 @@ class RealRunOptions:
     """The values of `real_options`: everything but the mission and the options of the bridge."""
 
     plan: Path | None
-    ignore: tuple[str, ...]
-    seed: int
-    time_limit: float
+    planning: PlanningOptions
+    start: Path | None = None
+    fixed: Path | None = None
     record: Path | None
     html: Path | None
     plot: Path | None
@@ -58,19 +60,17 @@ class RealRunOptions:
 
 
 def real_options(verb: Verb) -> Verb:
-    """The options that become `RealRunOptions`."""
-    options = (
-        click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]"),
-        ignore_option,
-        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of planning."),
-        click.option(
-            "--time-limit",
-            type=click.FloatRange(min=0),
-            default=2.0,
-            show_default=True,
-            metavar="S",
-            help="Seconds of planning.",
-        ),
+    """The options that the verb gets as `RealRunOptions`."""
+    own = [field.name for field in fields(RealRunOptions) if field.name != "planning"]
+
+    @wraps(verb)
+    def with_options(*, options: PlanningOptions, **given: Any) -> Any:
+        asked = RealRunOptions(planning=options, **{name: given.pop(name) for name in own})
+        return verb(options=asked, **given)
+
+    declared = (
+        click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]"),
+        planning_options(time_limit_s=2.0),
         record_option,
         drawing_options,
         foxglove_option,
@@ -78,9 +78,10 @@ def real_options(verb: Verb) -> Verb:
         format_option,
         quiet_option,
     )
-    for option in reversed(options):
-        verb = option(verb)
-    return verb
+    decorated: Any = with_options
+    for option in reversed(declared):
+        decorated = option(decorated)
+    return cast("Verb", decorated)
 
 
 def _namespace(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -119,7 +120,7 @@ def ros_options(verb: Verb) -> Verb:
 def require_outputs(options: RealRunOptions, inputs: tuple[str | Path | None, ...]) -> None:
     """Refuse, before robots move, files that cannot be written or would replace one that is read."""
     files = (options.record, options.html, options.plot, options.gantt)
-    require_writable(None, files, inputs, (options.plan,))
+    require_writable(None, files, inputs, (options.plan, options.start, options.fixed))
     require_drawable(options.plot, options.gantt)
     require_free_port(options.foxglove)
 
@@ -134,16 +135,17 @@ def read_given_plan(options: RealRunOptions, mission: Mission) -> Plan | None:
     """
     if options.plan is None:
         return None
-    plan = load_plan(options.plan, mission, options.ignore, quiet=options.quiet, verbose=options.verbose)
-    require_admissible(mission, plan, options.plan, options.ignore)
+    ignore = options.planning.ignore
+    plan = load_plan(options.plan, mission, ignore, quiet=options.quiet, verbose=options.verbose)
+    require_admissible(mission, plan, options.plan, ignore)
     return plan
 
 
 def planned(options: RealRunOptions, mission: Mission) -> Plan:
-    """A plan made by the default allocator."""
-    from muster import solve
+    """A plan made as the options say."""
+    from muster.planning.solving import answer
 
-    return solve(mission, seed=options.seed, time_limit=options.time_limit, ignore=options.ignore)
+    return answer(request_of(options.planning, mission, options.start, options.fixed)).plan
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
@@ -182,8 +184,9 @@ def carried_out(
                 mission,
                 plan,
                 fleet,
-                seed=options.seed,
-                ignore=options.ignore,
+                seed=options.planning.seed,
+                planning=options.planning,
+                ignore=options.planning.ignore,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if options.quiet else print_event,

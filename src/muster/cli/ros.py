@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.options import Finite, MissionFile, optional_mission_argument, require_none_without_mission
+from muster.cli.options import (
+    Finite,
+    MissionFile,
+    avoidance_option,
+    optional_mission_argument,
+    require_none_without_mission,
+)
 from muster.cli.real_robots import (
     RealRunOptions,
     carried_out,
@@ -21,17 +28,18 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
+from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, read_plan
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node_processes import NodeProcesses
-    from muster.execution import Report
+    from muster.execution import Recorder, Report
 
 _LEFT = "the robots were told to stand"
 
@@ -63,8 +71,18 @@ _LEFT = "the robots were told to stand"
     metavar="HZ",
     help="Rate at which velocities are sent.",
 )
+@avoidance_option
+@click.option(
+    "--odometry",
+    type=click.Choice(["map", "start"]),
+    default="map",
+    show_default=True,
+    help="Odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission.",
+)
+@click.option("--markers", is_flag=True, help="Publish tasks, routes and robots for RViz, on /muster/markers.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
+@target_options
 @ros_options
 @real_options
 def command(
@@ -76,10 +94,14 @@ def command(
     wait_s: float,
     arrival: float,
     rate: float,
+    avoidance: str,
+    odometry: Literal["map", "start"],
+    markers: bool,
     known_only: bool,
     on_start: bool,
     stay: bool,
-    **asked: Any,
+    targets: TargetOptions | None,
+    options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
 
@@ -89,13 +111,15 @@ def command(
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
+    if markers or targets is not None:
+        require_rospy(("sensor_msgs", "visualization_msgs"))
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
-    options = RealRunOptions(**asked)
     if mission is None:
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
+    _require_steering(drive, avoidance)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -108,16 +132,25 @@ def command(
             frame=frame,
             arrival_m=arrival,
             rate_hz=rate,
+            avoidance=avoidance,
+            odometry=odometry,
             joins=not known_only,
         )
 
     become_node("muster", master)
     try:
-        own = ("--seed", str(options.seed), "--time-limit", str(options.time_limit))
+        own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
         node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
-        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
+        work = _Work(fleet_of, given, wait_s, stay, targets is not None, frame if markers else None, options)
+        return _with_nodes(loaded, work, node, master, begins=not on_start)
     finally:
         leave()
+
+
+def _as_data(options: RealRunOptions) -> dict[str, Any]:
+    """The planning options for the node /mission_planner, with the plans of --start and --fixed."""
+    plans = {name: file for name in ("start", "fixed") if (file := getattr(options, name)) is not None}
+    return options.planning.as_dict() | {name: read_plan(file).as_dict() for name, file in plans.items()}
 
 
 def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
@@ -125,6 +158,12 @@ def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
     for name in ("record", "html", "plot", "gantt"):
         if stay and getattr(options, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+
+
+def _require_steering(drive: str, avoidance: str) -> None:
+    """Refuse --avoidance for robots that find their way themselves."""
+    if drive == "goals" and avoidance != "orca":
+        raise ParameterError(f"--avoidance {avoidance} with --drive goals; expected --drive cmd_vel")
 
 
 @dataclass(frozen=True)
@@ -135,6 +174,8 @@ class _Work:
     plan: Plan | None
     wait_s: float
     stay: bool
+    finds_targets: bool
+    marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
 
 
@@ -152,7 +193,7 @@ def _with_nodes(
     """
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
-    from muster.bridges.ros1.node_processes import NodeProcesses
+    from muster.bridges.ros1.node_processes import DUTIES, NodeProcesses
 
     controller = Controller()
     if mission is not None:
@@ -162,7 +203,13 @@ def _with_nodes(
     elif not work.options.quiet:
         click.echo("waits for command_interface/load and start", err=True)
     with ctrl_c_halts(TO_END) as asked:
-        children = NodeProcesses(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        children = NodeProcesses(
+            node,
+            master_address(master),
+            asked_to_end=asked.is_set,
+            on_end=controller.end_all,
+            duties=(*DUTIES, "target_localization") if work.finds_targets else DUTIES,
+        )
         with children:
             code = _one(controller, work, children)
             while work.stay and not controller.ending.is_set():
@@ -211,11 +258,16 @@ def _through(
         if controller.halt.is_set():
             return None
         there = from_here(mission, fleet)
-        plan = work.plan or controller.plan(there, seed=options.seed, time_limit=options.time_limit)
+        plan = work.plan or controller.plan(there, _as_data(options))
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        report = carried_out(there, plan, fleet, options, controller.halt, [controller.mission_topics])
+        observers: list[Recorder] = [controller.mission_topics]
+        if work.marked_in is not None:
+            from muster.bridges.ros1.markers import Markers
+
+            observers.append(Markers(there, work.marked_in))
+        report = carried_out(there, plan, fleet, options, controller.halt, observers)
         return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 import click
 
@@ -58,7 +58,7 @@ def command(
     wait_s: float,
     arrival: float,
     known_only: bool,
-    **asked: Any,
+    options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 2, in real time; robots that it does not name may join.
 
@@ -71,7 +71,6 @@ def command(
     from muster.bridges.ros2.port import Arrival
     from muster.running.live import wait_for_robots
 
-    options = RealRunOptions(**asked)
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)

@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.mission.errors import MusterError
 
+if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.mission.plan import Plan
+
 
 @click.command()
 @click.option("--namespace", default="")
 @click.option("--frame", default="map")
-@click.option("--seed", type=int, default=0)
-@click.option("--time-limit", type=float, default=2.0)
-@click.argument("duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner"]))
-def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float) -> None:
+@click.option("--planning", type=json.loads, default="{}")
+@click.option("--targets", default="")
+@click.argument(
+    "duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner", "target_localization"])
+)
+def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], targets: str) -> None:
     """Run a node until standard input ends."""
     from muster.bridges.discovery import topics_in
     from muster.bridges.ros1.node_lifetime import live
@@ -27,7 +35,7 @@ def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float)
         from muster import load
         from muster.bridges.ros1.command_interface import CommandInterface
 
-        return CommandInterface(load)
+        return CommandInterface(load, topics=topics)
 
     def system_monitor() -> object:
         from muster.bridges.ros1.system_monitor import SystemMonitor
@@ -35,12 +43,28 @@ def command(duty: str, namespace: str, frame: str, seed: int, time_limit: float)
         return SystemMonitor(namespace=namespace, topics=topics, frame=frame)
 
     def mission_planner() -> object:
-        from muster import load, solve
+        from muster import load
         from muster.bridges.ros1.mission_planner import MissionPlanner
+        from muster.planning.request import request_from
+        from muster.planning.solving import answer
 
-        return MissionPlanner(load, solve, topics=topics, seed=seed, time_limit=time_limit)
+        def solve(mission: Mission, options: Mapping[str, Any]) -> Plan:
+            return answer(request_from(mission, options)).plan
 
-    duties: Sequence[Callable[[], object]] = (command_interface, system_monitor, mission_planner)
+        return MissionPlanner(load, solve, topics=topics, options=planning)
+
+    def target_localization() -> object:
+        from muster.bridges.ros1.target_localization import TargetLocalization
+        from muster.cli.ros_targets import targets_from
+
+        return TargetLocalization(topics=topics, frame=frame, settings=targets_from(targets).settings())
+
+    duties: Sequence[Callable[[], object]] = (
+        command_interface,
+        system_monitor,
+        mission_planner,
+        target_localization,
+    )
     live(duty, {do.__name__: do for do in duties}[duty])
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
 
-from muster.cli.auction_options import method_options, terms_of, terms_options
+from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
@@ -18,15 +17,15 @@ from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
     Finite,
     MissionFile,
+    avoidance_option,
     format_option,
-    ignore_option,
     mission_argument,
     quiet_option,
     require_complete_option,
     say_of_plan,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
-from muster.cli.planning_options import ctrl_c_interrupts
+from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.client.server_plan import ServerPlan
@@ -44,10 +43,14 @@ if TYPE_CHECKING:
     from muster.simulation import Noise
 
 _FILE = click.Path(path_type=Path)
-_OF_A_PLAN = ("plan", "ignore", "time_limit", "iterations")
-_OF_A_NEGOTIATION = ("method", "transport", "bid", "placement", "winner", "settings")
+_OF_A_PLAN = (
+    *("plan", "ignore", "time_limit", "iterations", "allocator", "objective", "threads", "ray"),
+    *("bound", "start", "fixed", "rewire"),
+)
+_OF_A_NEGOTIATION = ("method", "transport")
 _IN_THIS_PROCESS = (
     *_OF_A_NEGOTIATION,
+    "ray",
     "negotiate",
     "found",
     "cameras",
@@ -56,7 +59,7 @@ _IN_THIS_PROCESS = (
     "still",
     "foxglove",
 )
-_AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -70,8 +73,8 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 
 @click.command()
 @mission_argument
-@click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that search makes]")
-@ignore_option
+@click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]")
+@planning_options(time_limit_s=2.0)
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
 @click.option(
     "--world",
@@ -81,21 +84,8 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="WORLD",
     help="kinematic, physics, or a world of an installed package.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all random choices.")
-@click.option(
-    "--time-limit",
-    type=click.FloatRange(min=0),
-    default=2.0,
-    show_default=True,
-    metavar="S",
-    help="Seconds of planning.",
-)
-@click.option(
-    "--iterations", type=click.IntRange(min=0), metavar="N", help="Iterations of planning, instead of the time limit."
-)
-@click.option(
-    "--avoidance", type=click.Choice(_AVOIDANCE), default="orca", show_default=True, help="How robots pass each other."
-)
+@avoidance_option
+@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",
@@ -123,7 +113,6 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
 @foxglove_option
 @method_options
-@terms_options
 @require_complete_option
 @format_option
 @quiet_option
@@ -132,13 +121,13 @@ def command(
     backend: Backend,
     mission: MissionFile,
     plan: Path | None,
-    ignore: tuple[str, ...],
+    options: PlanningOptions,
+    start: Path | None,
+    fixed: Path | None,
     negotiate: bool,
     world: World,
-    seed: int,
-    time_limit: float,
-    iterations: int | None,
     avoidance: str,
+    law: str,
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
@@ -153,13 +142,11 @@ def command(
     still: Path | None,
     method: str,
     transport: str,
-    settings: tuple[str, ...],
     foxglove: int | None,
     require_complete: bool,
     form: str,
     quiet: bool,
     verbose: bool,
-    **others: Any,
 ) -> int:
     """Carry out a plan of a MISSION in a simulated world, in virtual time, and report its cost.
 
@@ -169,7 +156,7 @@ def command(
     each decides for itself what to do next. They exchange messages in real time.
     """
     _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan,))
+    require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan, start, fixed))
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise = noise_of(noises)
@@ -178,25 +165,24 @@ def command(
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
     if negotiate:
-        planned, speed = _negotiation(method, transport, others, settings), speed or 1.0
+        planned, speed = _negotiation(method, transport, options), speed or 1.0
     elif plan is not None:
         planned = read_plan(plan)
-        say_of_plan(planned, plan, loaded, ignore, quiet=quiet, verbose=verbose)
-        planned = _judged(loaded, planned, plan, ignore, quiet=quiet)
+        say_of_plan(planned, plan, loaded, options.ignore, quiet=quiet, verbose=verbose)
+        planned = _judged(loaded, planned, plan, options.ignore, quiet=quiet)
     else:
-        limit = None if iterations is not None else time_limit
-        options = PlanningOptions(seed=seed, time_limit=limit, iterations=iterations, ignore=ignore)
-        planned = _plan(backend, Request.of(options, loaded), quiet=quiet)
+        planned = _plan(backend, request_of(options, loaded, start, fixed), quiet=quiet)
     footage = footage_of(loaded) if film is not None or still is not None else None
-    rules = {} if negotiate else {"ignore": ignore}
+    rules = {} if negotiate else {"ignore": options.ignore, "planning": options}
     with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:
         report, interrupted_s = backend.simulate(
             loaded,
             planned,
             world=world,
-            seed=seed,
+            seed=options.seed,
             dt_s=dt,
             avoidance=avoidance,
+            law=law,
             noise=noise,
             speed=speed,
             record=file,
@@ -247,11 +233,12 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     return CameraPictures(cameras)
 
 
-def _negotiation(method: str, transport: str, others: Mapping[str, Any], settings: tuple[str, ...]) -> Negotiation:
+def _negotiation(method: str, transport: str, options: PlanningOptions) -> Negotiation:
     from muster import Negotiation
+    from muster.allocation.allocator import make_parameters
     from muster.negotiation.methods import method_named
 
-    terms = terms_of(method_named(method), others, settings)
+    terms = make_parameters(method_named(method).allocator, dict(options.parameters))
     return Negotiation(method=method, transport=transport, params=terms)
 
 
@@ -267,7 +254,7 @@ def _judged(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...], *
 
 
 def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
-    """A plan of the default allocator.
+    """A plan as requested.
 
     Raises
     ------

@@ -18,12 +18,10 @@ from muster.cli.options import (
     require_complete_option,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.planning_options import ctrl_c_interrupts, planning_options
+from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
-from muster.mission.plan import read_plan
 from muster.planning.options import PlanningOptions
-from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.planning.solving import Solution
@@ -33,7 +31,7 @@ _FILE = click.Path(path_type=Path)
 
 @click.command()
 @mission_argument
-@planning_options
+@planning_options()
 @require_complete_option
 @format_option
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
@@ -71,8 +69,7 @@ def command(
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
     loaded = mission.load(verbose=verbose)
-    plans = {name: read_plan(file) for name, file in (("start", start), ("fixed", fixed)) if file is not None}
-    request, interrupt = Request.of(options, loaded, **plans), Stop()
+    request, interrupt = request_of(options, loaded, start, fixed), Stop()
     with ctrl_c_interrupts(interrupt):
         with progress_bar(not quiet, loaded) as on_progress:
             solution = backend.plan(request, on_progress, interrupt)

@@ -21,7 +21,7 @@ from muster.mission.errors import Finding, MissionError, MusterError, NetworkErr
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.planning.options import OPTIONS
+from muster.planning.options import OPTIONS, PlanningOptions
 from muster.planning.request import Request
 
 if TYPE_CHECKING:
@@ -105,16 +105,21 @@ class ServerBackend:
         seed: int,
         dt_s: float,
         avoidance: str,
+        law: str,
         noise: Noise,
         speed: float | None,
         record: Path | None,
         on_line: Callable[[float, str], None] | None,
         ignore: Sequence[str] = (),
+        planning: PlanningOptions | None = None,
         **in_this_process: Any,
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
-        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "ignore": list(ignore)}
+        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "law": law}
+        settings["ignore"] = list(ignore)
+        if planning is not None and (replanning := _replanning(planning)):
+            settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:
             settings["noise"] = amounts
         kept = plan if isinstance(plan, ServerPlan) else self._kept_plan(mission, plan)
@@ -136,6 +141,12 @@ class ServerBackend:
         entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
+
+
+def _replanning(planning: PlanningOptions) -> dict[str, Any]:
+    """The options that bear on planning again while a plan is carried out, where they are not the defaults."""
+    usual, asked = PlanningOptions().as_dict(), planning.as_dict()
+    return {name: asked[name] for name in ("allocator", "parameters", "rewire") if asked[name] != usual[name]}
 
 
 def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say) -> ServerPlan:

@@ -549,8 +549,10 @@ class CrowdWorld:
         Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.
         """
 
-    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int) -> int:
-        """Returns the number of the robot, from 0."""
+    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
+        """
+        Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by (4.12).
+        """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
@@ -563,6 +565,11 @@ class CrowdWorld:
 
     def slow(self, robot: int, factor: float) -> None: ...
 
+    def believe(self, robot: int, place: Sequence[float], heading: float, spread: float) -> None:
+        """
+        Where a robot takes itself to be now, within a standard deviation in metres: it goes by that.
+        """
+
     def advance(self, until: float) -> list[tuple[float, int, int, int, bool]]:
         """
         Steps until a time, or until something happened: time, robot, order, way points passed, whether all.
@@ -573,9 +580,9 @@ class CrowdWorld:
         What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed ahead of one that faces its way, yaw rate.
         """
 
-    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], counted: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
+    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], counted: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
         """
-        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; the metres that their wheels counted, NaN without wheels; slower than `still` is standing. Returns events as `advance`.
+        Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; (n, 2) metres and radians that their wheels counted, NaN without wheels; slower than `still` is standing. Returns events as `advance`.
         """
 
     @property
@@ -603,6 +610,11 @@ class CrowdWorld:
     def felt(self, robot: int) -> tuple[tuple[float, float, float], float]:
         """
         Acceleration ahead, to the left and up, between the middles of the last two steps; yaw rate of the last.
+        """
+
+    def counted(self, robot: int) -> tuple[float, float, float, float]:
+        """
+        Metres ahead, to the left and up, and radians, that odometry counted in the last step.
         """
 
     def busy(self, robot: int) -> bool: ...

@@ -25,7 +25,7 @@ using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::devi
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
 using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
-using Metres = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Counts = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Slabs = std::vector<std::tuple<std::vector<std::array<double, 2>>, double, double>>;
 
 Avoidance avoidance_named(const std::string& name) {
@@ -34,6 +34,12 @@ Avoidance avoidance_named(const std::string& name) {
   if (name == "rvo") return Avoidance::rvo;
   if (name == "hrvo") return Avoidance::hrvo;
   throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
+}
+
+Law law_named(const std::string& name) {
+  if (name == "profile") return Law::profile;
+  if (name == "thesis") return Law::thesis;
+  throw std::invalid_argument("law must be profile or thesis");
 }
 
 WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
@@ -65,7 +71,7 @@ std::vector<Event> told(const std::vector<CrowdEvent>& found) {
   return events;
 }
 
-std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, const Metres& counted,
+std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, const Counts& counted,
                                double still) {
   const std::size_t n = world.robots().size();
   if (poses.shape(0) != n || lags.shape(0) != n || counted.shape(0) != n)
@@ -73,7 +79,8 @@ std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Pose
   std::vector<Carried> after;
   for (std::size_t i = 0; i < poses.shape(0); ++i) {
     const double *p = poses.data() + 4 * i, *l = lags.data() + 4 * i;
-    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3], counted.data()[i]});
+    after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3], counted.data()[2 * i],
+                     counted.data()[2 * i + 1]});
   }
   return told(world.carried_out(after, still));
 }
@@ -109,12 +116,16 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
       .def(
           "add",
           [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,
-             double acceleration, double priority, bool faces_its_way, bool flies, int walls) {
-            return w.add({radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls}, {position},
-                         heading);
+             double acceleration, double priority, bool faces_its_way, bool flies, int walls, const std::string& law,
+             double climb) {
+            return w.add(
+                {radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls, law_named(law), climb},
+                {position}, heading);
           },
           "position"_a, "heading"_a, nb::kw_only(), "radius"_a, "speed"_a, "yaw_rate"_a, "acceleration"_a, "priority"_a,
-          "faces_its_way"_a, "flies"_a, "walls"_a, "Returns the number of the robot, from 0.")
+          "faces_its_way"_a, "flies"_a, "walls"_a, "law"_a = "profile", "climb"_a = 0.0,
+          "Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by "
+          "(4.12).")
       .def(
           "send",
           [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {
@@ -124,7 +135,14 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.")
       .def("fail", &CrowdWorld::fail, "robot"_a)
       .def("recover", &CrowdWorld::recover, "robot"_a)
-      .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a);
+      .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a)
+      .def(
+          "believe",
+          [](CrowdWorld& w, int robot, Place place, double heading, double spread) {
+            w.believe(robot, {place}, heading, spread);
+          },
+          "robot"_a, "place"_a, "heading"_a, "spread"_a,
+          "Where a robot takes itself to be now, within a standard deviation in metres: it goes by that.");
 }
 
 }  // namespace
@@ -161,7 +179,8 @@ void bind_crowd_world(nb::module_& m) {
            "ahead of one that faces its way, yaw rate.")
       .def("carried_out", &carried_out, "poses"_a, "lags"_a, "counted"_a, "still"_a,
            "Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they "
-           "told to stand; the metres that their wheels counted, NaN without wheels; slower than `still` is standing. "
+           "told to stand; (n, 2) metres and radians that their wheels counted, NaN without wheels; slower than "
+           "`still` is standing. "
            "Returns events as `advance`.")
       .def_prop_ro("time", &CrowdWorld::time)
       .def_prop_ro("dt", &CrowdWorld::dt)
@@ -195,6 +214,13 @@ void bind_crowd_world(nb::module_& m) {
           },
           "robot"_a,
           "Acceleration ahead, to the left and up, between the middles of the last two steps; yaw rate of the last.")
+      .def(
+          "counted",
+          [](const CrowdWorld& w, int robot) {
+            const Counted counted = w.counted(robot);
+            return std::tuple(counted.way[0], counted.way[1], counted.way[2], counted.turn);
+          },
+          "robot"_a, "Metres ahead, to the left and up, and radians, that odometry counted in the last step.")
       .def(
           "busy", [](const CrowdWorld& w, int robot) { return w.robots()[robot].phase != Phase::idle; }, "robot"_a)
       .def("positions",

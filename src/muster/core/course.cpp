@@ -6,8 +6,29 @@ namespace muster {
 
 namespace {
 
-constexpr double kExact = 1e-3;     // metres: nearer than this is there
 constexpr double kRounding = 1e-9;  // metres
+constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
+constexpr double kClimbs = 0.5;     // seconds: the constant interval of (4.12)
+
+// The way between two places; over ground alone where the robot climbs by a law of its own.
+Vec<3> leg(const CrowdRobot& robot, const Vec<3>& from, const Vec<3>& to) {
+  Vec<3> way = to - from;
+  if (robot.body.climb > 0.0) way[2] = 0.0;
+  return way;
+}
+
+// (4.12): the climb towards the height of the next way point.
+double climb(const CrowdRobot& robot, double dt) {
+  const double off = robot.way[robot.next].at[2] - robot.position[2], most = robot.body.climb * robot.slowed;
+  return std::clamp(off / std::max(kClimbs, dt), -most, most);
+}
+
+// Whether a robot that climbs by a law of its own has to wait at way point k for its height.
+bool waits_for_height(const CrowdRobot& robot, std::size_t k) {
+  if (robot.body.climb == 0.0) return false;
+  const double from = k == robot.next ? robot.position[2] : robot.way[k - 1].at[2];
+  return std::abs(robot.way[k].at[2] - from) > robot.exact;
+}
 
 // The speed with which a robot that comes from a place may go past way point k.
 double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, const Tolerances& tolerances,
@@ -15,8 +36,8 @@ double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, 
   const auto& way = robot.way;
   const auto on = std::find_if(way.begin() + static_cast<std::ptrdiff_t>(k), way.end(),
                                [&](const Waypoint& point) { return !(point.at == way[k].at); });
-  if (way[k].stops() || on == way.end()) return 0.0;
-  const Vec<3> in = way[k].at - from, out = on->at - way[k].at;
+  if (way[k].stops() || on == way.end() || waits_for_height(robot, k)) return 0.0;
+  const Vec<3> in = leg(robot, from, way[k].at), out = leg(robot, way[k].at, on->at);
   const double lengths = norm(in) * norm(out);
   if (lengths == 0.0) return robot.top_speed();
   const double turn = std::acos(std::clamp(dot(in, out) / lengths, -1.0, 1.0));
@@ -33,7 +54,7 @@ double speed_along(const CrowdRobot& robot, const Tolerances& tolerances, double
   double most = top, ahead = 0.0;
   Vec<3> from = robot.position;
   for (std::size_t k = robot.next; k < robot.way.size() && ahead < longest; ++k) {
-    ahead += norm(robot.way[k].at - from);
+    ahead += norm(leg(robot, from, robot.way[k].at));
     most = std::min(most, braking.speed(ahead + braking.distance(corner_speed(robot, from, k, tolerances, dt))));
     from = robot.way[k].at;
   }
@@ -47,17 +68,20 @@ Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, doubl
   Vec<3> from = robot.position;
   for (std::size_t k = robot.next; k < robot.way.size(); ++k) {
     const Vec<3>& at = robot.way[k].at;
-    const double leg = norm(at - from);
-    if (left < leg - kRounding) {
-      from = from + (left / leg) * (at - from);
+    const Vec<3> way = leg(robot, from, at);
+    const double length = norm(way);
+    if (left < length - kRounding) {
+      from = from + (left / length) * way;
       break;
     }
     const double past = corner_speed(robot, from, k, tolerances, dt);
     from = at;
-    left -= leg;
+    left -= length;
     if (past == 0.0) break;
   }
-  return (1.0 / dt) * (from - robot.position);
+  Vec<3> velocity = (1.0 / dt) * (from - robot.position);
+  if (robot.body.climb > 0.0) velocity[2] = climb(robot, dt);
+  return velocity;
 }
 
 Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to) {
@@ -73,18 +97,20 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
   return away > 0.0 ? (std::min(speed, robot.top_speed()) / away) * way : Vec<3>{};
 }
 
-bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt) {
+bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
+  // What stands in its way may stand there because it is not where it takes itself to be.
+  if (robot.turned_aside) tolerances.arrival += kSure * robot.belief.spread;
   const double away = norm(point.at - robot.position);
   const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
   if (point.stops() || robot.next + 1 == robot.way.size()) {
     const Braking braking{dt, robot.body.acceleration};
     if (norm(robot.lag) > tolerances.arrival) return false;
     if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
-    return away <= (no_nearer ? tolerances.arrival : kExact);
+    return away <= (no_nearer ? tolerances.arrival : robot.exact);
   }
   const double past = corner_speed(robot, before, robot.next, tolerances, dt);
-  if (away <= kExact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
+  if (away <= robot.exact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
   if (missed <= tolerances.corner + kRounding && past > 0.0) return true;
   const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);

@@ -21,6 +21,6 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt);
 Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to);
 
 // Whether the next way point is passed by the step that began at `before`.
-bool passes(const CrowdRobot& robot, const Vec<3>& before, const Tolerances& tolerances, double dt);
+bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt);
 
 }  // namespace muster

@@ -91,7 +91,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
     agents.velocities.push_back(in_dimensions<D>(robot.velocity));
     agents.preferred.push_back(in_dimensions<D>(wanted_[group[k]]));
     agents.radii.push_back(body.radius * (body.faces_its_way ? 1.0 + settings_.margin : 1.0));
-    agents.max_speeds.push_back(robot.top_speed());
+    agents.max_speeds.push_back(D == 3 ? std::hypot(robot.top_speed(), robot.slowed * body.climb) : robot.top_speed());
     agents.priorities.push_back(chooses ? body.priority : kFirm);
     if constexpr (D == 2)
       walls[k] = robot.near_walls;

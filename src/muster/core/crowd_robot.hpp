@@ -13,12 +13,20 @@
 namespace muster {
 
 constexpr double kNever = -1.0;  // a time before all others
+constexpr double kNoWheels = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTrack = 0.287 / 0.3;  // between the wheels, in radii: the Wafflebot's at its inflated radius
+constexpr double kNominalRadius = 0.3;  // in place of one of 0
+
+// How a robot comes to its velocity: profiles of speed and turns on the spot, or the control laws of [tcf-thesis].
+enum class Law { profile, thesis };
 
 struct Body {
   double radius, speed, yaw_rate, acceleration, priority;
   bool faces_its_way;  // drives only where it looks
   bool flies;
   int walls;  // which set of walls stops it
+  Law law = Law::profile;
+  double climb = 0.0;  // above 0: it climbs at up to this speed, whatever its speed over ground, by (4.12)
 };
 
 struct Waypoint {
@@ -31,6 +39,24 @@ struct Waypoint {
 };
 
 enum class Phase { idle, going, turning, holding };
+
+// How the place and heading that a robot takes for its own differ from the true ones. What it was told is in the map as
+// it believes it to be: `true_of` gives the place to which that leads it.
+struct Belief {
+  Vec<3> place, believed;
+  double turn = 0.0;    // the true heading less the believed one
+  double spread = 0.0;  // metres by which it knows that it may be off: one standard deviation
+
+  bool exact() const { return turn == 0.0 && place == believed; }
+  Waypoint true_of(const Waypoint& told) const;
+};
+
+// What odometry counted in the last step: metres ahead, to the left and up in axes that are level, and amid its turn;
+// and radians of that turn. Nothing in it depends on the true heading.
+struct Counted {
+  Vec<3> way;
+  double turn;
+};
 
 struct CrowdRobot;
 
@@ -74,12 +100,17 @@ struct CrowdRobot {
   int order = 0;
   Phase phase = Phase::idle;
   double hold_until = 0.0;
+  std::vector<Waypoint> told;  // the order as it came; `way` is where it leads, by `belief`
+  Belief belief;
   double slowed = 1.0;
+  double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
-  double counts = 1.0;  // metres by which odometry goes on for a metre of way, in this step
+  double counts = 1.0;                              // metres by which odometry goes on for a metre of way, in this step
+  double turn_counts = 1.0, turns_per_metre = 0.0;  // the same of a turn; and radians that it counts for a metre of way
+  double wheel_way = kNoWheels, wheel_turn = kNoWheels;  // by encoders, in this step
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
   Patience patience;
@@ -91,7 +122,7 @@ struct CrowdRobot {
   std::vector<Vec<3>> aside;    // places by which it makes room or comes back; the last is where it stays
   Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
 
-  Random noise{0}, whims{0};  // what the world does to it, and the tilts that it tries
+  Random noise{0}, whims{0}, wheels{0};  // what the world does to it, the tilts that it tries, what its wheels do
   std::vector<Upright> near_faces;
   std::vector<Segment> near_walls;  // the same as avoidance in the plane knows them
   Vec<3> looked_at;                 // where it was when they were collected
@@ -99,6 +130,7 @@ struct CrowdRobot {
   Vec<3> place() const { return position - lag; }
   double facing() const;  // its body's heading
   double top_speed() const { return body.speed * slowed; }
+  double half_track() const { return 0.5 * kTrack * (body.radius > 0.0 ? body.radius : kNominalRadius); }
   bool under_way() const { return velocity != Vec<3>{}; }
   // It has nothing to do that could not be done elsewhere as well.
   bool has_time() const { return !failed && body.radius > 0.0 && (phase == Phase::idle || waits); }
@@ -117,6 +149,14 @@ struct CrowdRobot {
 };
 
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }
+
+inline Waypoint Belief::true_of(const Waypoint& told) const {
+  if (exact()) return told;
+  const Vec<3> off = told.at - believed;
+  const double c = std::cos(turn), s = std::sin(turn);
+  const Vec<3> at = place + Vec<3>{{c * off[0] - s * off[1], s * off[0] + c * off[1], off[2]}};
+  return {at, told.heading + turn, told.hold, told.labelled};
+}
 
 inline double CrowdRobot::facing() const { return wrapped(heading - turn_lag); }
 

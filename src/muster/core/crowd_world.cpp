@@ -9,8 +9,9 @@ namespace muster {
 namespace {
 
 constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
-constexpr double kExact = 1e-3;    // metres from its post at which a robot is back
+constexpr double kTurned = 0.01;   // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
 constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
+constexpr std::uint64_t kWheels = 0x5eed0fc0de0d0e7cULL;  // what wheels do by themselves is drawn apart from the rest
 
 double normal(Random& random) {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
@@ -34,9 +35,11 @@ int CrowdWorld::add(const Body& body, const Vec<3>& position, double heading) {
   robot.body = body;
   robot.position = robot.post = position;
   robot.heading = wrapped(heading);
+  if (body.law == Law::thesis) robot.exact = settings_.tolerances.arrival;
   const std::uint64_t seed = settings_.seed * 0x9e3779b97f4a7c15ULL + 2 * robots_.size();
   robot.noise = Random(seed);
   robot.whims = Random(seed + 1);
+  robot.wheels = Random(seed ^ kWheels);
   collect_walls(robot);
   robots_.push_back(std::move(robot));
   return static_cast<int>(robots_.size()) - 1;
@@ -45,7 +48,9 @@ int CrowdWorld::add(const Body& body, const Vec<3>& position, double heading) {
 void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   CrowdRobot& robot = robots_[i];
   if (robot.failed) return;
-  robot.way = std::move(way);
+  robot.told = std::move(way);
+  robot.way.clear();
+  for (const Waypoint& point : robot.told) robot.way.push_back(robot.belief.true_of(point));
   robot.order = order;
   robot.next = 0;
   robot.phase = robot.way.empty() ? Phase::idle : Phase::going;
@@ -56,6 +61,12 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.waits = false;
   robot.asked_until = kNever;
   robot.aside.clear();
+}
+
+void CrowdWorld::believe(int i, const Vec<3>& place, double heading, double spread) {
+  CrowdRobot& robot = robots_[i];
+  robot.belief = {robot.place(), place, wrapped(robot.facing() - heading), spread};
+  for (std::size_t k = robot.next; k < robot.way.size(); ++k) robot.way[k] = robot.belief.true_of(robot.told[k]);
 }
 
 void CrowdWorld::fail(int i) {
@@ -102,6 +113,8 @@ std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Carried>& afte
     if (norm(robot.velocity) < still) robot.velocity = {};
     const double metres = norm(robot.velocity) * settings_.dt;
     count(robot, metres, std::isnan(after[i].counted) ? metres : after[i].counted);
+    robot.wheel_way = after[i].counted;
+    robot.wheel_turn = after[i].turn_counted;
   }
   events_.clear();
   conclude(AgentTree<3>(before_));
@@ -125,6 +138,22 @@ Felt CrowdWorld::felt(int i) const {
   const Vec<3> change = (1.0 / settings_.dt) * (robot.velocity - robot.velocity_before);
   const double c = std::cos(facing), s = std::sin(facing);
   return {{{c * change[0] + s * change[1], c * change[1] - s * change[0], change[2]}}, turned / settings_.dt};
+}
+
+Counted CrowdWorld::counted(int i) const {
+  const CrowdRobot& robot = robots_[i];
+  if (steps_ == 0) return {{}, 0.0};
+  const double turned = wrapped(robot.facing() - robot.heading_before), amid = robot.heading_before + turned / 2.0;
+  const Vec<3> went = settings_.dt * robot.velocity;
+  const double c = std::cos(amid), s = std::sin(amid);
+  double ahead = c * went[0] + s * went[1], left = c * went[1] - s * went[0];
+  if (robot.body.faces_its_way) {
+    ahead = std::isnan(robot.wheel_way) ? ahead : std::copysign(robot.wheel_way, ahead);
+    left = 0.0;
+  }
+  const double turn = std::isnan(robot.wheel_turn) ? turned : robot.wheel_turn;
+  const double turn_counted = robot.turn_counts * turn + robot.turns_per_metre * std::hypot(ahead, left);
+  return {robot.counts * Vec<3>{{ahead, left, went[2]}}, turn_counted};
 }
 
 void CrowdWorld::decide(const AgentTree<3>& tree) {
@@ -197,6 +226,7 @@ void CrowdWorld::disturb(CrowdRobot& robot) const {
   const CrowdNoise& noise = settings_.noise;
   robot.velocity = robot.commanded;
   robot.counts = 1.0;
+  if (noise.slip > 0.0 || noise.odometry > 0.0) slip_apart(robot);
   if (robot.commanded == Vec<3>{}) return;
   if (noise.velocity > 0.0)
     robot.velocity = std::max(0.0, 1.0 - std::abs(noise.velocity * normal(robot.noise))) * robot.velocity;
@@ -206,6 +236,18 @@ void CrowdWorld::disturb(CrowdRobot& robot) const {
     robot.velocity = kept * robot.velocity;
     robot.counts /= kept;
   }
+}
+
+// Each wheel slips and errs by itself, so that odometry errs about the heading, too. One without wheels errs alike.
+void CrowdWorld::slip_apart(CrowdRobot& robot) const {
+  const CrowdNoise& noise = settings_.noise;
+  double more[2];
+  for (double& of_wheel : more) {
+    of_wheel = 1.0 / (1.0 - noise.slip * robot.wheels.uniform()) - 1.0;
+    of_wheel += noise.odometry * normal(robot.wheels);
+  }
+  robot.turn_counts = 1.0 + 0.5 * (more[0] + more[1]);
+  robot.turns_per_metre = 0.5 * (more[1] - more[0]) / robot.half_track();
 }
 
 void CrowdWorld::move(CrowdRobot& robot) const {
@@ -235,8 +277,9 @@ void CrowdWorld::take_note(int i) {
   }
   if (robot.phase == Phase::turning) {
     const Waypoint& point = robot.way[robot.next];
-    if (!std::isnan(point.heading) && std::abs(wrapped(point.heading - robot.heading)) > settings_.tolerances.heading)
-      return;
+    const double turned = robot.body.law == Law::thesis ? kTurned : 0.0;
+    const double off = std::isnan(point.heading) ? 0.0 : wrapped(point.heading - robot.heading);
+    if (std::abs(off) > std::max(turned, settings_.tolerances.heading)) return;
     robot.phase = Phase::holding;
     robot.hold_until = time() + point.hold;
   }
@@ -248,7 +291,7 @@ void CrowdWorld::settle(int i) {
   CrowdRobot& robot = robots_[i];
   const double away = norm(robot.post - robot.position);
   const bool no_nearer = robot.turned_aside || away >= norm(robot.post - before_[i]);
-  const bool back = away <= (no_nearer ? settings_.tolerances.arrival : kExact);
+  const bool back = away <= (no_nearer ? settings_.tolerances.arrival : robot.exact);
   if (robot.is_away(time())) robot.patience.note(robot, settings_.dt);
   if ((back && robot.asked_until < time()) || robot.failed || robot.stopping) robot.post = robot.position;
   if (robot.commanded == Vec<3>{}) robot.stopping = false;

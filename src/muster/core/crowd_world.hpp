@@ -59,11 +59,11 @@ struct Command {
   double yaw_rate;
 };
 
-// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now; and the metres that
-// its wheels counted in the step, NaN of one without wheels.
+// Where a robot's body is, and by how much it would go on and turn on, were it told to stand now; and the metres and
+// radians that its wheels counted in the step, NaN of one without wheels.
 struct Carried {
   Vec<3> place, lag;
-  double heading, turn_lag, counted;
+  double heading, turn_lag, counted, turn_counted;
 };
 
 // What an inertial unit feels: means between the middles of the last two steps, and over the last one. The axes are
@@ -84,6 +84,10 @@ class CrowdWorld {
   void fail(int i);
   void recover(int i) { robots_[i].failed = false; }
   void slow(int i, double factor) { robots_[i].slowed = factor; }
+  // Where a robot takes itself to be at the end of the last step, and within which spread (metres, one standard
+  // deviation). It goes where its way points are by that, until it is told anew. Others, walls and work at a place it
+  // perceives from where it is.
+  void believe(int i, const Vec<3>& place, double heading, double spread);
 
   // Steps until a time, or until the end of the first step in which something happened.
   std::vector<CrowdEvent> advance(double until);
@@ -94,6 +98,7 @@ class CrowdWorld {
   std::vector<CrowdEvent> carried_out(const std::vector<Carried>& after, double still);
 
   Felt felt(int i) const;
+  Counted counted(int i) const;
 
   double time() const { return settings_.dt * static_cast<double>(steps_); }
   double dt() const { return settings_.dt; }
@@ -114,6 +119,7 @@ class CrowdWorld {
   void steer();
   void yield(const AgentTree<3>& tree);
   void disturb(CrowdRobot& robot) const;
+  void slip_apart(CrowdRobot& robot) const;
   void move(CrowdRobot& robot) const;
   void measure(const AgentTree<3>& tree);
   void measure(int i, int k);

@@ -15,7 +15,6 @@ constexpr double kCrumbs = 0.05;   // metres
 constexpr double kAskedFor = 3.0;  // seconds
 constexpr double kLooks = 0.5;     // seconds between two looks for room
 constexpr double kYields = 5.0;    // seconds for which one waits for another to make room
-constexpr double kThere = 1e-3;    // metres
 constexpr double kPi = 3.14159265358979323846;
 
 // Turned to the left about the vertical; what goes straight up or down leans towards x.
@@ -180,7 +179,7 @@ void Manners::come_back(int i) const {
 // The velocity to the first of the places by which it makes room.
 Vec<3> Manners::course_aside(CrowdRobot& robot) const {
   auto& aside = robot.aside;
-  while (!aside.empty() && norm(aside.front() - robot.position) <= (aside.size() > 1 ? kCrumbs : kThere))
+  while (!aside.empty() && norm(aside.front() - robot.position) <= (aside.size() > 1 ? kCrumbs : robot.exact))
     aside.erase(aside.begin());
   return aside.empty() ? Vec<3>{} : straight_to(robot, aside.front(), dt_);
 }

@@ -1,5 +1,6 @@
 // How near a robot's kinematics bring it to a velocity within one step: holonomic robots and quadcopters at once, those
-// that face their way by turning first (motion/kinematics has the same limits).
+// that face their way by turning first, or by the law of [tcf-thesis], equations (4.21)-(4.25), while they drive
+// (motion/kinematics has the same limits).
 #pragma once
 
 #include "crowd_robot.hpp"

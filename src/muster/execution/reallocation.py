@@ -10,17 +10,21 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.allocation.allocator import Routes
+from muster.allocation.allocator import Allocator, Routes
 from muster.allocation.explanations import unassigned
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewired
-from muster.allocation.search import Parameters, allocate
+from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
 from muster.execution.remaining_problem import RemainingMission, RemainingProblem, in_one_line, remaining_problem
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
+from muster.mission.errors import ParameterError
 from muster.mission.plan import Reason, Unassigned
+
+REPLANNING_HOT = 1.0
+"""Temperature at which a search begins that goes on from a good plan."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +67,7 @@ class Revision:
 
 @dataclass(frozen=True, kw_only=True)
 class Reallocation:
-    """Plans the rest again by `search`, for a number of steps: the same rest gives the same plan.
+    """Plans the rest again for a number of steps: the same rest gives the same plan.
 
     Parameters
     ----------
@@ -74,17 +78,28 @@ class Reallocation:
         do all that it had.
     seed
         of the search.
-    hot
-        temperature at which a search begins; low, as it begins with a good plan.
+    allocator, parameters
+        what plans; it must leave work under way where it is (`keeps_fixed`). An anytime allocator goes on from the
+        plan so far, and a search begins at a low temperature for that; another one plans all that is left afresh.
     fill_waiting
         whether waiting is made less afterwards, by `rewiring`.
+
+    Raises
+    ------
+    ParameterError
+        if the allocator would move work that is under way.
     """
 
     travel: Travel
     iterations: int = 3000
     seed: int = 0
-    hot: float = 1.0
+    allocator: Allocator = SEARCH
+    parameters: Any = Parameters(hot=REPLANNING_HOT)
     fill_waiting: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.allocator.keeps_fixed:
+            raise ParameterError(f"allocator: {self.allocator.name}; expected one that keeps fixed tasks")
 
     def __call__(self, rest: RemainingMission) -> Revision:
         """The rest planned again.
@@ -126,7 +141,9 @@ class Reallocation:
 
     def _searched(self, problem: Problem, start: Routes) -> Routes:
         stop = Stop(iterations=self.iterations, clock=VirtualClock())
-        return allocate(problem, stop, self.seed, Parameters(hot=self.hot), start).routes
+        if not self.allocator.anytime:
+            start = [list(problem.beginning(i)) for i in range(len(problem.robots))]
+        return self.allocator.outcome(problem, stop, self.seed, self.parameters, start).routes
 
 
 def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:

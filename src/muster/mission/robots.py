@@ -50,7 +50,7 @@ class Robot(Checked):
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
     kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")
     kinematics: str = spec(
-        Choice(("holonomic", "differential-drive", "quadcopter")), "how it moves", default="holonomic"
+        Choice(("holonomic", "differential-drive", "quadcopter", "hexacopter")), "how it moves", default="holonomic"
     )
     yaw_rate_radps: float | None = spec(Number(above=0), "greatest yaw rate", default=None)
     acceleration_mps2: float | None = spec(Number(above=0), "greatest acceleration", default=None)

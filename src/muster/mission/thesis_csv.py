@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path as FilePath
 
 from muster.mission.csv_files import Row, number, read_rows, read_table
@@ -17,7 +17,7 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission, Robot, Task
 from muster.mission.source import Place, Source
-from muster.mission.value_types import Fault, Path, shown
+from muster.mission.value_types import Path, shown
 
 TASK_COLUMNS = ("index", "x", "y", "type", "actuation_cost", "prerequisites")
 ROBOT_COLUMNS = ("id", "type", "x", "y", "work_capacity")
@@ -32,16 +32,44 @@ def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = N
     MissionError
         with every finding: file, line, field, value, what was expected.
     """
-    faults: list[Fault] = []
-    places: dict[Path, Place] = {("robots",): (str(robots), 1), ("suitability",): (str(suitability), 1)}
-    task_rows = read_rows(tasks, TASK_COLUMNS, ("z",))
+    places: dict[Path, Place] = {("robots",): (str(robots), 1)}
+    data = _without_robots(tasks, suitability, places)
     robot_rows = read_rows(robots, ROBOT_COLUMNS, ("z",))
+    data["robots"] = [_robot(row, k, robots, places) for k, row in enumerate(robot_rows)]
+    return mission_from(data, Source(str(tasks), places), [])
+
+
+def read_csv_for(
+    robots: Callable[[int], Sequence[Mapping[str, object]]], tasks: FilePath, suitability: FilePath | None = None
+) -> Mission:
+    """Read a mission from a task list, for robots that are known from elsewhere.
+
+    Parameters
+    ----------
+    robots
+        gives the robots, with their keys of a mission file, by the number of coordinates of a position.
+
+    Raises
+    ------
+    MissionError
+        as `read_csv` does.
+    """
+    places: dict[Path, Place] = {}
+    data = _without_robots(tasks, suitability, places)
+    columns = read_rows(tasks, TASK_COLUMNS, ("z",))[:1]
+    data["robots"] = list(robots(len(_position(columns[0])) if columns else 2))
+    return mission_from(data, Source(str(tasks), places), [])
+
+
+def _without_robots(tasks: FilePath, suitability: FilePath | None, places: dict[Path, Place]) -> dict[str, object]:
+    """The data of a mission but for its robots."""
+    places["suitability",] = (str(suitability), 1)
+    task_rows = read_rows(tasks, TASK_COLUMNS, ("z",))
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
     data["tasks"] = [_task(row, k, tasks, places) for k, row in enumerate(task_rows)]
-    data["robots"] = [_robot(row, k, robots, places) for k, row in enumerate(robot_rows)]
     if suitability is not None:
         data["suitability"] = _suitability(suitability, places)
-    return mission_from(data, Source(str(tasks), places), faults)
+    return data
 
 
 def _place(at: Path, row: Row, file: FilePath, places: dict[Path, Place]) -> None:

@@ -7,7 +7,7 @@ mean what they look like.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -48,12 +48,25 @@ def read_yaml(path: FilePath) -> Mission:
     return parse_yaml(read_text(path), path)
 
 
-def parse_yaml(text: str, path: FilePath) -> Mission:
-    """The mission in a text of YAML; `path` names it in messages, and other files are found from there."""
+def parse_yaml(
+    text: str, path: FilePath, robots: Callable[[int], Sequence[Mapping[str, object]]] | None = None
+) -> Mission:
+    """The mission in a text of YAML; `path` names it in messages, and other files are found from there.
+
+    `robots` gives those of a mission that names none, by the number of coordinates of a position.
+    """
     data, source, faults = parse_data(text, path, "a mission: schema, robots, tasks")
+    if robots is not None and not data.get("robots"):
+        data["robots"] = list(robots(_dimensions(data.get("tasks"))))
     if "schema" not in data:
         faults.append(Fault(("schema",), "missing", SCHEMA))
     return mission_from(data, source, faults)
+
+
+def _dimensions(tasks: object) -> int:
+    """Coordinates of the position of the first task that has one; 2 where none has."""
+    rows = [task.get("position") for task in tasks if isinstance(task, dict)] if isinstance(tasks, list) else []
+    return next((len(row) for row in rows if isinstance(row, list) and len(row) in (2, 3)), 2)
 
 
 def parse_data(text: str, path: FilePath, expected: str) -> tuple[dict[str, object], Source, list[Fault]]:

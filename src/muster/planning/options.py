@@ -81,6 +81,11 @@ class PlanningOptions:
             if not fits(value):
                 raise ParameterError(f"{name}: {_shown(value)}; expected {expected}{_near(name, value)}")
 
+    def as_dict(self) -> dict[str, Any]:
+        """As plain data, from which `options_from` makes them again; an allocator must be a name."""
+        data = {f.name: getattr(self, f.name) for f in fields(PlanningOptions)}
+        return data | {"ignore": list(self.ignore), "parameters": dict(self.parameters)}
+
 
 OPTIONS = tuple(f.name for f in fields(PlanningOptions))
 HELP: Mapping[str, str] = {f.name: f.metadata["help"] for f in fields(PlanningOptions)}

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, plan_from
 from muster.mission.value_types import shown
-from muster.planning.options import PlanningOptions
+from muster.planning.options import PlanningOptions, options_from
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +50,19 @@ class Request(PlanningOptions):
         """The request for a mission with these options."""
         given = {f.name: getattr(options, f.name) for f in fields(PlanningOptions)}
         return cls(mission=mission, start=start, fixed=fixed, **given)
+
+
+def request_from(mission: Mission, data: Mapping[str, Any]) -> Request:
+    """The request for a mission with options, and plans `start` and `fixed`, as plain data.
+
+    Raises
+    ------
+    MusterError
+        if one is wrong.
+    """
+    plans = {name: plan_from(data[name], name) for name in ("start", "fixed") if data.get(name) is not None}
+    options = options_from({name: value for name, value in data.items() if name not in ("start", "fixed")})
+    return Request.of(options, mission, **plans)
 
 
 def require_mission(mission: object) -> None:

@@ -16,6 +16,7 @@ from muster.verification import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 LEGEND_ROWS = 24
 """Robots that a legend names; of more than these it names the first 20."""
@@ -46,6 +47,23 @@ def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axe
     with rc_context({"grid.color": GRID, "grid.linewidth": 0.6}):  # 3-D axes read these once, when they are made
         axes: Axes = figure.add_subplot(axes_class=PictureAxes3D, computed_zorder=False)
     return axes
+
+
+def new_figure(width_in: float, height_in: float) -> Figure:
+    """A figure of several panels of its own, laid out by constraints; nothing is known to pyplot.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    require_matplotlib()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def limits(points: NDArray[np.float64], margin: float, *, on_ground: bool) -> tuple[Any, Any]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Map
-from muster.report.canvas import quiet_frame, require_matplotlib
+from muster.report.canvas import new_figure, quiet_frame
 from muster.report.floor import draw_map
 from muster.report.route_lines import Places
 from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
@@ -57,7 +57,7 @@ def plot_tracking(
     MissingExtraError
         if matplotlib is not installed.
     """
-    figure = _figure(_PANEL_IN, _PANEL_IN + _DEVIATION_IN)
+    figure = new_figure(_PANEL_IN, _PANEL_IN + _DEVIATION_IN)
     above, below = figure.subplots(2, 1, height_ratios=(_PANEL_IN, _DEVIATION_IN))
     if chart is not None:
         draw_map(above, chart, spatial=False)
@@ -113,7 +113,7 @@ def plot_measures(measures: Sequence[Measure], title: str, columns: int = 4) -> 
     """
     columns = min(columns, len(measures))
     rows = -(-len(measures) // columns)
-    figure = _figure(2.9 * columns, 2.6 * rows)
+    figure = new_figure(2.9 * columns, 2.6 * rows)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for ax, measure in zip(axes, measures, strict=False):
         _draw_measure(ax, measure)
@@ -134,16 +134,6 @@ def _draw_measure(ax: Any, measure: Measure) -> None:
 
 
 _AT_LEFT: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points"}
-
-
-def _figure(width_in: float, height_in: float) -> Figure:
-    require_matplotlib()
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def _finish(figure: Figure, title: str) -> None:

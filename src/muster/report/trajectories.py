@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.report.canvas import quiet_frame, require_matplotlib
+from muster.report.canvas import new_figure, quiet_frame
 from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
@@ -49,36 +49,53 @@ class MethodRun:
 
 
 def plot_trajectories(ways: Sequence[MethodRun], title: str) -> Figure:
-    """For each method draw from above the trajectories, then the least distance and both velocity components over time.
+    """For each method draw from above the trajectories, beneath them the least distance over time.
 
     Raises
     ------
     MissingExtraError
         if matplotlib is not installed.
     """
-    require_matplotlib()
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_INCHES * len(ways), 3.4 * _INCHES), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    rows = figure.subplots(4, len(ways), squeeze=False, height_ratios=(1.6, 1, 0.8, 0.8))
-    for row in rows[1:]:
-        for ax in row[1:]:  # one scale, so that methods can be compared
-            ax.sharex(row[0])
-            ax.sharey(row[0])
+    figure, rows = _panels(len(ways), (1.6, 1.0), title)
     for column, one in enumerate(ways):
         _draw_ways(rows[0][column], one)
         _draw_distances(rows[1][column], one)
-        for axis, name in enumerate("xy"):
-            _draw_velocities(rows[2 + axis][column], one, axis, name)
-        for row in rows:
-            quiet_frame(row[column])
     rows[1][0].set_ylim(bottom=0.0)
-    figure.suptitle(title, fontsize=11, fontweight="bold", color=TEXT)
-    rows[0][0].legend(loc="best", fontsize=7, frameon=False)
-    rows[1][0].legend(loc="best", fontsize=7, frameon=False)
+    for row in rows:
+        row[0].legend(loc="best", fontsize=7, frameon=False)
     return figure
+
+
+def plot_velocities(ways: Sequence[MethodRun], title: str) -> Figure:
+    """For each method draw both components of the velocities over time.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    figure, rows = _panels(len(ways), (1.0, 1.0), title)
+    for column, one in enumerate(ways):
+        rows[0][column].set_title(one.method, fontsize=10, color=TEXT)
+        for axis, name in enumerate("xy"):
+            _draw_velocities(rows[axis][column], one, axis, name)
+    rows[0][0].sharey(rows[1][0])
+    rows[0][0].legend(loc="best", fontsize=7, frameon=False)
+    return figure
+
+
+def _panels(columns: int, heights: tuple[float, ...], title: str) -> tuple[Figure, Any]:
+    """A figure of rows of panels; those over time have one scale a row, so that methods can be compared."""
+    figure = new_figure(_INCHES * columns, sum(heights) * _INCHES)
+    rows = figure.subplots(len(heights), columns, squeeze=False, height_ratios=heights)
+    for row, height in zip(rows, heights, strict=True):
+        for ax in row:
+            quiet_frame(ax)
+            if height == 1.0 and ax is not row[0]:
+                ax.sharex(row[0])
+                ax.sharey(row[0])
+    figure.suptitle(title, fontsize=11, fontweight="bold", color=TEXT)
+    return figure, rows
 
 
 def _draw_ways(ax: Any, ways: MethodRun) -> None:
@@ -102,8 +119,9 @@ def _draw_distances(ax: Any, ways: MethodRun) -> None:
 
 
 def _draw_velocities(ax: Any, ways: MethodRun, axis: int, name: str) -> None:
-    for index in range(len(ways.robots)):
-        ax.plot(_times(ways), ways.velocities[:, index, axis], color=robot_style(index).color, linewidth=0.9)
+    for index, robot in enumerate(ways.robots):
+        look: dict[str, Any] = {"color": robot_style(index).color, "linewidth": 0.9, "label": robot}
+        ax.plot(_times(ways), ways.velocities[:, index, axis], **look)
     ax.set_xlabel("time (s)")
     ax.set_ylabel(f"velocity, {name} (m/s)")
 

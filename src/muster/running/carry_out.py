@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.planning.options import PlanningOptions
 from muster.planning.request import require_mission
 from muster.running.recorded import recorded
 
@@ -25,6 +26,7 @@ def carry_out(
     fleet: Fleet,
     *,
     seed: int = 0,
+    planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
@@ -39,6 +41,8 @@ def carry_out(
         the robots, behind a bridge of `muster.bridges`; stays open.
     seed
         of planning again.
+    planning
+        options with which the tasks left are planned again: allocator, parameters, `rewire`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     record
@@ -65,6 +69,14 @@ def carry_out(
     remarks: list[str] = []
     with recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
         report = carry_out_live(
-            mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder, on_event=on_event, halt=halt
+            mission,
+            plan,
+            fleet,
+            seed=seed,
+            planning=planning,
+            ignore=ignore,
+            recorder=recorder,
+            on_event=on_event,
+            halt=halt,
         )
     return replace(report, remarks=(*report.remarks, *remarks))

@@ -15,7 +15,6 @@ from muster.bridges.fleet import Fleet, reason_of
 from muster.execution import (
     CompletedWork,
     Executor,
-    Reallocation,
     Recorder,
     Status,
     report_of,
@@ -29,7 +28,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
+from muster.planning.options import PlanningOptions
 from muster.running.fleet_clock import FleetWithMissionClock
+from muster.running.replanning import reallocation_by
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
@@ -46,6 +47,7 @@ def carry_out_live(
     fleet: Fleet,
     *,
     seed: int = 0,
+    planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
     recorder: Recorder | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
@@ -61,6 +63,8 @@ def carry_out_live(
         has a port for each robot of the mission, and stays open.
     seed
         of planning anew.
+    planning
+        options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
@@ -73,7 +77,7 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    live = Live(mission, plan, fleet, seed=seed, ignore=ignore, recorder=recorder)
+    live = Live(mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, recorder=recorder)
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():
@@ -102,6 +106,8 @@ class Live:
         has a port for each robot of the mission, and stays open.
     seed
         of planning anew.
+    planning
+        options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
@@ -122,6 +128,7 @@ class Live:
         fleet: Fleet,
         *,
         seed: int = 0,
+        planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         past: CompletedWork | None = None,
@@ -136,7 +143,7 @@ class Live:
             self._fleet.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
-            replan=Reallocation(travel=travel, seed=seed),
+            replan=reallocation_by(planning, travel, seed),
             observer=recorder,
             now=begin_s,
             past=past,

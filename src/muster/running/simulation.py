@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from muster.execution import (
     Executor,
-    Reallocation,
     Recorder,
     Status,
     broken_off,
@@ -25,7 +24,9 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
+from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
@@ -56,8 +57,12 @@ class Simulation:
         step of the world in seconds.
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
+    law
+        how robots move: profile, or thesis, by the control laws of [tcf-thesis].
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+    planning
+        options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
     recorder
@@ -84,7 +89,9 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = "orca",
+        law: str = "profile",
         noise: Noise = NO_NOISE,
+        planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
@@ -92,7 +99,9 @@ class Simulation:
     ) -> None:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
-        self._world = recorded_world(world, mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+        self._world = recorded_world(
+            world, mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+        )
         if on_world is not None:
             on_world(self._world)
         self._robots = with_state_estimation(self._world)
@@ -102,7 +111,7 @@ class Simulation:
             self._robots.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
-            replan=Reallocation(travel=travel, seed=seed),
+            replan=reallocation_by(planning, travel, seed),
             observer=recorder,
             now=self._world.time_s,
         )

@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder
+    from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
     from muster.simulation import Noise, SimulatedWorld
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance`, `noise` and `ignore` as `Simulation` takes them."""
+    """How the world is: `world`, `dt_s`, `avoidance`, `law`, `noise` and `ignore` as `Simulation` takes them."""
 
     world: str
     dt_s: float
     avoidance: str
+    law: str
     noise: Noise
     ignore: str | Collection[str]
     on_look: OnLook | None
@@ -25,15 +27,17 @@ class WorldOptions(TypedDict, total=False):
 
 
 class RecordedWorldOptions(WorldOptions, total=False):
-    """As `WorldOptions`; and the seed, and the recorder of what happens."""
+    """As `WorldOptions`; and the seed, options of planning anew, and the recorder of what happens."""
 
     seed: int
+    planning: PlanningOptions | None
     recorder: Recorder | None
 
 
 class SimulationOptions(WorldOptions, total=False):
-    """Options of the world, and of its clock: `speed`, `on_event` and `halt`."""
+    """Options of the world, of planning anew, and of its clock: `speed`, `on_event` and `halt`."""
 
+    planning: PlanningOptions | None
     speed: float | None
     on_event: Callable[[ExecutionEvent], None] | None
     halt: threading.Event | None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
@@ -14,7 +15,10 @@ if TYPE_CHECKING:
     from muster.simulation import SimulatedWorld
 
 MakeWorld = Callable[..., "SimulatedWorld"]
-"""Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`."""
+"""Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`, with
+`law=` where it is not `profile`."""
+PROFILE = "profile"
+"""The law by which robots of every world move."""
 
 
 def _checked(name: str, found: object) -> MakeWorld:
@@ -46,8 +50,26 @@ def world_named(name: str) -> MakeWorld:
     return WORLDS.named(name)
 
 
-def recorded_world(name: str, mission: Mission, recorder: Recorder | None, **how: Any) -> SimulatedWorld:
-    """The world of that name for a mission, which tells a recorder where bodies are."""
+def recorded_world(
+    name: str, mission: Mission, recorder: Recorder | None, *, law: str = PROFILE, **how: Any
+) -> SimulatedWorld:
+    """The world of that name for a mission, which tells a recorder where bodies are.
+
+    Raises
+    ------
+    ParameterError
+        for a law that the world does not have. Worlds of other packages need not know of laws.
+    """
+    make = world_named(name)
     if recorder is not None:
         how |= {"observer": recorder.on_step, "observe_s": 0.1}
-    return world_named(name)(mission, **how)
+    if law != PROFILE:
+        if not _takes_law(make):
+            raise ParameterError(f"law: {law}; expected {PROFILE}: the world {name} has no other")
+        how["law"] = law
+    return make(mission, **how)
+
+
+def _takes_law(make: MakeWorld) -> bool:
+    taken = signature(make).parameters
+    return "law" in taken or any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values())

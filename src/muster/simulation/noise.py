@@ -32,6 +32,8 @@ class Noise:
         standard deviations of the inertial unit's yaw rate in a step, and of its constant bias, drawn for each robot.
     accelerometer_mps2
         standard deviation of each coordinate of the acceleration that the inertial unit gives in a step.
+    camera_delay_s
+        the seconds by which an image is older than the pose that a camera's robot takes it to be from.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class Noise:
     gyro_radps: float = 0.0
     gyro_bias_radps: float = 0.0
     accelerometer_mps2: float = 0.0
+    camera_delay_s: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):

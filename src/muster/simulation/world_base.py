@@ -10,6 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import TypedDict
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
+from muster.motion.avoidance.names import require_avoidance
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
@@ -29,7 +31,7 @@ from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+LAWS = ("profile", "thesis")
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
 """How high drones fly in a mission in the plane."""
@@ -42,9 +44,16 @@ Event = tuple[float, int, int, int, bool]
 """Time, robot, order, way points passed, whether all; as `core.CrowdWorld.advance` gives it."""
 Faces = tuple[Floats, list[Slab]]
 """As `faces_and_slabs` gives them."""
+OF_THE_THESIS = ("quadcopter", "differential-drive")
+"""The kinematics for which [tcf-thesis] has control laws."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
 """Steps between checks for Ctrl-C."""
+
+
+class _LawOfRobot(TypedDict):
+    law: str
+    climb: float
 
 
 class WorldBase(SimulatedWorld, ABC):
@@ -65,6 +74,9 @@ class WorldBase(SimulatedWorld, ABC):
         see `Noise`.
     avoidance
         `orca`, in the plane `rvo` or `hrvo` too, or `none`: robots drive through each other and through walls.
+    law
+        how robots come to the velocity that they want: `profile`, speeds and turns on the spot as fast as the limits
+        allow; `thesis`, quadcopters and differential drives by (4.9)-(4.16) and (4.21)-(4.25) of [tcf-thesis].
     horizon_s
         lookahead of avoidance.
     arrival_m
@@ -93,16 +105,19 @@ class WorldBase(SimulatedWorld, ABC):
         dt_s: float = 0.1,
         noise: Noise = NO_NOISE,
         avoidance: str = "orca",
+        law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
         observer: Observer | None = None,
         observe_s: float = 0.0,
     ) -> None:
+        _require_choice("law", law, LAWS)
         _require(avoidance, mission, seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
         self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
         self._dimensions = mission.dimensions
         self._lowest_m = _lowest(mission)
         self._dt_s = dt_s
+        self._law = law
         self._noise = noise
         self._seed = seed
         self._observer = observer
@@ -179,6 +194,7 @@ class WorldBase(SimulatedWorld, ABC):
             faces_its_way=kinematics.faces_its_way,
             flies=robot.kind == "air",
             walls=self._walls_for(body_of(robot)),
+            **self._law_of(robot, limits),
         )
         self._numbers[robot.id] = number
         self._robots.append(robot)
@@ -264,6 +280,13 @@ class WorldBase(SimulatedWorld, ABC):
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
 
+    def _law_of(self, robot: Robot, limits: Limits) -> _LawOfRobot:
+        """The law of one robot: that of the thesis is for quadcopters and differential drives."""
+        if self._law != "thesis" or robot.kinematics not in OF_THE_THESIS:
+            return {"law": "profile", "climb": 0.0}
+        climbs = robot.kinematics == "quadcopter"
+        return {"law": "thesis", "climb": limits.climb if climbs else 0.0}
+
     def _advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         ids = list(self._numbers)
         passed = []
@@ -306,13 +329,13 @@ def _lowest(mission: Mission) -> float:
     return min(0.0, *(place[2] for _, place in positions(mission) if len(place) == 3))
 
 
+def _require_choice(name: str, value: str, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise ParameterError(f"{name}: {value}; expected {', '.join(allowed)}{did_you_mean(value, allowed)}")
+
+
 def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:
-    if avoidance not in AVOIDANCE:
-        raise ParameterError(
-            f"avoidance: {avoidance}; expected {', '.join(AVOIDANCE)}{did_you_mean(avoidance, AVOIDANCE)}"
-        )
-    if avoidance in ("rvo", "hrvo") and mission.dimensions == 3:
-        raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
+    require_avoidance(avoidance, mission.dimensions)
     if not 0 <= seed < 2**64:
         raise ParameterError(f"seed: {seed}; expected 0 to 2^64 - 1")
     for name, number in numbers.items():

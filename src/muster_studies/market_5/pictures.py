@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING
 
@@ -12,10 +11,10 @@ import numpy as np
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
 from muster_studies.market_5.searches import PLACES, TRUE, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
-from muster_studies.picture_files import draw_figures
 from muster_studies.rescue.flights import repetitions
 from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
 from muster_studies.rescue.teams import ARENA, mission_of
@@ -26,11 +25,6 @@ if TYPE_CHECKING:
 
 _WORLD = WORLDS.shipped[-1]
 """That of the pictures: the paper simulates with physics."""
-
-
-def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
-    """The pictures of these tables that have one; the files made."""
-    return draw_figures(folder, effort, numbers, {"Figure 7": _tracking, "Figure 8": _metrics})
 
 
 def _tracking(effort: Effort) -> Figure:
@@ -68,3 +62,23 @@ def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: 
         spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
         printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", TRUE) else None,
     )
+
+
+FIGURES = (
+    StudyFigure(
+        number="7",
+        source="market-paper",
+        shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
+        draw=_tracking,
+        tables=("Figure 7",),
+        differs="its deviation over time beneath, by true places and by estimates",
+    ),
+    StudyFigure(
+        number="8",
+        source="market-paper",
+        shows="mean and spread of each robot's errors, distances and times as bars",
+        draw=_metrics,
+        tables=("Figure 8",),
+        differs="searches in the physics world, by true places and by estimates",
+    ),
+)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from muster_studies.market_5.pictures import draw
+from muster_studies.market_5.pictures import FIGURES
 from muster_studies.market_5.searches import Search, SearchResult, performed
 from muster_studies.market_5.targets import Figure7, Targets
 from muster_studies.market_5.tracks import Figure8, Localisation
-from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rescue.flights import repetitions
 
 _TABLES: tuple[Reproduction[Search, SearchResult], ...] = (Figure7(), Figure8(), Targets(), Localisation())
@@ -17,7 +17,7 @@ _LEGEND = (
     "Allocation, times and failing robots: study rescue.",
 )
 
-MARKET_5 = IllustratedRepetition(
+MARKET_5 = Repetition(
     name="market-5",
     summary="search and tracking with lasers, market paper, section 5",
     document="market paper, sections 4.2, 4.3 and 5",
@@ -26,6 +26,6 @@ MARKET_5 = IllustratedRepetition(
     perform=one_by_one(performed),
     seeds=repetitions,
     extras=("map", "physics"),
-    pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
+    figures=FIGURES,
 )
 """Three robots track their ways and search with lasers: Figures 7 and 8, targets, localisation."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from muster.report.files import save_figure
 from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.negotiation.cost import LOSSES, AuctionCost, AuctionRun, Cost, hold
-from muster_studies.repetition import IllustratedRepetition, one_by_one
+from muster_studies.repetition import Repetition, one_by_one
 from muster_studies.tables import Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _held = cache(hold)
 
@@ -23,18 +25,14 @@ def _hold(talk: AuctionRun) -> AuctionCost:
 _DO = one_by_one(_hold)
 
 
-def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
-    """Draw messages and bytes a task over the size of the team; the file made."""
+def draw(effort: Effort) -> Figure:
+    """Draw messages and bytes a task over the size of the team, and how much higher the objective is than by search."""
     cost = Cost()
-    if cost.number not in numbers:
-        return []
     found = _DO(cost.jobs(effort), None, 1, None).found
-    path = folder / "negotiation.png"
-    save_figure(_figure(cost.table(effort, found)), path)
-    return [path]
+    return _figure(cost.table(effort, found))
 
 
-def _figure(table: Table) -> Any:
+def _figure(table: Table) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -58,18 +56,25 @@ def _figure(table: Table) -> Any:
         ax.grid(alpha=0.3)
         ax.set_ylim(bottom=0)
     ax.legend(fontsize=7)
-    return ax
+    return figure
 
 
 _SHOWN = (("all a task", "messages a task"), ("kB a task", "kB a task"), ("gap %", "objective above search, %"))
 
-NEGOTIATION = IllustratedRepetition[AuctionRun, AuctionCost](
+NEGOTIATION = Repetition[AuctionRun, AuctionCost](
     name="negotiation",
     summary="what agreeing without a centre costs as the team grows, and how good the plans are",
     document="no publication: simulated network, 50 ms each way",
     reproductions=(Cost(),),
     perform=_DO,
     extras=("net",),
-    pictures=draw,
+    figures=(
+        StudyFigure(
+            number="negotiation",
+            shows="messages, bytes and the objective of auctions without a centre over the size of the team",
+            draw=draw,
+            tables=(Cost().number,),
+        ),
+    ),
 )
 """The auction and bundles without a centre, beside search in one process, with and without loss."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ import numpy as np
 from muster.motion.grid import Floats
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster_studies.effort import Effort
-from muster_studies.picture_files import draw_figures
+from muster_studies.figures import StudyFigure
 from muster_studies.rescue.flights import FlightResult, repetitions
 from muster_studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
 from muster_studies.rescue.teams import mission_of
@@ -20,11 +19,6 @@ from muster_studies.rescue.tracking import Tracking, deviations, legs, track
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-def draw(folder: Path, effort: Effort, numbers: Sequence[str]) -> list[Path]:
-    """The pictures of these tables that have one; the files made."""
-    return draw_figures(folder, effort, numbers, {"Figure 7": _tracking, "Figure 8": _metrics})
 
 
 def _tracking(effort: Effort) -> Figure:
@@ -58,3 +52,23 @@ def _measure(metric: Metric, found: Mapping[str, Sequence[Tracking]]) -> Measure
         spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
         printed=printed_goal_error_m() if metric.name == "goal_error" else None,
     )
+
+
+FIGURES = (
+    StudyFigure(
+        number="7",
+        source="market-paper",
+        shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
+        draw=_tracking,
+        tables=("Figure 7",),
+        differs="its deviation over time beneath; without sensors",
+    ),
+    StudyFigure(
+        number="8",
+        source="market-paper",
+        shows="mean and spread of each robot's errors, distances and times as bars",
+        draw=_metrics,
+        tables=("Figure 8",),
+        differs="flights with noise in the kinematic world",
+    ),
+)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rescue.failures import Failures
 from muster_studies.rescue.flights import Flight, Planning, repetitions
 from muster_studies.rescue.metrics import Figure7, Figure8
-from muster_studies.rescue.pictures import draw
+from muster_studies.rescue.pictures import FIGURES
 from muster_studies.rescue.scenario import Figure5, Figure6
 
 _TABLES: tuple[Reproduction[Flight | Planning, Any], ...] = (Figure5(), Figure6(), Figure7(), Figure8(), Failures())
@@ -18,7 +18,7 @@ _LEGEND = (
     "are chosen here. Plans are the market's, with seed 0 where no more is said.",
 )
 
-RESCUE = IllustratedRepetition(
+RESCUE = Repetition(
     name="rescue",
     summary="search and rescue carried out, market paper, sections 4.2 to 6",
     document="market paper, sections 4.2 to 6",
@@ -27,6 +27,6 @@ RESCUE = IllustratedRepetition(
     perform=one_by_one(lambda job: job.perform()),
     seeds=repetitions,
     extras=("map",),
-    pictures=lambda effort, folder, numbers: draw(folder, effort, numbers),
+    figures=FIGURES,
 )
 """[market-paper]'s scenario, carried out without noise, with noise, and with robots that fail; Figures 7 and 8."""

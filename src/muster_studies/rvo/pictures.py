@@ -1,38 +1,62 @@
-"""Pictures like Figures A.4 to A.9 and A.15 to A.17: paths, least distance and velocities, all methods side by side."""
+"""Figures A.4 to A.9 and A.15 to A.17: trajectories, least distances and velocities, all methods side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from typing import TYPE_CHECKING
 
-from muster.report import save_figure
-from muster.report.trajectories import MethodRun, plot_trajectories
+from muster.report.trajectories import MethodRun, plot_trajectories, plot_velocities
+from muster_studies.effort import Effort
+from muster_studies.figures import StudyFigure
 from muster_studies.rvo.runs import METHODS, Job
 from muster_studies.rvo.scenarios import Scenario, scenarios, tables
 
-FIGURES = {"A.17": "A.4 to A.9", "A.22": "A.15 to A.17"}
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_BESIDE = "two methods of later years stand beside the published one"
+
+Plot = Callable[[Sequence[MethodRun], str], "Figure"]
 
 
-def draw(folder: Path, numbers: Sequence[str]) -> list[Path]:
-    """One file for each scenario of these tables; the files made."""
-    made = []
-    for table in (number for number in FIGURES if number in numbers):
-        for scenario in scenarios(table):
-            path = folder / f"{table}-{scenario.name.replace(' ', '-')}.png"
-            save_figure(plot_trajectories([_ways(scenario, method) for method in METHODS], _title(scenario)), path)
-            made.append(path)
-    return made
+_SHOWN: tuple[tuple[str, Plot, int, str], ...] = (
+    (
+        "A.17",
+        plot_trajectories,
+        4,
+        "the paths of simulated robots and the least distance between two of them over time",
+    ),
+    ("A.17", plot_velocities, 7, "both components of the simulated robots' velocities over time"),
+    ("A.22", plot_trajectories, 15, "the paths of two Wafflebots and the distance between them over time"),
+)
+"""Of each three figures the table of scenarios, how they are drawn, the number of the first, and what they show."""
 
 
-def _title(scenario: Scenario) -> str:
-    return f"Table {scenario.table}, scenario {scenario.name} (as Figures {FIGURES[scenario.table]})"
+def _figure(number: str, table: str, scenario: str, plot: Plot, shows: str) -> StudyFigure:
+    title = f"Table {table}, scenario {scenario} (as Figure {number})"
+    return StudyFigure(
+        number=number,
+        source="tcf-thesis",
+        shows=shows,
+        draw=partial(_draw, table, scenario, plot, title),
+        tables=(table,),
+        differs=_BESIDE,
+    )
 
 
-def _ways(scenario: Scenario, method: str) -> MethodRun:
+def _draw(table: str, number: str, plot: Plot, title: str, effort: Effort) -> Figure:
+    """All methods in a scenario; a misprinted one as printed and as corrected."""
+    variants = [scenario for scenario in scenarios(table) if scenario.number == number]
+    return plot([_run(scenario, method) for scenario in variants for method in METHODS], title)
+
+
+@cache
+def _run(scenario: Scenario, method: str) -> MethodRun:
     job = Job(scenario, method, 0 if method == "ORCA" else None)
     found, parameters = job.perform(), tables()["A.18"]
     return MethodRun(
-        method=method,
+        method=f"{method} {scenario.side}".rstrip(),
         robots=tuple(scenario.robots),
         goals=job.crowd.goals,
         positions=found.positions,
@@ -42,3 +66,10 @@ def _ways(scenario: Scenario, method: str) -> MethodRun:
         touch_m=2 * parameters["radius_m"],
         inflated_m=2 * parameters["inflated_radius_m"],
     )
+
+
+FIGURES = tuple(
+    _figure(f"A.{first + k}", table, scenario, plot, f"{shows}, scenario {scenario}")
+    for table, plot, first, shows in _SHOWN
+    for k, scenario in enumerate("123")
+)

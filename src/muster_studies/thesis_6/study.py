@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.disturbed import CapacityReserve, UsageUnderNoise
 from muster_studies.thesis_6.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6.physics import BesidePhysics
-from muster_studies.thesis_6.pictures import draw
+from muster_studies.thesis_6.pictures import FIGURES
 from muster_studies.thesis_6.routes import RobotUsages
 from muster_studies.thesis_6.totals import SystemTotals
 
@@ -35,13 +35,13 @@ _LEGEND = (
     "erratum: misprinted; own numbers are compared with what is right.",
 )
 
-THESIS_6 = IllustratedRepetition(
+THESIS_6 = Repetition(
     name="thesis-6",
     summary="plans carried out by moving robots, TCF thesis, chapter 6: Tables 6.2 to 6.11",
     document="TCF thesis, chapter 6",
     legend=_LEGEND,
     reproductions=_TABLES,
     perform=one_by_one(fly),
-    pictures=draw,
+    figures=FIGURES,
 )
 """What plans cost when robots carry them out: calculated, in Gazebo, in truth, and here."""

@@ -1,58 +1,45 @@
-"""Pictures like Figures 6.4, 6.5 and 6.7, and what a camera saw."""
+"""Figures 6.4, 6.5 and 6.7, and what a camera saw."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.report import save_figure
+from muster.mission.plan import Plan, Route
 from muster.report.camera_view import with_sightings
-from muster.report.canvas import frame_of_map, limits
+from muster.report.canvas import frame_of_map, limits, new_figure
 from muster.report.found import plot_found
-from muster.report.styles import FRAME
+from muster.report.styles import FRAME, TEXT
 from muster_studies.effort import Effort
+from muster_studies.figures import Draw, StudyFigure
+from muster_studies.runs import mission_named
 from muster_studies.thesis_6_1.clusters import SCATTERED, decoded, errors, k_means, near, seen_rarely
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6_1.published import FLIGHTS, NOISE, truth
+from muster_studies.world_pictures import world_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MARGIN = 0.06
 
-FIGURES = {"6.4": "6.4", "6.5": "6.7"}
-"""The published map, by table of tags."""
+
+def _maps(table: str, effort: Effort) -> Figure:
+    """The tags that were found without noise and with it, side by side."""
+    figure = new_figure(13.0, 6.6)
+    flights = {"without noise": FLIGHTS[table](), "1 degree, 3 cm": FLIGHTS[table](noise=NOISE)}
+    for ax, (noise, flight) in zip(figure.subplots(1, 2), flights.items(), strict=True):
+        _draw_map(ax, table, flight, noise)
+    return figure
 
 
-def draw(effort: Effort, folder: Path, numbers: tuple[str, ...]) -> list[Path]:
-    """Maps without noise and with it and a camera's picture for each table of tags, two close-ups of the clusters."""
-    made = []
-    for number in (number for number in FIGURES if number in numbers):
-        stem = f"{number}-like-figure-{FIGURES[number]}"
-        calm, noisy = FLIGHTS[number](), FLIGHTS[number](noise=NOISE)
-        made.append(_map(number, calm, "without noise", folder / f"{stem}.png"))
-        made.append(_map(number, noisy, "1 degree, 3 cm", folder / f"{stem}-noise.png"))
-        made.append(_picture(fly(calm), folder / f"{number}-camera.png"))
-    if "clusters" in numbers:
-        sample = near(seen_rarely(fly(SCATTERED).raw))
-        for name, method in (("k-means", k_means), ("by tag", decoded)):
-            points, table = errors(sample, method)
-            path = folder / f"clusters-{name.replace(' ', '-')}-like-figure-6.5b.png"
-            axes = plot_found(sample.raw, points, table, dict(sample.truth), f"Tag 1 seen rarely: {name}")
-            save_figure(axes, path)
-            made.append(path)
-    return made
-
-
-def _map(number: str, flight: Flight, noise: str, path: Path) -> Path:
-    flown, there = fly(flight), dict(truth(number))
-    title = f"Tags found in the physics world, {noise}"
-    axes = plot_found(flown.raw, flown.points, flown.errors(there), there, title)
-    _draw_ways(axes, flown)
-    save_figure(axes, path)
-    return path
+def _draw_map(ax: Axes, table: str, flight: Flight, noise: str) -> None:
+    flown, there = fly(flight), dict(truth(table))
+    plot_found(flown.raw, flown.points, flown.errors(there), there, f"Tags found in the physics world, {noise}", ax)
+    _draw_ways(ax, flown)
 
 
 def _draw_ways(axes: Axes, flown: FlightResult) -> None:
@@ -63,11 +50,81 @@ def _draw_ways(axes: Axes, flown: FlightResult) -> None:
     frame_of_map(axes, *limits(places, _MARGIN, on_ground=False))
 
 
-def _picture(flown: FlightResult, path: Path) -> Path:
-    import cv2
+def _clusters(effort: Effort) -> Figure:
+    """The sightings around a tag that was seen rarely, put together by k-means and by tag, side by side."""
+    figure, sample = new_figure(13.0, 6.6), near(seen_rarely(fly(SCATTERED).raw))
+    methods = {"k-means": k_means, "by tag": decoded}
+    for ax, (name, method) in zip(figure.subplots(1, 2), methods.items(), strict=True):
+        points, table = errors(sample, method)
+        plot_found(sample.raw, points, table, dict(sample.truth), f"Tag 1 seen rarely: {name}", ax)
+    return figure
 
-    assert flown.best is not None
-    assert flown.best.image is not None  # the physics world draws
-    drawn = with_sightings(flown.best.image, flown.best.observation.sightings)
-    cv2.imwrite(str(path), cv2.cvtColor(drawn, cv2.COLOR_RGB2BGR))
-    return path
+
+def _world(table: str, at_s: float, effort: Effort) -> Figure:
+    """The physics world of a table of tags, with the drones under way."""
+    flight = FLIGHTS[table]()
+    mission = mission_named(flight.mission)
+    plan = Plan(routes=tuple(Route(*route) for route in flight.routes), ignored=flight.ignored)
+    return world_figure(mission, plan, f"{mission.name} in the physics world", flight.ignored, at_s)
+
+
+def _camera(effort: Effort) -> Figure:
+    """The picture with the most tags, and what was detected in it."""
+    best = fly(FLIGHTS["6.4"]()).best
+    assert best is not None
+    assert best.image is not None  # the physics world draws
+    figure = new_figure(6.4, 5.2)
+    ax = figure.subplots()
+    ax.imshow(with_sightings(best.image, best.observation.sightings))
+    ax.set_axis_off()
+    ax.set_title("A camera's picture in the physics world, and the tags detected", fontsize=10, color=TEXT)
+    return figure
+
+
+def _figure(number: str, shows: str, draw: Draw, table: str, differs: str = "") -> StudyFigure:
+    return StudyFigure(number=number, source="tcf-thesis", shows=shows, draw=draw, tables=(table,), differs=differs)
+
+
+FIGURES = (
+    _figure(
+        "4.11",
+        "a simulated camera's picture with the bounding boxes of the AprilTags that are detected in it",
+        _camera,
+        "6.4",
+    ),
+    _figure(
+        "6.1",
+        "the tasks of 16T-3R, thirty AprilTags and three drones at their starts in Gazebo",
+        partial(_world, "6.4", 0.5),
+        "6.4",
+        "the physics world, obliquely from above",
+    ),
+    _figure(
+        "6.4",
+        "raw and filtered estimates of thirty AprilTags seen by three drones, beside where they are",
+        partial(_maps, "6.4"),
+        "6.4",
+        "without noise, and with noise of 1 degree and 3 cm",
+    ),
+    _figure(
+        "6.5",
+        "the estimates of Figure 6.4 with those of Apriltag 1 pulled away by its neighbours 24 and 28, and a close-up",
+        _clusters,
+        "clusters",
+        "the close-up, for k-means and for clusters by tag; sightings of tag 1 are thinned out, by intent",
+    ),
+    _figure(
+        "6.6",
+        "a drone over six AprilTags, a photograph and Gazebo",
+        partial(_world, "6.5", 20.0),
+        "6.5",
+        "the simulated half alone, in the physics world",
+    ),
+    _figure(
+        "6.7",
+        "raw and filtered estimates of six AprilTags and the drone's trajectory, real and in Gazebo",
+        partial(_maps, "6.5"),
+        "6.5",
+        "the physics world, without noise, and with noise of 1 degree and 3 cm",
+    ),
+)

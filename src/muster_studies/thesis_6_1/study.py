@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from muster.perception.optional_parts import require_physics
 from muster_studies.effort import Effort
-from muster_studies.repetition import IllustratedRepetition, Reproduction, one_by_one
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
+from muster_studies.thesis_6_1 import drift_pictures, pictures
 from muster_studies.thesis_6_1.clusters import Clusterings
+from muster_studies.thesis_6_1.delays import Delays
 from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
-from muster_studies.thesis_6_1.pictures import draw
 from muster_studies.thesis_6_1.published import points, seed_count
 from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
 
@@ -29,6 +30,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
         thesis={"error_real": "real", "error": "Gazebo"},
     ),
     Clusterings(),
+    Delays(),
     Drifts(),
 )
 
@@ -46,7 +48,7 @@ def _check(effort: Effort) -> None:
     require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
 
 
-THESIS_6_1 = IllustratedRepetition(
+THESIS_6_1 = Repetition(
     name="thesis-6.1",
     summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5, A6.1",
     document="TCF thesis, section 6.1",
@@ -56,6 +58,6 @@ THESIS_6_1 = IllustratedRepetition(
     check=_check,
     extras=("physics",),
     seeds=seed_count,
-    pictures=draw,
+    figures=(*pictures.FIGURES, *drift_pictures.FIGURES),
 )
 """Collaborative aerial observation in a physics world."""

@@ -153,6 +153,59 @@ def test_without_a_mission_robots_are_watched_and_planned_for(ros):
     plan = user.do(last="/mission_planner/plan")
     assert plan == {"mission": "near", "time_s": 0.0, "task_sequences": {"r_0": ["t_1", "t_2"]}}  # [9, 0] would turn it
     assert user.do(last="/r_0/task_sequence") == ["t_1", "t_2"]
+
+    # the thesis' GrdTA or GrdGenTA (Table 5.1, 3): by a parameter, for who does not start the command
+    user.do(set="/mission_planner/planning", to={"allocator": "greedy+genetic", "iterations": 3})
+    assert user.call("/mission_planner/plan") == (True, told)
+    user.do(set="/mission_planner/planning", to={"allocator": "greedi"})
+    succeeded, message = user.call("/mission_planner/plan")
+    assert (succeeded, "greedi" in message, "greedy" in message) == (False, True, True)
+    assert carried.poll() is None
+
+
+SIX = """index,x,y,type,actuation_cost,prerequisites
+1,1,0,D,0.5,
+2,2,0,D,0.5,[1]
+3,3,0,E,0.5,"[1,2]"
+"""
+SUITABILITY = "robot_type,D,E\nbeta,0.9,0.9\nzeta,0.9,0.0\n"
+
+
+def test_a_task_list_is_loaded_for_the_robots_that_are_heard(ros):
+    """[tcf-thesis], 5.2: command_interface takes the name of a task list; the robots are those on ROS."""
+    (ros.folder / "six.csv").write_text(SIX, encoding="utf-8")
+    (ros.folder / "types.csv").write_text(SUITABILITY, encoding="utf-8")
+    carried = ros.muster(*QUICK, "--allocator", "greedy")
+    user = ros.user()
+    user.until(NODES.issubset, nodes=True)
+    user.do(set="/command_interface/mission", to="six.csv")
+    told = "robots: none; expected some in the mission, or some that publish odom or pose"
+    assert user.call(LOAD) == (False, told)
+    ros.robot("r_0", 0, 0, "--type", "beta")
+    ros.robot("r_1", 0, 4, "--type", "zeta")
+    user.until(lambda rows: len([row for row in rows if row["position"]]) == 2, last="/system_monitor/robots")
+    user.do(set="/command_interface/suitability", to="types.csv")
+    assert user.call(LOAD) == (True, "mission six: 2 robots, 3 tasks; start begins it")
+    assert user.call("/mission_planner/plan")[0]  # of the mission that was loaded
+    assert "3" in user.do(last="/r_0/task_sequence")  # r_1's type does no E
+    assert user.call(START)[0]
+    out, err = carried.communicate(timeout=30)
+    assert carried.returncode == 0, err
+    assert set(json.loads(out)["tasks_done"]) == {"1", "2", "3"}
+
+
+def test_a_mission_without_robots_is_for_those_that_are_heard(ros):
+    carried = ros.muster(*QUICK)
+    ros.robot("r_0", 0, 0)
+    ros.robot("r_9", 9, 9)
+    user = ros.user()
+    user.until(lambda rows: len([row for row in rows if row["position"]]) == 2, last="/system_monitor/robots")
+    nobody = NEAR.replace(f"robots:\n  - {ROBOT}\n", "robots: []\n")
+    for node in ("command_interface", "mission_planner"):
+        user.do(set=f"/{node}/mission", to=nobody)
+    told = "mission near: 2 of 2 tasks by 2 robots, r_0, r_9 from where they stand"
+    assert user.call("/mission_planner/plan") == (True, told)
+    assert user.call(LOAD) == (True, "mission near: 2 robots, 2 tasks; start begins it")
     assert carried.poll() is None
 
 

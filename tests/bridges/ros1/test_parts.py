@@ -13,7 +13,9 @@ from muster.bridges.discovery import robots_in
 from muster.bridges.follower import Follower
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.steering import STILL, SteeredRobot, Steering
+from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
+from muster.motion.avoidance.names import require_avoidance
 from muster.motion.frames import flu_to_enu
 from muster.motion.kinematics.registry import KINEMATICS
 from muster.motion.port import Waypoint
@@ -123,9 +125,9 @@ def test_the_clock_never_goes_back_while_others_pause_it():
     assert all(a <= b for a, b in pairwise(times))
 
 
-def drive(robots, goals, steps):
+def drive(robots, goals, steps, avoidance="orca"):
     """Robots that do as they are told; yields all places."""
-    steering = Steering(interval_s=DT, space=False)
+    steering = Steering(interval_s=DT, space=False, avoidance=avoidance)
     states = np.array([[*robot.position, 0.0, math.radians(robot.heading_deg)] for robot in robots])
     velocities = np.zeros((len(robots), 3))
     for _ in range(steps):
@@ -167,18 +169,34 @@ def test_every_kind_of_robot_gets_there_within_its_limits(kinematics, heading, g
     assert math.dist(last[0, :2], goal) < 0.1
 
 
+@pytest.mark.parametrize("avoidance", ["orca", "rvo", "hrvo"])
 @pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
-def test_robots_that_meet_head_on_pass_without_touching(kinematics):
+def test_robots_that_meet_head_on_pass_without_touching(kinematics, avoidance):
     robots = [
         Robot(id="a", position=(0.0, 0.0), radius_m=0.2, kinematics=kinematics),
         Robot(id="b", position=(6.0, 0.0), radius_m=0.2, kinematics=kinematics, heading_deg=180),
     ]
     apart = math.inf
-    for states, _ in drive(robots, [(6.0, 0.0, 0.0), (0.0, 0.0, 0.0)], 400):
+    for states, _ in drive(robots, [(6.0, 0.0, 0.0), (0.0, 0.0, 0.0)], 400, avoidance):
         apart = min(apart, math.dist(states[0, :2], states[1, :2]))
     assert apart >= 0.4
     assert math.dist(states[0, :2], (6, 0)) < 0.1
     assert math.dist(states[1, :2], (0, 0)) < 0.1
+
+
+def test_without_avoidance_robots_drive_through_each_other():
+    robots = [
+        Robot(id="a", position=(0.0, 0.0), radius_m=0.2, kinematics="holonomic"),
+        Robot(id="b", position=(6.0, 0.0), radius_m=0.2, kinematics="holonomic", heading_deg=180),
+    ]
+    ways = drive(robots, [(6.0, 0.0, 0.0), (0.0, 0.0, 0.0)], 400, "none")
+    assert min(math.dist(states[0, :2], states[1, :2]) for states, _ in ways) < 0.4
+
+
+@pytest.mark.parametrize(("name", "size", "said"), [("rov", 2, "did you mean 'rvo'"), ("rvo", 3, "in space")])
+def test_a_method_that_does_not_fit_is_refused(name, size, said):
+    with pytest.raises(ParameterError, match=said):
+        require_avoidance(name, size)
 
 
 def test_who_stands_is_gone_around_and_told_to_stand():

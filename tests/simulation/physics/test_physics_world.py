@@ -19,8 +19,9 @@ if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 from muster.simulation.physics import PhysicsWorld
-from muster.simulation.physics.bodies import TRACK_M, WHEEL_RADIUS_M, BodyKind, RobotBody
-from muster.simulation.physics.control import Commands, Control
+from muster.simulation.physics.bodies import FLYING, TRACK_M, WHEEL_RADIUS_M, BodyKind, RobotBody
+from muster.simulation.physics.control import Control
+from muster.simulation.physics.controller import Commands
 from muster.simulation.physics.model import PlacedRobot
 from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.simulated_model import SimulatedModel
@@ -62,7 +63,7 @@ def test_a_robot_of_half_the_radius_is_half_as_large():
 
 @pytest.mark.parametrize("build", list(BodyKind))
 def test_walls_stop_bodies(build):
-    at = (0.0, 0.0, 1.0 if build is BodyKind.ROTORS else 0.0)
+    at = (0.0, 0.0, 1.0 if build in FLYING else 0.0)
     for walls, far in (([WALL_AHEAD], False), ([np.empty((0, 6))], True)):
         simulated = SimulatedModel([standing(build, position=at)], walls, PLAIN, 0.005)
         control = Control(simulated, keeps_height=True)

@@ -6,9 +6,11 @@ is asked for goes to the controller, and its answer back to the user.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any
 
+from muster.bridges.ros1.heard_robots import robots_heard
 from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, packed
 from muster.bridges.ros1.node import hear
 from muster.bridges.ros1.requests import COMMANDS, RequestClient
@@ -26,10 +28,14 @@ class CommandInterface:
     ----------
     load
         Muster's loader of mission files.
+    topics
+        the namespace of a robot's topics.
     """
 
-    def __init__(self, load: Load) -> None:
-        self._load = load
+    def __init__(self, load: Load, *, topics: Callable[[str], str]) -> None:
+        self._load, self._topics = load, topics
+        self._rows: list[dict[str, Any]] = []  # of the system monitor
+        self._monitor = hear("/system_monitor/robots", String, self._hear_monitor, queue_size=10)
         self._controller = RequestClient(COMMANDS)
         self._tasks = hear("/command_interface/add_task", String, self._add_task, queue_size=100)
         self._services = [
@@ -42,10 +48,13 @@ class CommandInterface:
             )
         ]
 
+    def _hear_monitor(self, message: Any) -> None:
+        self._rows = json.loads(message.data)
+
     def _load_mission(self) -> Any:
         """The mission is read here, so that one that is wrong never reaches the controller."""
         try:
-            mission = mission_on(MISSION, self._load)
+            mission = mission_on(MISSION, self._load, lambda size: robots_heard(self._rows, self._topics, size))
         except MusterError as error:
             return TriggerResponse(success=False, message=in_lines(error))
         return self._ask("load", mission=packed(mission))

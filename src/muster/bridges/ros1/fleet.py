@@ -20,11 +20,13 @@ from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
+from muster.bridges.ros1.static_frames import Odometry, static_frames
 from muster.bridges.steering import STILL, Steering
 from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
+from muster.motion.avoidance.names import require_avoidance
 from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths
@@ -53,6 +55,10 @@ class Ros1Fleet:
         from a way point, where a robot counts as there.
     rate_hz
         how often velocities are told.
+    avoidance
+        with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
+    odometry
+        of which frame robots' odometry is: see `static_frames`.
     joins
         whether robots that the mission does not name may join.
     clock
@@ -75,6 +81,8 @@ class Ros1Fleet:
         frame: str = "map",
         arrival_m: float = 0.1,
         rate_hz: float = 20.0,
+        avoidance: str = "orca",
+        odometry: Odometry = "map",
         joins: bool = True,
         clock: MissionClock | None = None,
         on_pose: Callable[[str, Any], None] | None = None,
@@ -82,6 +90,7 @@ class Ros1Fleet:
         for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
             if not number > 0:
                 raise ParameterError(f"{name}: {number}; expected a number above 0")
+        require_avoidance(avoidance, mission.dimensions)
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
@@ -89,7 +98,7 @@ class Ros1Fleet:
         """The namespace of a robot's topics, such as `/r_0`."""
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
-        self._steering = Steering(interval_s=self._interval_s, space=not self._flat)
+        self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=avoidance)
         self._yielding = Yielding(arrival_m=arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
@@ -97,6 +106,9 @@ class Ros1Fleet:
         self._closed = threading.Event()
         self._failure: Exception | None = None  # of the thread that steers
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+        if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=odometry):
+            publish(self._static, TFMessage(frames))
         self._ports: dict[str, Ros1Port] = {}
         self._events: list[Event] = []
         for robot in mission.robots:
@@ -200,6 +212,7 @@ class Ros1Fleet:
         self._newcomers.close()
         self._frame.close()
         self._tf.unregister()
+        self._static.unregister()
 
     def _reached(self, robot: Robot) -> Ros1Port:
         if not NAME.fullmatch(robot.id):

@@ -9,24 +9,27 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from muster.bridges.ros1.heard_robots import robots_heard
 from muster.bridges.ros1.message_conversion import text_of
 from muster.bridges.ros1.mission_transfer import Load, in_lines, mission_on, unpacked
 from muster.bridges.ros1.node import hear, publish
 from muster.bridges.ros1.requests import PLANNING, Data, RequestServer
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
-from muster.mission.errors import MusterError
+from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, plan_from
+from muster.mission.value_types import shown
 
 MISSION = "/mission_planner/mission"
 _UNDER_WAY = ("gathering", "planning", "carrying-out", "paused")
 
-Solve = Callable[..., Plan]
-"""Muster's own planner: of a mission, with `seed` and `time_limit`."""
+OPTIONS = "/mission_planner/planning"
+Solve = Callable[[Mission, Mapping[str, Any]], Plan]
+"""Muster's own planner: of a mission, with planning options as plain data."""
 
 
 class MissionPlanner:
@@ -38,13 +41,12 @@ class MissionPlanner:
         Muster's loader of mission files, and its planner.
     topics
         the namespace of a robot's topics.
-    seed, time_limit
-        of the plans that users ask for.
+    options
+        of the plans that users ask for; those of the parameter `/mission_planner/planning` come before them.
     """
 
-    def __init__(self, load: Load, solve: Solve, *, topics: Callable[[str], str], seed: int, time_limit: float) -> None:
-        self._load, self._solve, self._topics = load, solve, topics
-        self._how = {"seed": seed, "time_limit": time_limit}
+    def __init__(self, load: Load, solve: Solve, *, topics: Callable[[str], str], options: Mapping[str, Any]) -> None:
+        self._load, self._solve, self._topics, self._options = load, solve, topics, options
         self._heard: dict[str, Any] = {}  # what other nodes said last, by topic
         self._lock = threading.Lock()
         self._publishers: dict[str, Any] = {}  # by full name (TCF, Figure 5.7, step 5)
@@ -65,7 +67,7 @@ class MissionPlanner:
         """To the controller, which lets robots know of the plan when they begin it."""
         try:
             mission = unpacked(question["mission"])
-            plan = self._solve(mission, seed=question["seed"], time_limit=question["time_limit"])
+            plan = self._solve(mission, _with_parameter(question["options"]))
         except MusterError as error:
             return {"fault": str(error)}
         return {"plan": plan.as_dict()}
@@ -77,7 +79,7 @@ class MissionPlanner:
             return TriggerResponse(success=False, message=told)
         try:
             mission, placed = self._from_where_they_stand(self._asked_for())
-            plan = self._solve(mission, **self._how)
+            plan = self._solve(mission, _with_parameter(self._options))
         except MusterError as error:
             return TriggerResponse(success=False, message=in_lines(error))
         self._publish(plan, 0.0)
@@ -90,7 +92,8 @@ class MissionPlanner:
         """That of the parameter; without one, the one that the controller has."""
         if rospy.get_param(MISSION, None) is None and "/muster/mission" in self._heard:
             return unpacked(self._heard["/muster/mission"])
-        return mission_on(MISSION, self._load)
+        rows = self._heard.get("/system_monitor/robots", [])
+        return mission_on(MISSION, self._load, lambda size: robots_heard(rows, self._topics, size))
 
     def _from_where_they_stand(self, mission: Mission) -> tuple[Mission, list[str]]:
         """The mission with the poses that the system monitor knows, and the robots that have one."""
@@ -116,3 +119,19 @@ class MissionPlanner:
                 self._publishers[topic] = rospy.Publisher(topic, String, queue_size=100, latch=True)
             if data is not None:
                 publish(self._publishers[topic], text_of(data))
+
+
+def _with_parameter(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Planning options with those of the parameter in place of theirs.
+
+    Raises
+    ------
+    ParameterError
+        if the parameter is no mapping.
+    """
+    own = rospy.get_param(OPTIONS, {})
+    if not isinstance(own, dict):
+        raise ParameterError(f"{OPTIONS}: {shown(own)}; expected a mapping such as {{allocator: greedy}}")
+    if "iterations" in own and "time_limit" not in own:
+        options = {**options, "time_limit": None}
+    return {**options, **own}

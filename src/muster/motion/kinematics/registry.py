@@ -10,6 +10,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.mission.near_matches import did_you_mean
 from muster.motion.kinematics.differential_drive import DifferentialDrive
+from muster.motion.kinematics.hexacopter import Hexacopter
 from muster.motion.kinematics.holonomic import Holonomic
 from muster.motion.kinematics.kinematics import Kinematics
 from muster.motion.kinematics.quadcopter import Quadcopter
@@ -17,7 +18,7 @@ from muster.motion.limits import Limits
 
 USUAL_YAW_RATE_RADPS = math.pi / 2
 
-_IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter())
+_IMPLEMENTATIONS: tuple[Kinematics, ...] = (Holonomic(), DifferentialDrive(), Quadcopter(), Hexacopter())
 
 KINEMATICS: Mapping[str, Kinematics] = MappingProxyType({k.name: k for k in _IMPLEMENTATIONS})
 
@@ -33,6 +34,16 @@ def kinematics_named(name: str) -> Kinematics:
     if name not in KINEMATICS:
         raise ParameterError(f"kinematics: {name}; expected {', '.join(KINEMATICS)}{did_you_mean(name, KINEMATICS)}")
     return KINEMATICS[name]
+
+
+FREE_RADIUS_M = 0.1
+"""The turning radius of a robot that nothing limits."""
+
+
+def turning_radius_of(robot: Robot) -> float:
+    """The least radius that a robot can drive at full speed, metres; 0.1 where nothing limits it."""
+    faces = kinematics_named(robot.kinematics).faces_its_way
+    return limits_of(robot).turning_radius_m(faces_its_way=faces) or FREE_RADIUS_M
 
 
 def limits_of(robot: Robot) -> Limits:

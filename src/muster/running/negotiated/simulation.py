@@ -56,6 +56,7 @@ def negotiate_and_carry_out(
     seed: int = 0,
     dt_s: float = 0.1,
     avoidance: str = "orca",
+    law: str = "profile",
     noise: Noise = NO_NOISE,
     speed: float | None = None,
     recorder: Recorder | None = None,
@@ -90,7 +91,7 @@ def negotiate_and_carry_out(
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bodies = recorded_world(
-            world, problem.mission, recorder, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world, problem.mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
         )
         if on_world is not None:
             on_world(bodies)

@@ -11,6 +11,7 @@ from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
+from muster.planning.options import PlanningOptions
 from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.server.runs.crash_recovery import recovered_from
 
@@ -42,6 +43,7 @@ class RealRun:
         recorder: Recorder,
         *,
         seed: int = 0,
+        planning: PlanningOptions | None = None,
         log: Sequence[Mapping[str, Any]] = (),
         begin_s: float = 0.0,
         at_end: Callable[[], None] = lambda: None,
@@ -56,6 +58,7 @@ class RealRun:
             found.plan,
             fleet,
             seed=seed,
+            planning=planning,
             ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,

@@ -11,21 +11,32 @@ from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
 
+_PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
-    "kinematic": {"seed": int, "ignore": list, **_WORLD},
-    "physics": {"seed": int, "ignore": list, **_WORLD},
-    "ros1": {"seed": int, "ignore": list, "master": str, "drive": str, "frame": str, "rate_hz": float, **_ROS},
-    "ros2": {"seed": int, "ignore": list, "domain": int, "give": str, "by": str, **_ROS},
+    "kinematic": {**_PLANNING, **_WORLD},
+    "physics": {**_PLANNING, **_WORLD},
+    "ros1": {
+        **_PLANNING,
+        "master": str,
+        "drive": str,
+        "frame": str,
+        "rate_hz": float,
+        "avoidance": str,
+        "odometry": str,
+        **_ROS,
+    },
+    "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
     "mavlink": {
-        "seed": int,
-        "ignore": list,
+        **_PLANNING,
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
+        "local_frame": str,
         "height_m": float,
         "low_battery": float,
         "wait_s": float,
@@ -35,9 +46,12 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "law": ("profile", "thesis"),
+    "odometry": ("map", "start"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
+    "local_frame": ("north", "forward"),
     "at_end": ("hold", "return", "land"),
 }
 """What settings that are words may be; those who understand them take long to import."""
@@ -52,6 +66,7 @@ NOISE = (
     "gyro_radps",
     "gyro_bias_radps",
     "accelerometer_mps2",
+    "camera_delay_s",
 )
 """The kinds of a simulation's noise."""
 _KINDS = {
@@ -72,6 +87,7 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
     for name, value in settings.items():
         _require_setting(world, name, value)
     ignored_rules(settings.get("ignore", ()))
+    options_from(settings.get("planning", {}))
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
     if world in WORLDS:
         _require_number(settings, "dt_s", 0.001, 1.0)

@@ -114,6 +114,7 @@ def _world_run(
         return SimulatedRun(mission, plan, begin["world"], settings, recorder)
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
+    from muster.server.work.tasks.check_request import checked_options
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
@@ -123,6 +124,7 @@ def _world_run(
             fleet,
             recorder,
             seed=settings.get("seed", 0),
+            planning=checked_options(settings.get("planning", {})),
             log=log,
             begin_s=begin["until_s"],
             at_end=at_end,

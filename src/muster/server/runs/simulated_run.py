@@ -13,6 +13,7 @@ from muster.execution import Recorder, Report, Status
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.running.simulation import Simulation
+from muster.server.work.tasks.check_request import checked_options
 from muster.simulation import Noise
 
 QUANTUM_S = 0.1
@@ -30,6 +31,7 @@ class SimulatedRun:
         how = dict(settings)
         noise = Noise(**how.pop("noise", {}))
         how["ignore"] = plan.ignored
+        how["planning"] = checked_options(how.get("planning", {}))
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
         self._quanta = 0
 

@@ -13,36 +13,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from muster.motion.grid import Floats
+from muster.motion.wheels import body_speeds
 from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, BodyKind
+from muster.simulation.physics.controller import Commands, Controller, lags_of, no_wheels
 from muster.simulation.physics.model import SERVO_S
-from muster.simulation.physics.simulated_model import Group, Indices, Motion, SimulatedModel
+from muster.simulation.physics.rotorcraft_control import RotorcraftController
+from muster.simulation.physics.simulated_model import Motion, SimulatedModel
 
 GRAVITY_MPS2 = 9.81
 MOST_TILT = math.radians(35)
-
-
-@dataclass(frozen=True)
-class Commands:
-    """The commands to some robots.
-
-    Parameters
-    ----------
-    rates
-        (n, 4): velocities in the map frame, m/s, and yaw rates, rad/s.
-    ahead
-        (n,) speeds ahead of robots that face their way, m/s.
-    """
-
-    rates: Floats
-    ahead: Floats
-
-    def of(self, who: Indices) -> Commands:
-        return Commands(self.rates[who], self.ahead[who])
 
 
 @dataclass(frozen=True)
@@ -54,39 +37,12 @@ class StepResult:
     poses, lags
         (n, 4): x, y, z and heading, and by how much each would still change after a command to stand.
     counted
-        (n,) metres that wheel encoders counted; NaN for robots without wheels.
+        (n, 2) metres and radians that wheel encoders counted; NaN for robots without wheels.
     """
 
     poses: Floats
     lags: Floats
     counted: Floats
-
-
-class Controller(Protocol):
-    """Drives the robots of a group, which have the same kind of body.
-
-    `following`, in 1/s, is the gain from the distance (and angle) behind the reference to additional speed (and yaw
-    rate).
-    """
-
-    group: Group
-    following: float
-
-    def lags(self, motion: Motion) -> Floats:
-        """By how much poses would still change after a command to stand: (n, 4), metres and radians."""
-        ...
-
-    def drive(self, commands: Commands, motion: Motion) -> None:
-        """Set the motors for a step of physics."""
-        ...
-
-    def set_force_shares(self, shares: Floats) -> None:
-        """Set the shares (n, 2) of commanded force that motors give from now on: left, right wheel; force, torque."""
-        ...
-
-    def odometers(self) -> Floats:
-        """Metres ahead that wheels have rolled so far (n,); NaN for robots without wheels."""
-        ...
 
 
 class WheelController:
@@ -103,7 +59,7 @@ class WheelController:
         self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
 
     def lags(self, motion: Motion) -> Floats:
-        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
+        return lags_of(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         rims = commands.rates[:, 3] * self._half_track
@@ -115,8 +71,8 @@ class WheelController:
         self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
 
     def odometers(self) -> Floats:
-        counted: Floats = (self._radius - SUNK_M) * self.group.data.qpos[self._angles].mean(axis=1)
-        return counted
+        rims = (self._radius - SUNK_M)[:, None] * self.group.data.qpos[self._angles]
+        return body_speeds(rims, 2 * self._half_track)
 
 
 class ForceController:
@@ -134,7 +90,7 @@ class ForceController:
         self.set_force_shares(np.ones((len(self.group.who), 2)))
 
     def lags(self, motion: Motion) -> Floats:
-        return _lags(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
+        return lags_of(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         missing = commands.rates[:, :2] - motion.velocities[:, :2]
@@ -146,7 +102,7 @@ class ForceController:
         self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1] * self._inertia
 
     def odometers(self) -> Floats:
-        return _no_wheels(self.group)
+        return no_wheels(self.group)
 
 
 class RotorController:
@@ -176,7 +132,7 @@ class RotorController:
         level = motion.velocities[:, :2] + tilted * up[:, :2] / up[:, 2:]
         x, y = level[:, 0] + jerk * rates[:, 1], level[:, 1] - jerk * rates[:, 0]
         turn = rates[:, 2] * (self._yaw_lag_s / self._lag_s)
-        return _lags(x, y, motion.velocities[:, 2], turn, self._lag_s)
+        return lags_of(x, y, motion.velocities[:, 2], turn, self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
         wanted = self.VELOCITY * (commands.rates[:, :3] - motion.velocities)
@@ -198,18 +154,7 @@ class RotorController:
         self._pushes, self._turns = shares[:, 0] * self._mass, shares[:, 1:] * self._inertia
 
     def odometers(self) -> Floats:
-        return _no_wheels(self.group)
-
-
-def _no_wheels(group: Group) -> Floats:
-    return np.full(len(group.who), np.nan)
-
-
-def _lags(x: Floats, y: Floats, z: Floats | float, turn: Floats, seconds: float) -> Floats:
-    lags = np.empty((len(x), 4))
-    lags[:, 0], lags[:, 1], lags[:, 2], lags[:, 3] = x, y, z, turn
-    lags *= seconds
-    return lags
+        return no_wheels(self.group)
 
 
 class CommandFollower:
@@ -239,9 +184,11 @@ class CommandFollower:
         return self.controller.lags(self._motion)
 
     def counted(self) -> Floats:
-        """Metres (n,) that wheel encoders counted since the last call; NaN for robots without wheels."""
+        """Metres and radians (n, 2) that wheel encoders counted since the last call; NaN for robots without wheels."""
         before, self._odometers = self._odometers, self.controller.odometers()
-        return np.abs(self._odometers - before)
+        counted = self._odometers - before
+        counted[:, 0] = np.abs(counted[:, 0])
+        return counted
 
     def begin(self, commands: Commands) -> None:
         """Begin a step of the world: the references of robots that move start at their predicted poses."""
@@ -273,6 +220,7 @@ class Control:
             WheelController(simulated),
             ForceController(simulated),
             RotorController(simulated),
+            RotorcraftController(simulated),
         )
         used = [controller for controller in controllers if len(controller.group.who)]
         self._followers = [CommandFollower(controller, keeps_height=keeps_height) for controller in used]
@@ -291,7 +239,7 @@ class Control:
             for follower in self._followers:
                 follower.measure(self._simulated.step_s)
         robots = len(self._simulated.robots)
-        done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty(robots))
+        done = StepResult(np.empty((robots, 4)), np.empty((robots, 4)), np.empty((robots, 2)))
         for follower in self._followers:
             who = follower.controller.group.who
             done.poses[who], done.lags[who], done.counted[who] = follower.poses, follower.lags, follower.counted()

@@ -226,37 +226,45 @@ def _foot(body: ET.Element, place: tuple[float, float], radius: float, lift: flo
 def _flying(body: ET.Element, _: ET.Element, number: int, robot: PlacedRobot) -> None:
     """The frame lies in its centre of mass."""
     span, _width, height = robot.body.size_m
-    add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=robot.body.inertia_kgm2)
+    about_x, about_y, about_z = robot.body.inertia_kgm2
+    solid = (about_x, about_y, min(about_z, about_x + about_y))  # what the compiler takes; see `SimulatedModel`
+    add(body, "inertial", pos=(0, 0, 0), mass=robot.body.mass_kg, diaginertia=solid)
     add(  # the hull is not to be seen: arms and rotors are
         body, "geom", type="cylinder", size=(span / 2, height / 2), group=UNSEEN, **_touches(robot, ground=True)
     )
+    box = (span / 6, span / 9, height / 2.5)
+    add(body, "geom", type="box", size=box, rgba=(0.15, 0.15, 0.2, 1), contype=0, conaffinity=0)
+    for x, y, radius in _rotors(robot.body):
+        _add_rotor(body, (x, y), radius, height)
+
+
+def _rotors(body: RobotBody) -> list[tuple[float, float, float]]:
+    """Of each rotor that is drawn: its middle in the body frame and its radius, metres."""
+    if body.kind is BodyKind.ROTORCRAFT:
+        airframe = body.rotorcraft
+        return [(x, y, airframe.rotor_radius_m) for x, y, _ in airframe.rotors]
+    half = body.size_m[0] / 2
+    angles = (math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4)
+    return [(0.68 * half * math.cos(angle), 0.68 * half * math.sin(angle), 0.3 * half) for angle in angles]
+
+
+def _add_rotor(body: ET.Element, place: tuple[float, float], radius: float, height: float) -> None:
+    """An arm and the disc of its rotor, red in front."""
+    x, y = place
     seen = {"contype": 0, "conaffinity": 0}
-    add(body, "geom", type="box", size=(span / 6, span / 9, height / 2.5), rgba=(0.15, 0.15, 0.2, 1), **seen)
-    arm = 0.68 * span / 2
-    for angle in (math.pi / 4, 3 * math.pi / 4, -3 * math.pi / 4, -math.pi / 4):
-        x, y = arm * math.cos(angle), arm * math.sin(angle)
-        add(
-            body,
-            "geom",
-            type="capsule",
-            fromto=(0, 0, 0, x, y, 0),
-            size=(height / 12,),
-            rgba=(0.3, 0.3, 0.3, 1),
-            **seen,
-        )
-        front = (0.8, 0.2, 0.2, 0.6) if x > 0 else (0.2, 0.2, 0.2, 0.6)
-        add(
-            body,
-            "geom",
-            type="cylinder",
-            pos=(x, y, height / 4),
-            size=(0.3 * span / 2, height / 40),
-            rgba=front,
-            **seen,
-        )
+    arm = (0, 0, 0, x, y, 0)
+    add(body, "geom", type="capsule", fromto=arm, size=(height / 12,), rgba=(0.3, 0.3, 0.3, 1), **seen)
+    color = (0.8, 0.2, 0.2, 0.6) if x > 1e-9 else (0.2, 0.2, 0.2, 0.6)
+    disc = (radius, height / 40)
+    add(body, "geom", type="cylinder", pos=(x, y, height / 4), size=disc, rgba=color, **seen)
 
 
-_MAKERS = {BodyKind.WHEELS: _wheeled, BodyKind.SLIDER: _sliding, BodyKind.ROTORS: _flying}
+_MAKERS = {
+    BodyKind.WHEELS: _wheeled,
+    BodyKind.SLIDER: _sliding,
+    BodyKind.ROTORS: _flying,
+    BodyKind.ROTORCRAFT: _flying,
+}
 
 
 def _both_ways(most: float) -> tuple[float, float]:

@@ -23,9 +23,10 @@ from muster.motion.limits import Limits
 from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.lasers import laser_height_m
-from muster.simulation.physics.bodies import ACCELERATION_MPS2, robot_body
+from muster.simulation.physics.bodies import ACCELERATION_MPS2, BodyKind, RobotBody, robot_body
 from muster.simulation.physics.buildings import Heights
-from muster.simulation.physics.control import Commands, Control
+from muster.simulation.physics.control import Control
+from muster.simulation.physics.controller import Commands
 from muster.simulation.physics.model import WALL_SETS, PlacedRobot
 from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
@@ -34,6 +35,8 @@ from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
+ROTORCRAFT_CLEARANCE_M = 0.03
+"""The gap that the right of way leaves where rotorcraft fly: they follow velocities less exactly than others."""
 STILL_MPS = 0.002
 """Slower is standing: a drone that hovers is never quite still."""
 
@@ -45,6 +48,11 @@ class PhysicsWorld(WorldBase):
     than `ACCELERATION_MPS2`, whatever its mission allows. When a robot joins, the model is made anew, and all others go
     on as they were.
 
+    Parameters
+    ----------
+    rotor_level
+        whether all drones have motors and rotors that are simulated one by one; else hexacopters alone do.
+
     Raises
     ------
     ParameterError
@@ -54,7 +62,10 @@ class PhysicsWorld(WorldBase):
     _turned_rad = 0.01
     _clearance_m = 0.003
 
-    def __init__(self, mission: Mission, **how: Any) -> None:
+    def __init__(self, mission: Mission, *, rotor_level: bool = False, **how: Any) -> None:
+        self._rotor_level = rotor_level
+        if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in _robots_of(mission)):
+            self._clearance_m = ROTORCRAFT_CLEARANCE_M
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
@@ -105,7 +116,7 @@ class PhysicsWorld(WorldBase):
 
     def _limits(self, robot: Robot) -> Limits:
         limits = limits_of(robot)
-        most = ACCELERATION_MPS2[robot_body(robot).kind]
+        most = ACCELERATION_MPS2[self._body(robot).kind]
         return replace(limits, acceleration_mps2=min(limits.acceleration_mps2, most))
 
     def _go_on(self, until_s: float) -> list[Event]:
@@ -153,13 +164,16 @@ class PhysicsWorld(WorldBase):
         self._carried = np.array([[1.0, 1.0, float(climbs), 1.0] for climbs in in_space]).reshape(-1, 4)
 
     def _placed(self, robot: Robot, place: Floats, heading: float, walls: int) -> PlacedRobot:
-        body = robot_body(robot)
+        body = self._body(robot)
         height = self.ground_m
         if robot.kind == "air":
             height = FLIGHT_M if self._dimensions == 2 else float(place[2]) + body.standing_m
         collides = self._collide and robot.radius_m > 0
         position = (float(place[0]), float(place[1]), height)
         return PlacedRobot(body, position, float(heading), walls if collides else None)
+
+    def _body(self, robot: Robot) -> RobotBody:
+        return robot_body(robot, rotor_level=self._rotor_level)
 
     def _walls_of(self, robot: Robot) -> int:
         """The number of the set of walls that stops a robot."""
@@ -171,3 +185,9 @@ class PhysicsWorld(WorldBase):
             raise ParameterError(f"robots: more than {WALL_SETS} sets of walls that stop them; expected fewer")
         self._wall_sets.append(faces)
         return len(self._wall_sets) - 1
+
+
+def _robots_of(mission: Mission) -> list[Robot]:
+    """The robots of a mission, and those that will join it."""
+    joining = [event.robot_joins for event in mission.events]
+    return [*mission.robots, *(robot for robot in joining if robot is not None)]

@@ -23,6 +23,7 @@ _SPEEDS = {
 }
 _SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
 _AVOIDANCE = {"orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "none": "not at all"}
+_LAWS = {"profile": "speed profiles, turns on the spot", "thesis": "control laws of the thesis"}
 _DRIVES = {"cmd_vel": "velocities (cmd_vel)", "goals": "goals (WP)"}
 _GIVES = {"goals": "goals (goal_pose)", "nav2": "Nav2's action"}
 _ENDS = {"hold": "hover where they are", "return": "return and land", "land": "land where they are"}
@@ -73,8 +74,9 @@ def _text(label: str, value: str = "") -> ui.input:
 def _simulated(_: PlanEntry, __: int) -> Reading:
     with ui.expansion("More").classes("full"):
         avoidance = _choice("How robots pass each other", _AVOIDANCE, "orca")
+        law = _choice("How robots move", _LAWS, "profile")
         seed = ui.number("Seed", value=0, min=0, precision=0).props("outlined dense").classes("full")
-    return lambda: {"avoidance": avoidance.value, "seed": int(seed.value or 0)}
+    return lambda: {"avoidance": avoidance.value, "law": law.value, "seed": int(seed.value or 0)}
 
 
 def _unset(_: PlanEntry, __: int) -> Reading:

@@ -1,0 +1,24 @@
+"""Names of the methods of collision avoidance, and which of them a mission may have."""
+
+from __future__ import annotations
+
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+
+AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+_IN_THE_PLANE = ("rvo", "hrvo")
+
+
+def require_avoidance(avoidance: str, dimensions: int) -> None:
+    """Refuse a name that no method has, and methods of the plane for a mission in space.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if avoidance not in AVOIDANCE:
+        raise ParameterError(
+            f"avoidance: {avoidance}; expected {', '.join(AVOIDANCE)}{did_you_mean(avoidance, AVOIDANCE)}"
+        )
+    if avoidance in _IN_THE_PLANE and dimensions == 3:
+        raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
