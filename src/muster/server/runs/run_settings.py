@@ -28,6 +28,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "rate_hz": float,
         "avoidance": str,
         "odometry": str,
+        "poses": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
