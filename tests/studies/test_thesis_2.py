@@ -6,11 +6,13 @@ import pytest
 from scipy.stats import bootstrap
 
 import muster
+from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
 from muster_studies.runs import Case, perform
 from muster_studies.thesis_2 import samples
+from muster_studies.thesis_2.diversity import predecessors
 from muster_studies.thesis_2.published import RANKS
 from muster_studies.thesis_2.ranking import _reached_s
 
@@ -67,6 +69,18 @@ def test_plans_that_do_less_have_no_excess():
 def test_when_a_goal_is_reached():
     run = SimpleNamespace(history=((0.1, 9.0), (0.2, 7.0), (0.3, 6.0)), cpu_s=0.5)
     assert [_reached_s(run, goal) for goal in (9.5, 7.0, 6.5, 5.0)] == [0.1, 0.2, 0.3, 0.5]
+
+
+def test_diversity_falls_from_that_of_random_plans():
+    table = study_named("thesis-2").run(Effort(quick=True, tables=("diversity",))).tables[0]
+    for row in table.records():
+        assert 85 < row["after 0"] <= 100
+        assert 0 <= row["after 1000"] < row["after 0"]
+
+
+def test_predecessors_are_places():
+    problem = Problem.compile(muster.load("6T-2R"))
+    assert predecessors(problem, [[2, 0], [5]]).tolist() == [2, -1, 6, -1, -1, 7]
 
 
 def test_limits_of_processor_time_are_kept():

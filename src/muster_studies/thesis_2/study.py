@@ -9,6 +9,7 @@ from muster_studies.effort import Effort
 from muster_studies.repetition import OnDone, Performed, Repetition, one_by_one, over_seeds
 from muster_studies.runs import Case
 from muster_studies.thesis_2 import samples
+from muster_studies.thesis_2.diversity import Diversity
 from muster_studies.thesis_2.ranking import Ranking, Verdicts
 
 
@@ -39,7 +40,7 @@ THESIS_2 = Repetition(
     name="thesis-2",
     summary="the reviewed allocators ranked, TCF thesis, section 2.3: Table 2.2",
     document="TCF thesis, section 2",
-    reproductions=(Ranking(), Verdicts()),
+    reproductions=(Ranking(), Verdicts(), Diversity()),
     perform=_perform,
     seeds=samples.seed_count,
     extras=("studies",),
