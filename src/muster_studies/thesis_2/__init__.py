@@ -1,4 +1,4 @@
-"""The alternatives that section 2 of the TCF thesis reviews, measured beside its verdicts."""
+"""The alternatives that [tcf-thesis], section 2, reviews, measured beside its verdicts."""
 
 from muster_studies.thesis_2.study import THESIS_2
 

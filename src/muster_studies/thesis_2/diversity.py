@@ -94,7 +94,7 @@ class Diversity:
             by_seed = [found[Evolution(name, seed)] for seed in range(_seeds(effort))]
             rows.append((name, *(100 * fmean(column) for column in zip(*by_seed, strict=True))))
         notes = (
-            "Per cent of tasks to which two plans come from different places, the mean over all pairs of the population "
+            "Per cent of tasks to which two plans come from different places, the mean over all pairs of plans "
             f"and {_seeds(effort)} seeds; mission {MISSION}. 0: all plans are alike, by one super-individual.",
         )
         columns = ("allocator", *(f"after {count}" for count in GENERATIONS))
