@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from muster import core
 from muster.allocation import genetic, ipga, order_crossover
 from muster.allocation.allocator import Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.strings import Decoded, Strings, diversity, random_strings, read
+from muster.allocation.strings import Decoded, Strings, diversity, random_strings
 from muster_studies.effort import Effort
 from muster_studies.runs import mission_named
 from muster_studies.tables import Cell, Table
@@ -63,15 +62,10 @@ def _genetic(problem: Problem, seed: int) -> Iterator[Any]:
 
 def _strings(problem: Problem, of: Evolution) -> Iterator[Any]:
     """The same of algorithms with strings."""
-    random, decoded, decoder = np.random.default_rng(of.seed), Decoded(problem, Stop()), core.Decoder(problem.core)
+    random, decoded = np.random.default_rng(of.seed), Decoded(problem, Stop())
     population = random_strings(problem, 50, random)
-
-    def routes() -> list[Routes]:
-        decoder.in_order(*read(problem, population))
-        return [decoder.routes(k) for k in range(len(population))]
-
     while True:
-        yield routes
+        yield lambda: decoded.routes(population)
         figures = decoded.figures(population)
         if of.algorithm == "ipga":
             population = ipga.next_generation(population, figures, ipga.Parameters().group_size, random)
