@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from statistics import fmean
 from typing import Any
 
@@ -65,7 +66,7 @@ def _strings(problem: Problem, of: Evolution) -> Iterator[Any]:
     random, decoded = np.random.default_rng(of.seed), Decoded(problem, Stop())
     population = random_strings(problem, 50, random)
     while True:
-        yield lambda: decoded.routes(population)
+        yield partial(decoded.routes, population)
         figures = decoded.figures(population)
         if of.algorithm == "ipga":
             population = ipga.next_generation(population, figures, ipga.Parameters().group_size, random)
