@@ -41,6 +41,7 @@ class RotorcraftController:
         self._compensates = compensates
         self.group = simulated.group(BodyKind.ROTORCRAFT)
         airframes = [body.rotorcraft for body in self.group.robots]
+        self._energy_j = simulated.energy_j
         self._step_s, self._state = simulated.step_s, simulated.rotors
         self._rotors, self._law = Rotors(airframes, simulated.step_s), GeometricController(airframes)
         self._observed = -math.expm1(-simulated.step_s / OBSERVER_S)
@@ -124,7 +125,7 @@ class RotorcraftController:
         forces, bodies = self.group.data.xfrc_applied, self.group.bodies
         forces[bodies, :3] = pushes + in_map(motion.axes, drag)
         forces[bodies, 3:] = in_map(motion.axes, moments)
-        state.energy_j[who] += self._rotors.power(speeds) * self._step_s
+        self._energy_j[who] += self._rotors.power(speeds) * self._step_s
         self._observe(motion, thrusts.sum(axis=1))
 
     def _observe(self, motion: Motion, thrust: Floats) -> None:
