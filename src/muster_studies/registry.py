@@ -12,6 +12,7 @@ from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
+from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
@@ -62,6 +63,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     RVO,
     RESCUE,
     MARKET_5,
+    LOCALISATION,
     ROTORS,
     NEGOTIATION,
 )
