@@ -11,6 +11,7 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
+from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
@@ -58,6 +59,7 @@ _IN_THIS_PROCESS = (
     "film_speed",
     "still",
     "foxglove",
+    *IN_THIS_PROCESS,
 )
 _LAWS = ("profile", "thesis")
 
@@ -100,6 +102,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="KIND=AMOUNT",
     help="Noise of motion and telemetry; see docs/simulation.md.",
 )
+@drone_options
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
@@ -131,6 +134,10 @@ def command(
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
+    wind: str | None,
+    gusts: float | None,
+    rotors: bool,
+    batteries: tuple[str, ...],
     record: Path | None,
     html: Path | None,
     plot: Path | None,
@@ -160,6 +167,7 @@ def command(
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise = noise_of(noises)
+    conditions = conditions_of(wind, gusts, batteries, rotors=rotors)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = mission.load(verbose=verbose)
     looks = _looks(loaded, world, found, cameras)
@@ -190,6 +198,7 @@ def command(
             observers=observers,
             film=footage,
             on_look=looks,
+            **conditions,
             **rules,
         )
     if found is not None and looks is not None:

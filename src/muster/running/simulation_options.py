@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
-    from muster.simulation import Noise, SimulatedWorld
+    from muster.simulation import Noise, SimulatedWorld, Wind
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance`, `law`, `noise` and `ignore` as `Simulation` takes them."""
+    """How the world is, as `Simulation` takes it, and `ignore`."""
 
     world: str
     dt_s: float
     avoidance: str
     law: str
     noise: Noise
+    wind: Wind
+    batteries: Mapping[str, float]
+    rotor_level: bool
     ignore: str | Collection[str]
     on_look: OnLook | None
     on_world: Callable[[SimulatedWorld], None] | None

@@ -84,11 +84,13 @@ class Gusts:
     def step(self, airspeed_mps: float, deviations: Floats, lengths: Floats, seconds: float) -> Floats:
         """(3,) m/s along the wind, across it and upright, after a step at an airspeed."""
         decays = seconds * max(airspeed_mps, _SLOWEST_MPS) / lengths
-        for k, decay in enumerate(decays):
-            moved = math.exp(-decay) * np.array([[1.0, 0.0], [decay, 1.0]])
-            drawn = self._STATIONARY - moved @ self._STATIONARY @ moved.T
-            root = np.linalg.cholesky(drawn + 1e-15 * np.eye(2))
-            self._states[k] = moved @ self._states[k] + root @ self._random.normal(size=2)
+        moved = np.tile(np.eye(2), (3, 1, 1))
+        moved[:, 1, 0] = decays
+        moved *= np.exp(-decays)[:, None, None]
+        drawn = self._STATIONARY - moved @ self._STATIONARY @ moved.transpose(0, 2, 1)
+        roots = np.linalg.cholesky(drawn + 1e-15 * np.eye(2))
+        noise = self._random.normal(size=(3, 2, 1))
+        self._states = (moved @ self._states[:, :, None] + roots @ noise)[:, :, 0]
         first, second = self._states.T
         shaped = (math.sqrt(3) * first + (1 - math.sqrt(3)) * second) / math.sqrt(2)
         return np.asarray(deviations * [first[0], shaped[1], shaped[2]])
@@ -107,7 +109,7 @@ class WindField:
 
     def step(self, heights_m: Floats, velocities: Floats, seconds: float) -> Floats:
         """(n, 3): the velocities of the air around robots at these heights above the ground, moving so, m/s."""
-        steady = np.array(self.wind.velocity_mps)
+        steady = np.array(self.wind.velocity_mps, dtype=np.float64)
         air = np.tile(steady, (len(heights_m), 1))
         if self.wind.gusts_mps == 0:
             return air

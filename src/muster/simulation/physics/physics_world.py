@@ -40,8 +40,8 @@ PHYSICS_S = 0.005
 """The longest step of physics."""
 ROTORCRAFT_CLEARANCE_M = 0.03
 """The gap that the right of way leaves where rotorcraft fly: they follow velocities less exactly than others."""
-WIND_CLEARANCE_M = 0.1
-"""The same in wind."""
+WIND_CLEARANCE_M, GUST_CLEARANCE_S = 0.05, 0.01
+"""The same in wind: the first, and the second times the speed of gusts."""
 GUSTY_ARRIVAL_M = 0.1
 """The distance at which one that gusts keep off has arrived."""
 STILL_MPS = 0.002
@@ -75,7 +75,8 @@ class PhysicsWorld(WorldBase):
     def __init__(self, mission: Mission, *, rotor_level: bool = False, wind: Wind = CALM, **how: Any) -> None:
         self._rotor_level = rotor_level or wind.blows or bool(how.get("batteries"))
         if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in robots_of(mission)):
-            self._clearance_m = WIND_CLEARANCE_M if wind.blows else ROTORCRAFT_CLEARANCE_M
+            windy_m = WIND_CLEARANCE_M + GUST_CLEARANCE_S * wind.gusts_mps
+            self._clearance_m = windy_m if wind.blows else ROTORCRAFT_CLEARANCE_M
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
