@@ -19,9 +19,10 @@ draws() { # through EGL, for which Mesa has the driver, or through OSMesa
 has_browser || packages="$packages chromium"
 draws || packages="$packages libegl1 libegl-mesa0"
 has_ros() { # its master, and its Python modules, which Debian has for its own Python
-    command -v rosmaster >/dev/null && /usr/bin/python3 -c 'import nav_msgs, rospy, std_srvs, tf2_msgs' 2>/dev/null
+    command -v rosmaster >/dev/null && /usr/bin/python3 -c 'import nav_msgs, rospy, sensor_msgs, std_srvs, tf2_msgs, visualization_msgs' 2>/dev/null
 }
 has_ros || packages="$packages python3-rosmaster python3-rospy python3-nav-msgs python3-std-srvs python3-tf2-msgs"
+has_ros || packages="$packages python3-sensor-msgs python3-visualization-msgs"
 command -v rosbag >/dev/null || packages="$packages python3-rosbag"
 has_postgresql() { # whose programs Debian keeps off the path
     for program in "$(command -v initdb)" "${POSTGRESQL:-/usr/lib/postgresql}"/*/bin/initdb; do

@@ -16,6 +16,7 @@ from muster.perception.localisation import (
     by_size,
     ground_covariance,
     on_ground,
+    size_covariance,
 )
 from muster.perception.tags import CORNERS
 
@@ -129,6 +130,23 @@ def test_the_covariance_is_that_of_small_changes():
     slopes = [sigma * (on_ground(v, p)[0] - here)[:2] / step for v, p, sigma in changed]
     expected = sum(np.outer(slope, slope) for slope in slopes)
     np.testing.assert_allclose(ground_covariance(view, pixel, errors)[0], expected, rtol=1e-3)
+
+
+def test_the_covariance_by_size_is_that_of_many_noisy_corners():
+    """Corners, the robot's place and its attitude err as they say they do."""
+    view = over(0.5, -0.3, 3.0, 0.4)
+    tag = pose_transform([2.5, 0.4, 0.0, math.pi, 0.0, 0.7])
+    exact, random = corners_of(view, tag), np.random.default_rng(3)
+    errors = Uncertainty(pixel_px=0.3, position_m=0.02, angle_rad=0.005)
+    places = []
+    for _ in range(600):
+        shift, turn = random.normal(0, 0.02, 3), random.normal(0, 0.005, 3)
+        c = view.position
+        off = transform(c + shift, rotation(*turn)) @ transform(-c, np.eye(3))
+        wrong = View(view.intrinsics, off @ view.pose)
+        places.append(by_size(wrong, exact + random.normal(0, 0.3, (4, 2)), SIZE).position[:2])
+    sampled, said = np.cov(np.array(places).T), size_covariance(view, exact, SIZE, errors)
+    np.testing.assert_allclose(np.linalg.eigvalsh(said), np.linalg.eigvalsh(sampled), rtol=0.25)
 
 
 def test_far_views_are_stretched_along_the_view():

@@ -28,6 +28,7 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
+from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node_processes import NodeProcesses
-    from muster.execution import Report
+    from muster.execution import Recorder, Report
 
 _LEFT = "the robots were told to stand"
 
@@ -71,8 +72,23 @@ _LEFT = "the robots were told to stand"
     help="Rate at which velocities are sent.",
 )
 @avoidance_option
+@click.option(
+    "--odometry",
+    type=click.Choice(["map", "start"]),
+    default="map",
+    show_default=True,
+    help="Odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission.",
+)
+@click.option(
+    "--poses",
+    default="",
+    metavar="TOPIC",
+    help="Where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose.  [default: <robot>/pose]",
+)
+@click.option("--markers", is_flag=True, help="Publish tasks, routes and robots for RViz, on /muster/markers.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
+@target_options
 @ros_options
 @real_options
 def command(
@@ -85,9 +101,13 @@ def command(
     arrival: float,
     rate: float,
     avoidance: str,
+    odometry: Literal["map", "start"],
+    poses: str,
+    markers: bool,
     known_only: bool,
     on_start: bool,
     stay: bool,
+    targets: TargetOptions | None,
     options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 1, in real time; robots that it does not name may join.
@@ -95,9 +115,12 @@ def command(
     Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION the command waits for command_interface/load and start.
     Ctrl-C stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
+    from muster.bridges.discovery import pose_topics
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
+    if markers or targets is not None:
+        require_rospy(("sensor_msgs", "visualization_msgs"))
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
@@ -105,6 +128,7 @@ def command(
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
     _require_steering(drive, avoidance)
+    pose_topics(poses)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -118,14 +142,18 @@ def command(
             arrival_m=arrival,
             rate_hz=rate,
             avoidance=avoidance,
+            odometry=odometry,
+            poses=poses,
             joins=not known_only,
         )
 
     become_node("muster", master)
     try:
-        own = ("--planning", json.dumps(_as_data(options)))
-        node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
-        return _with_nodes(loaded, _Work(fleet_of, given, wait_s, stay, options), node, master, begins=not on_start)
+        own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
+        where = ("--namespace", namespace, "--frame", frame, "--poses", poses)
+        node = (sys.executable, "-m", "muster.cli.ros_node", *where, *own)
+        work = _Work(fleet_of, given, wait_s, stay, targets is not None, frame if markers else None, options)
+        return _with_nodes(loaded, work, node, master, begins=not on_start)
     finally:
         leave()
 
@@ -157,6 +185,8 @@ class _Work:
     plan: Plan | None
     wait_s: float
     stay: bool
+    finds_targets: bool
+    marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
 
 
@@ -174,7 +204,7 @@ def _with_nodes(
     """
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.node import master_address
-    from muster.bridges.ros1.node_processes import NodeProcesses
+    from muster.bridges.ros1.node_processes import DUTIES, NodeProcesses
 
     controller = Controller()
     if mission is not None:
@@ -184,7 +214,13 @@ def _with_nodes(
     elif not work.options.quiet:
         click.echo("waits for command_interface/load and start", err=True)
     with ctrl_c_halts(TO_END) as asked:
-        children = NodeProcesses(node, master_address(master), asked_to_end=asked.is_set, on_end=controller.end_all)
+        children = NodeProcesses(
+            node,
+            master_address(master),
+            asked_to_end=asked.is_set,
+            on_end=controller.end_all,
+            duties=(*DUTIES, "target_localization") if work.finds_targets else DUTIES,
+        )
         with children:
             code = _one(controller, work, children)
             while work.stay and not controller.ending.is_set():
@@ -237,7 +273,12 @@ def _through(
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        report = carried_out(there, plan, fleet, options, controller.halt, [controller.mission_topics])
+        observers: list[Recorder] = [controller.mission_topics]
+        if work.marked_in is not None:
+            from muster.bridges.ros1.markers import Markers
+
+            observers.append(Markers(there, work.marked_in))
+        report = carried_out(there, plan, fleet, options, controller.halt, observers)
         return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()

@@ -100,6 +100,11 @@ class Intrinsics:
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
 
+def intrinsics_of_mission(camera: model.Camera) -> Intrinsics:
+    """Of a camera as its mission has it."""
+    return Intrinsics.of_view(camera.width_px, camera.height_px, math.radians(camera.fov_deg))
+
+
 def fault_in(values: Mapping[str, Any]) -> tuple[str, Any, str] | None:
     """The first fault in the numbers of `Intrinsics`: the name, the value, and what was expected."""
     for name, value in values.items():

@@ -5,6 +5,7 @@ A fault of one image (its size, a tag twice, an invalid pose) becomes a remark, 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from muster.perception.camera import Floats, Intrinsics, View
 from muster.perception.detection import Sightings, TagDetector
 from muster.perception.estimates import RawEstimates
 from muster.perception.images import Image
-from muster.perception.localisation import Uncertainty, ground_covariance, on_ground
+from muster.perception.localisation import Uncertainty, by_size, ground_covariance, on_ground, size_covariance
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,9 @@ class CameraObserver:
     """One robot's camera and its assumed errors.
 
     `mount` is (4, 4) from body to image; images need a `detector`. No estimate is made of a tag farther away than
-    `farthest_m`: near the horizon a pixel is worth many metres.
+    `farthest_m`: near the horizon a pixel is worth many metres. With `sizes_m`, of tags by their ids, a tag's position
+    is found by its size, wherever it hangs or lies, and a tag of unknown size is left out; without, by where its ray
+    meets the ground.
     """
 
     robot: str
@@ -42,6 +45,7 @@ class CameraObserver:
     uncertainty: Uncertainty = Uncertainty()
     ground_m: float = 0.0
     farthest_m: float = 20.0
+    sizes_m: Mapping[int, float] | None = None
 
     def look(self, image: Image, body: npt.ArrayLike, time_s: float) -> Observation:
         """Find tags in an image taken at `time_s` at the estimated pose `body`, (6,) or (4, 4), of the robot."""
@@ -61,9 +65,24 @@ class CameraObserver:
         """
         view = View.from_body(self.intrinsics, body, self.mount)
         said = tuple(f"{self._when(time_s)}: tag {tag} is twice in one image" for tag in sightings.repeated)
-        return Observation(sightings, self._estimates(view, sightings, time_s), said)
+        estimates = self._on_ground if self.sizes_m is None else self._by_size
+        return Observation(sightings, estimates(view, sightings, time_s), said)
 
-    def _estimates(self, view: View, sightings: Sightings, time_s: float) -> RawEstimates:
+    def _by_size(self, view: View, sightings: Sightings, time_s: float) -> RawEstimates:
+        assert self.sizes_m is not None
+        parts = []
+        for seen in sightings.all:
+            size = self.sizes_m.get(seen.tag)
+            if size is None:
+                continue
+            place = by_size(view, seen.corners, size).position
+            if np.linalg.norm(place - view.position) <= self.farthest_m:
+                spread = size_covariance(view, seen.corners, size, self.uncertainty)
+                tags, times = np.array([seen.tag], dtype=np.int64), np.array([time_s])
+                parts.append(RawEstimates(place[None, :2], spread[None], tags, (self.robot,), times))
+        return RawEstimates.joined(parts)
+
+    def _on_ground(self, view: View, sightings: Sightings, time_s: float) -> RawEstimates:
         centres = np.array([sighting.centre for sighting in sightings.all]).reshape(-1, 2)
         tags = np.array([sighting.tag for sighting in sightings.all], dtype=np.int64)
         places = on_ground(view, centres, self.ground_m)

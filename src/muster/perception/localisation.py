@@ -119,6 +119,32 @@ def by_size(view: View, corners: npt.ArrayLike, size_m: float) -> TagPose:
     return TagPose(poses[best], errors[best], poses[1 - best], errors[1 - best])
 
 
+def size_covariance(
+    view: View, corners: npt.ArrayLike, size_m: float, uncertainty: Uncertainty
+) -> npt.NDArray[np.float64]:
+    """To first order, the covariance (2, 2), m^2, of the x and y of `by_size`.
+
+    The corners' part is differenced, each corner moved by a pixel to both sides; the robot's place and attitude move
+    the tag as a whole.
+
+    Raises
+    ------
+    ParameterError
+        as `by_size`.
+    """
+    at = np.asarray(corners, dtype=np.float64)
+    place = by_size(view, at, size_m).position
+    slopes = []
+    for k in range(8):
+        off = np.zeros(8)
+        off[k] = 0.5
+        ahead, back = (by_size(view, at + sign * off.reshape(4, 2), size_m).position for sign in (1, -1))
+        slopes.append((ahead - back)[:2])
+    of_corners = uncertainty.pixel_px * np.array(slopes).T
+    of_turns = uncertainty.angle_rad * _cross((place - view.position)[None])[0][:2]
+    return np.asarray(of_corners @ of_corners.T + of_turns @ of_turns.T + uncertainty.position_m**2 * np.eye(2))
+
+
 def by_length_as_printed(view: View, corners: npt.ArrayLike, size_m: float) -> Floats:
     """(4.44), (4.45) as printed: the place (3,) of a tag by the length of its diagonals in the picture.
 

@@ -7,20 +7,22 @@ tilted as its inertial unit says, both with the world's noise. What a silent rob
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from muster.execution.report import FoundReport, Report
-from muster.mission.model import Camera, Event, Found, Mission, MovedTask, Robot, Task, Work
-from muster.mission.records import specified
+from muster.mission.model import Event, Mission, Robot
 from muster.motion.frames import angles
+from muster.motion.grid import Floats
 from muster.motion.port import RobotPort
-from muster.perception.camera import Intrinsics, View, mount_of_mission
+from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
 from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
+from muster.perception.found_tasks import FoundTasks
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
 from muster.perception.points_of_interest import remarks
@@ -32,12 +34,16 @@ OnLook = Callable[[Look], None]
 
 @dataclass
 class _Eye:
-    """One robot's camera: its number in the world, and when it looks next."""
+    """One robot's camera: its number in the world, when it looks next, and its images that are still on the way.
+
+    `images` are the times at which they arrive, and the true poses (4, 4) from which they were taken.
+    """
 
     number: int
     observer: CameraObserver
     period_s: float
     due_s: float
+    images: deque[tuple[float, Floats]] = field(default_factory=deque)
 
 
 class CameraSearch:
@@ -80,7 +86,7 @@ class CameraSearch:
         self._on_look = on_look or (lambda look: None)
         self._sight, self._detector = _sight_of(world, mission, seed)
         self._eyes: dict[str, _Eye] = {}
-        self._tasks: dict[tuple[int, int], str] = {}
+        self.tasks = FoundTasks(mission, world.ground_m)
         self._remarks: dict[tuple[str, str], str] = {}
         self.search = PointSearch(proof)
         for robot in mission.robots:
@@ -88,8 +94,10 @@ class CameraSearch:
 
     @property
     def due_s(self) -> float:
-        """When a camera looks next."""
-        return min((eye.due_s for eye in self._eyes.values()), default=math.inf)
+        """When a camera looks next, or an image arrives."""
+        looks = [eye.due_s for eye in self._eyes.values()]
+        arrivals = [arrives_s for eye in self._eyes.values() for arrives_s, _ in eye.images]
+        return min([*looks, *arrivals], default=math.inf)
 
     @property
     def found(self) -> tuple[FoundReport, ...]:
@@ -107,7 +115,7 @@ class CameraSearch:
             return
         eye = CameraObserver(
             robot=robot.id,
-            intrinsics=intrinsics_of(robot.camera),
+            intrinsics=intrinsics_of_mission(robot.camera),
             mount=mount_of_mission(robot.camera),
             detector=self._detector,
             uncertainty=Uncertainty(
@@ -135,14 +143,17 @@ class CameraSearch:
         """
         frames, positions, axes = self._world.frames, self._world.positions, self._world.axes
         for robot, eye in self._eyes.items():
-            if eye.due_s > now + 1e-9:
+            k = eye.number
+            if eye.due_s <= now + 1e-9:
+                eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
+                eye.images.append((now + self._noise.camera_delay_s, true_body(frames[k], axes[k])))
+            if not eye.images or eye.images[0][0] > now + 1e-9:
                 continue
-            eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
+            _, body = eye.images.popleft()
             said = None if robot in unheard else self._ports[robot].telemetry()
             if said is None or said.time_s < now - self._world.dt_s / 2:
                 continue
-            k = eye.number
-            view = View.from_body(eye.observer.intrinsics, true_body(frames[k], axes[k]), eye.observer.mount)
+            view = View.from_body(eye.observer.intrinsics, body, eye.observer.mount)
             roll, pitch = angles(axes[k])[:2] + self._random.normal(0.0, self._noise.attitude_rad, 2)
             believed = [*(np.array(said.position) + frames[k] - positions[k]), roll, pitch, said.heading]
             look = self._sight.look(eye.observer, view, believed, now)
@@ -150,42 +161,16 @@ class CameraSearch:
             for remark in look.observation.remarks:  # what is so in many images is said once
                 self._remarks.setdefault((robot, remark.partition(": ")[2]), remark)
             for find in self.search.take(look.observation.estimates, now):
-                event = self._event(find, now)  # first: it names the task
+                event = self.tasks.event(find, now)  # first: it names the task
                 yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
 
     def refused(self, task: str) -> None:
         """What was found did not become this task after all."""
-        self._tasks = {find: name for find, name in self._tasks.items() if name != task}
+        self.tasks.refused(task)
 
     def close(self) -> None:
         """Give back what cameras hold."""
         self._sight.close()
-
-    def _event(self, find: FoundPoint, now: float) -> Event | None:
-        """The task that a find becomes; or, of one that was found before, that its task is elsewhere."""
-        place = self._place(find)
-        task = self._tasks.get((find.tag, find.number))
-        if task is not None:
-            return Event(at_s=now, move_task=MovedTask(task=task, position=place))
-        rule = _rule_for(self._mission.found, find.tag)
-        if rule is None:
-            return None
-        name = self._free_name(find)
-        self._tasks[find.tag, find.number] = name
-        return Event(at_s=now, new_task=task_of(rule.becomes, name, place))
-
-    def _place(self, find: FoundPoint) -> tuple[float, ...]:
-        x, y = (round(float(value), 4) for value in find.point.position[:2])
-        return (x, y) if self._mission.dimensions == 2 else (x, y, self._world.ground_m)
-
-    def _free_name(self, find: FoundPoint) -> str:
-        taken = {task.id for task in self._mission.tasks} | {
-            event.new_task.id for event in self._mission.events if event.new_task is not None
-        }
-        name = f"found-{find.tag}" + (f"-{find.number + 1}" if find.number else "")
-        while name in taken:
-            name += "'"
-        return name
 
     def _told(self, find: FoundPoint) -> FoundReport:
         point = find.point
@@ -199,7 +184,7 @@ class CameraSearch:
             sightings=point.sightings,
             robots=point.robots,
             found_s=find.at_s,
-            task=self._tasks.get((find.tag, find.number)),
+            task=self.tasks.task(find),
         )
 
 
@@ -223,21 +208,6 @@ def camera_search_for(
 
 def with_found(report: Report, camera_search: CameraSearch | None) -> Report:
     """A report with what cameras found."""
-    return (
-        report if camera_search is None else replace(report, found=camera_search.found, remarks=camera_search.remarks)
-    )
-
-
-def intrinsics_of(camera: Camera) -> Intrinsics:
-    """Of a camera as its mission has it."""
-    return Intrinsics.of_view(camera.width_px, camera.height_px, math.radians(camera.fov_deg))
-
-
-def task_of(work: Work, name: str, position: Sequence[float]) -> Task:
-    """Work as a task at a place."""
-    own: dict[str, Any] = {f.name: getattr(work, f.name) for f in specified(Work)}
-    return Task(id=name, position=tuple(position), **own)
-
-
-def _rule_for(rules: Sequence[Found], tag: int) -> Found | None:
-    return next((rule for rule in rules if rule.tags is None or tag in rule.tags), None)
+    if camera_search is None:
+        return report
+    return replace(report, found=camera_search.found, remarks=(*report.remarks, *camera_search.remarks))

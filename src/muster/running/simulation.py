@@ -26,8 +26,9 @@ from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
-from muster.running.state_estimation import with_state_estimation
+from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
@@ -61,7 +62,9 @@ class Simulation:
     law
         how robots move: profile, or thesis, by the control laws of [tcf-thesis].
     noise
-        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+        of motion and telemetry.
+    pose, localise
+        what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
     wind
         in which drones fly, in the physics world.
     batteries
@@ -101,6 +104,8 @@ class Simulation:
         wind: Wind = CALM,
         batteries: Charges = NO_CHARGES,
         rotor_level: bool = False,
+        pose: str | None = None,
+        localise: Localise | None = None,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
@@ -124,7 +129,7 @@ class Simulation:
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world)
+        self._robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -217,6 +222,8 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        if isinstance(self._robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, self._robots.remark))
         return with_found(report, self._camera_search)
 
     @property

@@ -10,11 +10,12 @@ if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
+    from muster.running.localisation import Localise
     from muster.simulation import Noise, SimulatedWorld, Wind
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is, as `Simulation` takes it, and `ignore`."""
+    """How the world is, and how robots localise themselves; all as `Simulation` takes it."""
 
     world: str
     dt_s: float
@@ -24,6 +25,8 @@ class WorldOptions(TypedDict, total=False):
     wind: Wind
     batteries: Mapping[str, float]
     rotor_level: bool
+    pose: str | None
+    localise: Localise | None
     ignore: str | Collection[str]
     on_look: OnLook | None
     on_world: Callable[[SimulatedWorld], None] | None

@@ -13,6 +13,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import wrapped
 from muster.motion.port import Inertial, Telemetry, Waypoint
+from muster.perception.dead_reckoning import Odometry
 from muster.simulation.batteries import Battery
 from muster.simulation.noise import Noise
 
@@ -74,6 +75,15 @@ class SimulatedPort:
         """Seconds that it has stayed at way points, as far as they are passed."""
         *_, order, passed = self._crowd.report(self._number)
         return self._held_before_s + sum(point.hold_s for point in self._sent.get(order, ())[:passed])
+
+    def odometry(self) -> Odometry:
+        """What odometry counted in the last step of the world, noise included; also of a muted robot."""
+        ahead, left, up, turned = self._crowd.counted(self._number)
+        return Odometry(self._crowd.dt, (ahead, left, up), turned)
+
+    def inertial(self) -> Inertial | None:
+        """What the inertial unit gave in the last step, noise included; also of a muted robot."""
+        return self._now().inertial
 
     def mute(self) -> None:
         """Freeze telemetry."""

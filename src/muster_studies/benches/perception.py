@@ -7,11 +7,10 @@ import time
 from collections.abc import Callable
 from contextlib import closing
 
-from muster.perception.camera import View, mount_of_mission
+from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
 from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
 from muster.planning.loading import load
-from muster.running.camera_search import intrinsics_of
 from muster_studies.benches.measurement import Measurement
 
 MISSION = "16T-3R-tags"
@@ -35,7 +34,7 @@ def perception(runs: int) -> list[Measurement]:
     mission = load(MISSION)
     camera = mission.robots[0].camera
     assert camera is not None
-    lens, mount, detector = intrinsics_of(camera), mount_of_mission(camera), TagDetector()
+    lens, mount, detector = intrinsics_of_mission(camera), mount_of_mission(camera), TagDetector()
     drone = CameraObserver(robot="r_0", intrinsics=lens, mount=mount, detector=detector)
     view = View.from_body(lens, OVER_TAGS, mount)
     world = PhysicsWorld(mission)

@@ -1,7 +1,8 @@
 """A user who knows nothing of Muster, only ROS: does what lines of JSON on standard input say, and answers in JSON.
 
 {"call": SERVICE}, {"set": PARAMETER, "to": VALUE}, {"publish": TOPIC, "text": TEXT}, {"last": TOPIC} (of a latched
-std_msgs/String), {"nodes": true}, {"publishers": TOPIC}.
+std_msgs/String), {"nodes": true}, {"publishers": TOPIC}, {"image": TOPIC},
+{"scan": TOPIC, "ranges": [...], "first": RAD, "step": RAD} (published until somebody has heard it).
 """
 
 import json
@@ -35,6 +36,16 @@ def publish(topic, text):
     publishers[topic].publish(String(text))
 
 
+def scan(scan, ranges, first, step):
+    from sensor_msgs.msg import LaserScan
+
+    publishers.setdefault(scan, rospy.Publisher(scan, LaserScan, queue_size=10))
+    message = LaserScan(angle_min=first, angle_increment=step, range_min=0.05, range_max=4.0, ranges=ranges)
+    message.header.stamp = rospy.Time.now()
+    time.sleep(0.1)
+    publishers[scan].publish(message)
+
+
 def state():
     """Of the master: (topic, nodes) of those who publish, who subscribe, who serve."""
     return rosgraph.Master("/user").getSystemState()
@@ -49,6 +60,14 @@ def do(asked):
         return publish(asked["publish"], asked["text"])
     if "last" in asked:
         return json.loads(rospy.wait_for_message(asked["last"], String, timeout=20).data)
+    if "scan" in asked:
+        return scan(**asked)
+    if "image" in asked:
+        from sensor_msgs.msg import Image
+
+        image = rospy.wait_for_message(asked["image"], Image, timeout=20)
+        size = {"width": image.width, "height": image.height, "encoding": image.encoding}
+        return size | {"frame": image.header.frame_id, "first": list(image.data[:3])}
     if "nodes" in asked:
         return sorted({node for part in state() for _, nodes in part for node in nodes})
     return dict(map(tuple, state()[0])).get(asked["publishers"], [])

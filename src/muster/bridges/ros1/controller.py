@@ -18,7 +18,7 @@ from muster.bridges.ros1.parameter_descriptions import task_of
 from muster.bridges.ros1.requests import COMMANDS, PLANNING, Data, RequestClient, RequestServer
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MusterError, NetworkError, ParameterError
-from muster.mission.model import Event, Mission, Task
+from muster.mission.model import Event, Mission, MovedTask, Task
 from muster.mission.plan import Plan, plan_from
 from muster.mission.value_types import shown
 
@@ -153,6 +153,7 @@ class Controller:
             "pause": self._pause,
             "cancel": self._cancel,
             "add_task": lambda: self._add_task(question["task"]),
+            "move_task": lambda: self._move_task(question["move"]),
         }
         try:
             return {"success": True, "message": asked[question["verb"]]()}
@@ -193,6 +194,15 @@ class Controller:
             else:
                 self._fleet.report(Event(at_s=self._fleet.time_s, new_task=task))
             return f"task {task.id}"
+
+    def _move_task(self, move: Mapping[str, Any]) -> str:
+        """A task lies elsewhere than was thought: of what cameras have found."""
+        with self._lock:
+            if self._fleet is None:
+                raise MusterError(f"{self._what}; expected one that is carried out")
+            moved = MovedTask(task=move["task"], position=tuple(move["position"]))
+            self._fleet.report(Event(at_s=self._fleet.time_s, move_task=moved))
+            return f"task {moved.task}"
 
     def _stand(self) -> None:
         """Where somebody else shuts the node down."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from muster.bridges.ros1.ros import PoseStamped, String, TransformStamped, Twist, rospy
 from muster.bridges.steering import Velocity
-from muster.motion.frames import Floats, angles, quaternion_rotation, transform
+from muster.motion.frames import Floats, angles, quaternion_of, quaternion_rotation, transform
 from muster.motion.port import Place
 
 
@@ -64,6 +64,16 @@ def tf_of(parent: str, child: str, place: Place, heading: float) -> Any:
     one.header.frame_id, one.header.stamp, one.child_frame_id = parent, rospy.Time.now(), child
     one.transform.translation.x, one.transform.translation.y, one.transform.translation.z = place
     _turn(one.transform.rotation, heading)
+    return one
+
+
+def stamped_transform(parent: str, child: str, matrix: Floats) -> Any:
+    """A geometry_msgs/TransformStamped of a transform (4, 4), stamped now."""
+    one = TransformStamped()
+    one.header.frame_id, one.header.stamp, one.child_frame_id = parent, rospy.Time.now(), child
+    move, turn = one.transform.translation, one.transform.rotation
+    move.x, move.y, move.z = map(float, matrix[:3, 3])
+    turn.x, turn.y, turn.z, turn.w = map(float, quaternion_of(matrix[:3, :3]))
     return one
 
 

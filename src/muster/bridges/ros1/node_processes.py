@@ -37,6 +37,8 @@ class NodeProcesses:
         whether all is to end, for a reason of the program's own.
     on_end
         is called again and again from when all is to end.
+    duties
+        names of the nodes.
     """
 
     def __init__(
@@ -46,8 +48,9 @@ class NodeProcesses:
         *,
         asked_to_end: Callable[[], bool],
         on_end: Callable[[], None],
+        duties: Sequence[str] = DUTIES,
     ) -> None:
-        self._command, self._master = command, master
+        self._command, self._master, self._duties = command, master, duties
         self._asked_to_end, self._on_end = asked_to_end, on_end
         self._closed = threading.Event()
         self._watch = threading.Thread(target=self._watch_on, daemon=True)
@@ -59,7 +62,7 @@ class NodeProcesses:
     def __enter__(self) -> NodeProcesses:
         environment = os.environ | {"ROS_MASTER_URI": self._master}
         with ctrl_c_held_back():
-            for duty in DUTIES:
+            for duty in self._duties:
                 self._processes[duty] = subprocess.Popen(
                     [*self._command, duty],
                     stdin=subprocess.PIPE,

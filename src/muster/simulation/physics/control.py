@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.motion.grid import Floats
+from muster.motion.wheels import body_speeds
 from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, BodyKind
 from muster.simulation.physics.controller import Commands, Controller, lags_of, no_wheels
 from muster.simulation.physics.model import SERVO_S
@@ -78,9 +79,8 @@ class WheelController:
         self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
 
     def odometers(self) -> Floats:
-        angles, rolling = self.group.data.qpos[self._angles], self._radius - SUNK_M
-        turned = rolling * (angles[:, 1] - angles[:, 0]) / (2 * self._half_track)
-        return np.column_stack([rolling * angles.mean(axis=1), turned])
+        rims = (self._radius - SUNK_M)[:, None] * self.group.data.qpos[self._angles]
+        return body_speeds(rims, 2 * self._half_track)
 
 
 class ForceController:
