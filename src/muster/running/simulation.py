@@ -30,7 +30,8 @@ from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.worlds import recorded_world
-from muster.simulation import NO_NOISE, Noise, SimulatedWorld
+from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
+from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -64,6 +65,12 @@ class Simulation:
         of motion and telemetry.
     pose, localise
         what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
+    wind
+        in which drones fly, in the physics world.
+    batteries
+        shares of full batteries with which robots begin, by id or for `all`; these report a charge.
+    rotor_level
+        whether all drones of the physics world are simulated rotor by rotor.
     planning
         options of planning anew; see `reallocation_by`.
     ignore
@@ -94,6 +101,9 @@ class Simulation:
         avoidance: str = "orca",
         law: str = "profile",
         noise: Noise = NO_NOISE,
+        wind: Wind = CALM,
+        batteries: Charges = NO_CHARGES,
+        rotor_level: bool = False,
         pose: str | None = None,
         localise: Localise | None = None,
         planning: PlanningOptions | None = None,
@@ -105,7 +115,17 @@ class Simulation:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
         self._world = recorded_world(
-            world, mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world,
+            mission,
+            recorder,
+            law=law,
+            wind=wind,
+            batteries=batteries,
+            rotor_level=rotor_level,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
         )
         if on_world is not None:
             on_world(self._world)
