@@ -150,7 +150,7 @@ def test_what_is_wrong_is_named(change, message):
 
 def test_grids_are_not_for_the_air():
     space = PrismSpace(shapely.box(0, 0, 1, 1), (Prism(shapely.box(2, 2, 3, 3), 0, 1),))
-    with pytest.raises(ParameterError, match="expected shortest or rrt-star"):
+    with pytest.raises(ParameterError, match="expected shortest, rrt-star or rrt"):
         find(space, (0, 0, 0), (1, 1, 1), planner="a-star")
 
 

@@ -118,5 +118,5 @@ def in_plane(space: Space, name: str) -> GridSpace | PolygonSpace:
         if it is not.
     """
     if isinstance(space, PrismSpace):
-        raise ParameterError(f"planner: {name}; expected shortest or rrt-star in a space with heights")
+        raise ParameterError(f"planner: {name}; expected shortest, rrt-star or rrt in a space with heights")
     return space

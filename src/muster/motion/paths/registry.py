@@ -13,13 +13,17 @@ from muster.mission.near_matches import did_you_mean
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.a_star import A_STAR
+from muster.motion.paths.bug import BUG
 from muster.motion.paths.dijkstra import DIJKSTRA
+from muster.motion.paths.dubins import DUBINS
 from muster.motion.paths.planner import Planner
+from muster.motion.paths.potential_field import POTENTIAL_FIELD
+from muster.motion.paths.rrt import RRT
 from muster.motion.paths.rrt_star import RRT_STAR
 from muster.motion.paths.shortest import SHORTEST
 from muster.motion.paths.theta_star import THETA_STAR
 
-_IMPLEMENTATIONS = (SHORTEST, A_STAR, DIJKSTRA, THETA_STAR, RRT_STAR)
+_IMPLEMENTATIONS = (SHORTEST, THETA_STAR, A_STAR, DIJKSTRA, RRT_STAR, RRT, BUG, POTENTIAL_FIELD, DUBINS)
 
 PLANNERS: Mapping[str, Planner] = MappingProxyType({planner.name: planner for planner in _IMPLEMENTATIONS})
 
