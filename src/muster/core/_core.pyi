@@ -448,6 +448,14 @@ def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape
 def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
     """New velocities by hybrid reciprocal velocity obstacles ([snape2011])."""
 
+def avo(agents: PlaneAgents, accelerations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, response: float, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+    """New velocities by acceleration-velocity obstacles ([berg-snape2011])."""
+
+def avo_disc(apart: Sequence[float], v: Sequence[float], radius: float, response: float, time: float) -> tuple[float, float, float]:
+    """
+    The disc of relative velocities that lead into contact at a time: its centre and radius.
+    """
+
 class VelocityObstacle:
     """VO_{i,k} of [tcf-thesis] (A.5)."""
 

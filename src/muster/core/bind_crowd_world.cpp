@@ -33,7 +33,8 @@ Avoidance avoidance_named(const std::string& name) {
   if (name == "orca") return Avoidance::orca;
   if (name == "rvo") return Avoidance::rvo;
   if (name == "hrvo") return Avoidance::hrvo;
-  throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
+  if (name == "avo") return Avoidance::avo;
+  throw std::invalid_argument("avoidance must be none, orca, rvo, hrvo or avo");
 }
 
 Law law_named(const std::string& name) {

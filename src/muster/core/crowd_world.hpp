@@ -1,6 +1,6 @@
 // A world of moving robots in fixed steps of virtual time: way points, kinematics, avoidance, and what is measured.
 //
-// In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO), its
+// In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO, AVO), its
 // kinematics bring it as near to that as they can, and the right of way cuts what could end in a contact.
 //
 // Either this world moves the robots too (`advance`), exactly as they drive; or something else does, a physics engine:
@@ -19,7 +19,7 @@
 
 namespace muster {
 
-enum class Avoidance { none, orca, rvo, hrvo };
+enum class Avoidance { none, orca, rvo, hrvo, avo };
 
 // What the world does to robots, each a share: of the velocity that they miss (one standard deviation), of the way that
 // they slip (at most), of the way by which odometry errs in a step (one standard deviation).

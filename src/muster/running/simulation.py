@@ -56,7 +56,7 @@ class Simulation:
     dt_s
         step of the world in seconds.
     avoidance
-        how robots pass each other: orca, rvo, hrvo or none.
+        how robots pass each other: orca, rvo, hrvo, avo or none.
     law
         how robots move: profile, or thesis, by the control laws of [tcf-thesis].
     noise

@@ -43,7 +43,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 }
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
-    "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "avoidance": ("orca", "rvo", "hrvo", "avo", "none"),
     "law": ("profile", "thesis"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
