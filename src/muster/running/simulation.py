@@ -28,7 +28,7 @@ from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import with_state_estimation
-from muster.running.worlds import recorded_world
+from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 from muster.verification import verify
 
@@ -58,7 +58,7 @@ class Simulation:
     avoidance
         how robots pass each other: orca, rvo, hrvo or none.
     law
-        how robots move: profile, or thesis, by the control laws of [tcf-thesis].
+        how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
         of motion and telemetry. Where robots err about their poses, filters fuse what they say.
     planning
@@ -197,7 +197,7 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-        return with_found(report, self._camera_search)
+        return with_tracking(with_found(report, self._camera_search), world)
 
     @property
     def status(self) -> Status:

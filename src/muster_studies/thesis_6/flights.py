@@ -14,6 +14,7 @@ from muster.execution.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
+from muster.motion.laws import PROFILE
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.simulation import NO_NOISE, Noise
@@ -44,7 +45,7 @@ class Flight:
         of search, and of the world.
     world
         `kinematic` or `physics`.
-    avoidance, noise
+    avoidance, noise, law
         of the world; without avoidance robots drive through each other.
     """
 
@@ -57,6 +58,7 @@ class Flight:
     world: str = "kinematic"
     avoidance: str = "orca"
     noise: Noise = NO_NOISE
+    law: str = PROFILE
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,7 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         "seed": flight.seed,
         "avoidance": flight.avoidance,
         "noise": flight.noise,
+        "law": flight.law,
         "ignore": flight.ignored,
     }
     return carry_out(mission, plan, recorder=recorder, **how)
@@ -136,7 +139,7 @@ def mission_with(flight: Flight) -> Mission:
 
 def _on_paper(flight: Flight) -> Flight:
     """A flight without what makes no difference to its plan."""
-    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE)
+    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE, law=PROFILE)
 
 
 @lru_cache(maxsize=1000)

@@ -24,7 +24,7 @@ from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
-from muster.running.worlds import recorded_world
+from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import NO_NOISE, Noise
 
 
@@ -112,7 +112,7 @@ def negotiate_and_carry_out(
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
-        report = with_found(report, camera_search)
+        report = with_tracking(with_found(report, camera_search), bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report
