@@ -23,7 +23,21 @@ from muster.mission.errors import (
     PlanError,
     PluginError,
 )
-from muster.mission.model import Action, Camera, Event, Found, Map, Mission, Origin, Robot, Rules, Tag, Task, Zone
+from muster.mission.model import (
+    Action,
+    Camera,
+    Event,
+    Found,
+    Landmark,
+    Map,
+    Mission,
+    Origin,
+    Robot,
+    Rules,
+    Tag,
+    Task,
+    Zone,
+)
 from muster.mission.plan import Plan, Route, read_plan
 from muster.planning.exporting import export
 from muster.planning.judging import verify
@@ -47,6 +61,7 @@ __all__ = [
     "Finding",
     "Found",
     "InputError",
+    "Landmark",
     "Map",
     "MissingExtraError",
     "Mission",

@@ -1,4 +1,4 @@
-"""The site of a mission: its origin on Earth, its map and zones, its tags and its travel tables."""
+"""The site of a mission: its origin on Earth, its map and zones, its tags, landmarks and travel tables."""
 
 from __future__ import annotations
 
@@ -72,12 +72,23 @@ class Map(Checked):
 
 @record
 class Tag(Checked):
-    """A tag that lies there to be found: simulated worlds show it to cameras, and nobody else knows of it."""
+    """A tag that lies there to be found: simulated worlds show it to cameras.
+
+    Nobody else knows of it, except robots that localise themselves by tags.
+    """
 
     id: int = spec(Whole(maximum=586), "which tag of the AprilTag family 36h11")
     position: Point = spec(Position(), "where its middle is", instead=IN_DEGREES)
     heading_deg: float = spec(Number(), "where its upper edge is, from east, anticlockwise", default=0.0)
     size_m: float = spec(Number(above=0), "side of its black square", default=0.4)
+
+
+@record
+class Landmark(Checked):
+    """An upright cylinder at a place that every robot knows: lasers see it, bodies do not touch it."""
+
+    position: Point = spec(Position(), "where it stands", instead=IN_DEGREES)
+    radius_m: float = spec(Number(above=0), "its radius", default=0.025)
 
 
 @dataclass(frozen=True)

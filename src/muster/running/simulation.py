@@ -26,8 +26,9 @@ from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
-from muster.running.state_estimation import with_state_estimation
+from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import NO_NOISE, Noise, SimulatedWorld
 from muster.verification import verify
@@ -60,7 +61,9 @@ class Simulation:
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
-        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+        of motion and telemetry.
+    pose, localise
+        what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
     planning
         options of planning anew; see `reallocation_by`.
     ignore
@@ -91,6 +94,8 @@ class Simulation:
         avoidance: str = "orca",
         law: str = "profile",
         noise: Noise = NO_NOISE,
+        pose: str | None = None,
+        localise: Localise | None = None,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
@@ -104,7 +109,7 @@ class Simulation:
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world)
+        self._robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -197,6 +202,8 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
+        if isinstance(self._robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, self._robots.remark))
         return with_tracking(with_found(report, self._camera_search), world)
 
     @property

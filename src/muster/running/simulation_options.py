@@ -10,17 +10,20 @@ if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
+    from muster.running.localisation import Localise
     from muster.simulation import Noise, SimulatedWorld
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance`, `law`, `noise` and `ignore` as `Simulation` takes them."""
+    """How the world is, and how robots localise themselves; all as `Simulation` takes it."""
 
     world: str
     dt_s: float
     avoidance: str
     law: str
     noise: Noise
+    pose: str | None
+    localise: Localise | None
     ignore: str | Collection[str]
     on_look: OnLook | None
     on_world: Callable[[SimulatedWorld], None] | None

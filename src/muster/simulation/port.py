@@ -14,6 +14,7 @@ from muster.mission.model import Robot
 from muster.motion.frames import wrapped
 from muster.motion.order_trajectory import STEP_S, TrajectoryMaker
 from muster.motion.port import Inertial, Telemetry, Waypoint
+from muster.perception.dead_reckoning import Odometry
 from muster.simulation.noise import Noise
 
 
@@ -78,6 +79,15 @@ class SimulatedPort:
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
         return self._now() if self._last_word is None else self._last_word
+
+    def odometry(self) -> Odometry:
+        """What odometry counted in the last step of the world, noise included; also of a muted robot."""
+        ahead, left, up, turned = self._crowd.counted(self._number)
+        return Odometry(self._crowd.dt, (ahead, left, up), turned)
+
+    def inertial(self) -> Inertial | None:
+        """What the inertial unit gave in the last step, noise included; also of a muted robot."""
+        return self._now().inertial
 
     def mute(self) -> None:
         """Freeze telemetry."""

@@ -223,6 +223,10 @@ class WorldBase(SimulatedWorld, ABC):
             raise ParameterError(f"factor: {factor}; expected above 0 to 1")
         self._crowd.slow(self._number(robot), factor)
 
+    def believe(self, robot: str, pose: Floats, spread_m: float) -> None:
+        x, y, z, heading = map(float, pose)
+        self._crowd.believe(self._number(robot), (x, y, z), heading, spread_m)
+
     @property
     def positions(self) -> Floats:
         found: Floats = self._crowd.positions()

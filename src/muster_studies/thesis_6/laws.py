@@ -9,7 +9,7 @@ from muster.motion.laws import LAWS
 from muster_studies.effort import Effort
 from muster_studies.tables import Table, row
 from muster_studies.thesis_6.flights import Flight, FlightResult
-from muster_studies.thesis_6.physics import lacking
+from muster_studies.thesis_6.physics import lacking_physics
 from muster_studies.thesis_6.published import excess, plans
 
 _COLUMNS = ("mission", "figure", "world", "law", "planned", "flown", "%", "tasks", "contacts", "apart", "s", "off")
@@ -54,13 +54,13 @@ class ByLaw:
             "off: by how many metres robots were off their trajectories at a moment, on average and at most, while "
             "they followed them; [market-paper], (7), per sample.",
         )
-        missing = lacking()
+        missing = lacking_physics()
         return Table(
             self.number, "Carried out by law of motion", _COLUMNS, tuple(rows), (*notes, missing) if missing else notes
         )
 
     def _flights(self) -> Iterator[tuple[str, Flight]]:
-        worlds = ("kinematic",) if lacking() else ("kinematic", "physics")
+        worlds = ("kinematic",) if lacking_physics() else ("kinematic", "physics")
         for number in self.routes:
             for plan in plans(number):
                 for world in worlds:

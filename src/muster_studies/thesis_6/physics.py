@@ -32,15 +32,15 @@ class BesidePhysics:
     routes: tuple[str, ...] = ("6.8", "6.9", "6.6")
 
     def jobs(self, effort: Effort) -> Iterator[Flight]:
-        if lacking() is None:
+        if lacking_physics() is None:
             for _, flight in self._flights(effort):
                 yield from (flight, _in_physics(flight))
 
     def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         title = "Flown in the physics world, and in the kinematic one"
-        missing = lacking()
-        if missing is not None:
-            return Table(self.number, title, _COLUMNS, (), (missing,))
+        lacking = lacking_physics()
+        if lacking is not None:
+            return Table(self.number, title, _COLUMNS, (), (lacking,))
         rows = []
         for name, flight in self._flights(effort):
             cells = _rows(found[flight], found[_in_physics(flight)])
@@ -67,7 +67,7 @@ def _in_physics(flight: Flight) -> Flight:
     return replace(flight, world="physics")
 
 
-def lacking() -> str | None:
+def lacking_physics() -> str | None:
     """The message about a missing extra, if any."""
     try:
         require_physics("the physics world", "mujoco")

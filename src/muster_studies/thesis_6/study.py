@@ -7,6 +7,7 @@ from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.disturbed import CapacityReserve, UsageUnderNoise
 from muster_studies.thesis_6.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6.laws import ByLaw
+from muster_studies.thesis_6.misaligned import MisalignedMarkers
 from muster_studies.thesis_6.physics import BesidePhysics
 from muster_studies.thesis_6.pictures import FIGURES
 from muster_studies.thesis_6.routes import RobotUsages
@@ -25,6 +26,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     BesidePhysics(),
     ByLaw(),
     UsageUnderNoise(),
+    MisalignedMarkers(),
     CapacityReserve(),
 )
 

@@ -6,7 +6,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,12 @@ from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
 from muster.running.camera_search import OnLook, camera_search_for, with_found
+from muster.running.localisation import Localise
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
+from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import NO_NOISE, Noise
 
@@ -58,6 +60,8 @@ def negotiate_and_carry_out(
     avoidance: str = "orca",
     law: str = "profile",
     noise: Noise = NO_NOISE,
+    pose: str | None = None,
+    localise: Localise | None = None,
     speed: float | None = None,
     recorder: Recorder | None = None,
     on_world: OnWorld | None = None,
@@ -97,7 +101,8 @@ def negotiate_and_carry_out(
             on_world(bodies)
         setup = setup_of(problem, negotiation, memory)
         log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
-        robot_bodies = RobotBodies(problem.mission, bodies, setup, log)
+        robots = with_state_estimation(bodies, problem.mission, pose=pose, localise=localise, seed=seed)
+        robot_bodies = RobotBodies(problem.mission, bodies, robots, setup, log)
         camera_search = camera_search_for(
             problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look
         )
@@ -112,6 +117,8 @@ def negotiate_and_carry_out(
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
+        if isinstance(robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, robots.remark))
         report = with_tracking(with_found(report, camera_search), bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())

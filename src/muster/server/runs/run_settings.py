@@ -17,7 +17,7 @@ from muster.running.worlds import WORLDS
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {**_PLANNING, **_WORLD},
     "physics": {**_PLANNING, **_WORLD},
@@ -29,6 +29,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "rate_hz": float,
         "avoidance": str,
         "odometry": str,
+        "poses": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
@@ -47,6 +48,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "pose": ("true", "estimate"),
     "law": LAWS,
     "odometry": ("map", "start"),
     "drive": ("cmd_vel", "goals"),
@@ -96,6 +98,10 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
         for kind in noise:
             _require_choice("noise", kind, NOISE)
             _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
+        if settings.get("localise"):
+            from muster.running.localisation import sensors_of
+
+            sensors_of(settings["localise"])
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
 
