@@ -114,7 +114,7 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances
     return away <= (no_nearer ? tolerances.arrival : robot.exact);
   }
   const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
-  if (robot.reference.given() && !robot.reference.astray) return tracking_error(robot) <= room;
+  if (robot.reference.given() && !robot.reference.astray && tracking_error(robot) <= room) return true;
   const double past = corner_speed(robot, before, robot.next, tolerances, dt);
   if (away <= robot.exact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
