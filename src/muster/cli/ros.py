@@ -79,6 +79,12 @@ _LEFT = "the robots were told to stand"
     show_default=True,
     help="Odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission.",
 )
+@click.option(
+    "--poses",
+    default="",
+    metavar="TOPIC",
+    help="Where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose.  [default: <robot>/pose]",
+)
 @click.option("--markers", is_flag=True, help="Publish tasks, routes and robots for RViz, on /muster/markers.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
@@ -96,6 +102,7 @@ def command(
     rate: float,
     avoidance: str,
     odometry: Literal["map", "start"],
+    poses: str,
     markers: bool,
     known_only: bool,
     on_start: bool,
@@ -108,6 +115,7 @@ def command(
     Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION the command waits for command_interface/load and start.
     Ctrl-C stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
+    from muster.bridges.discovery import pose_topics
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
@@ -120,6 +128,7 @@ def command(
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
     _require_steering(drive, avoidance)
+    pose_topics(poses)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -134,13 +143,15 @@ def command(
             rate_hz=rate,
             avoidance=avoidance,
             odometry=odometry,
+            poses=poses,
             joins=not known_only,
         )
 
     become_node("muster", master)
     try:
         own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
-        node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
+        where = ("--namespace", namespace, "--frame", frame, "--poses", poses)
+        node = (sys.executable, "-m", "muster.cli.ros_node", *where, *own)
         work = _Work(fleet_of, given, wait_s, stay, targets is not None, frame if markers else None, options)
         return _with_nodes(loaded, work, node, master, begins=not on_start)
     finally:

@@ -139,6 +139,39 @@ class Population:
 
     def objective(self, member: int) -> float: ...
 
+class Decoder:
+    """
+    Admissible plans from orders of tasks and the robots that tasks are meant for. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem) -> None: ...
+
+    def in_order(self, tasks: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], robots: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """
+        Plans from `tasks`, (k, n) in the order in which they are put at the ends of routes, and `robots`, (k, n) by task. Returns (k, 4): weight, objective, total and greatest usage. Raises ValueError if an index is wrong.
+        """
+
+    def nearest_next(self, robots: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """The same where each robot goes on to the nearest of its tasks."""
+
+    def routes(self, plan: int) -> list[list[int]]:
+        """Of the last call."""
+
+class Colony:
+    """
+    Ants that build plans by pheromone and distance. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, beta: float, seed: int) -> None: ...
+
+    def build(self, trail: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plans: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """
+        So many plans by (2.24); `trail` is tau^alpha, (n + m, n), from each task and each robot's start to each task. Returns (k, 4): weight, objective, total and greatest usage.
+        """
+
+    def routes(self, plan: int) -> list[list[int]]:
+        """Of the last call."""
+
 class Bidders:
     """
     The team while tasks are auctioned: routes so far, and what each robot could do with each open task. One thread at a time may use one.
@@ -148,6 +181,9 @@ class Bidders:
         """
         `insert`: a task goes where it lengthens the route least, else to its end. `figure`, what offers are: `growth` of the route's usage; `arrivals`, what is added to the sum of usages on arrival; `end`, when the robot would be done with all its tasks, in seconds.
         """
+
+    def copy(self) -> Bidders:
+        """The same team once more, in which awards can be tried."""
 
     def set_routes(self, routes: Sequence[Sequence[int]]) -> None:
         """

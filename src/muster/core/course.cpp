@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // metres
 constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
+constexpr double kHeldUp = 1.0;     // seconds
 constexpr double kClimbs = 0.5;     // seconds: the constant interval of (4.12)
 
 // The way between two places; over ground alone where the robot climbs by a law of its own.
@@ -99,8 +100,8 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
 
 bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
-  // What stands in its way may stand there because it is not where it takes itself to be.
-  if (robot.turned_aside) tolerances.arrival += kSure * robot.belief.spread;
+  // What holds it up may stand there because the robot is not where it takes itself to be.
+  if (robot.turned_aside && robot.patience.stuck > kHeldUp) tolerances.arrival += kSure * robot.belief.spread;
   const double away = norm(point.at - robot.position);
   const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
   if (point.stops() || robot.next + 1 == robot.way.size()) {

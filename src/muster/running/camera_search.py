@@ -208,6 +208,6 @@ def camera_search_for(
 
 def with_found(report: Report, camera_search: CameraSearch | None) -> Report:
     """A report with what cameras found."""
-    return (
-        report if camera_search is None else replace(report, found=camera_search.found, remarks=camera_search.remarks)
-    )
+    if camera_search is None:
+        return report
+    return replace(report, found=camera_search.found, remarks=(*report.remarks, *camera_search.remarks))

@@ -68,7 +68,7 @@ def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
     from muster.bridges.ros1.node import become_node
 
     become_node("muster", settings.get("master"))
-    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz", "avoidance", "odometry")
+    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz", "avoidance", "odometry", "poses")
     fleet = Ros1Fleet(mission, joins=not settings.get("known_only", False), **own)
     return _heard(fleet, settings, halt), _nothing
 

@@ -72,5 +72,15 @@ class Noise:
         """Whether positions or headings in telemetry have errors."""
         return self.position_m > 0 or self.heading_rad > 0
 
+    @property
+    def of_odometry(self) -> bool:
+        """Whether odometry counts what is not so: dead reckoning leads astray."""
+        return self.slip > 0 or self.odometry > 0
+
+    @property
+    def of_gyro(self) -> bool:
+        """Whether inertial units err about the rate of the heading."""
+        return self.gyro_radps > 0 or self.gyro_bias_radps > 0
+
 
 NO_NOISE = Noise()

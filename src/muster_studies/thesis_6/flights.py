@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -24,6 +24,15 @@ Routes = tuple[tuple[str, tuple[str, ...]], ...]
 """Robots and their tasks in order."""
 
 ALLOCATOR = "search"
+
+
+@dataclass(frozen=True)
+class Marker:
+    """The markers of one robot, misaligned: how far to the left of its origin, and by which angle to the left."""
+
+    robot: str
+    left_m: float
+    turn_deg: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +55,8 @@ class Flight:
         `kinematic` or `physics`.
     avoidance, noise
         of the world; without avoidance robots drive through each other.
+    marker
+        robots steer by motion capture, and one has these markers; None: they steer by their true poses.
     """
 
     mission: str
@@ -57,6 +68,7 @@ class Flight:
     world: str = "kinematic"
     avoidance: str = "orca"
     noise: Noise = NO_NOISE
+    marker: Marker | None = None
 
 
 @dataclass(frozen=True)
@@ -124,6 +136,8 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         "avoidance": flight.avoidance,
         "noise": flight.noise,
         "ignore": flight.ignored,
+        "pose": "true" if flight.marker is None else "estimate",
+        "localise": None if flight.marker is None else {"motion-capture": asdict(flight.marker)},
     }
     return carry_out(mission, plan, recorder=recorder, **how)
 
@@ -136,7 +150,7 @@ def mission_with(flight: Flight) -> Mission:
 
 def _on_paper(flight: Flight) -> Flight:
     """A flight without what makes no difference to its plan."""
-    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE)
+    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE, marker=None)
 
 
 @lru_cache(maxsize=1000)

@@ -92,6 +92,28 @@ def test_odometry_that_begins_at_the_start_counts_from_there(ros, tmp_path):
     assert ahead == pytest.approx([math.cos(math.radians(30)), 0.0, -0.5], abs=1e-6)
 
 
+def test_motion_capture_says_where_robots_are(ros, one):
+    """As vrpn_client_ros does: poses on a topic of its own, in its own frame. The monitor hears it too."""
+    topic = "/vrpn_client_node/{robot}/pose"
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "pose", "topic=/vrpn_client_node/r_0/pose", "frame=map")
+    listener = ros.listener("/r_0/status=std_msgs/String")
+    tasks, err = done(ros.muster(one, *QUICK, "--poses", topic))
+    assert set(tasks) == {"t_1", "t_2"}
+    rows = [json.loads(data["data"]) for _, data in listener.heard()]
+    assert max(row["usage_m"] for row in rows) > 2.0
+    _, err = ros.muster(one, *QUICK, "--poses", "/vrpn_client_node/r_0/pose").communicate(timeout=20)
+    assert "expected a topic such as /vrpn_client_node/{robot}/pose" in err
+
+
+def test_robots_are_steered_by_the_method_that_is_asked_for(ros, one):
+    """The thesis' node RVO_planner; who finds the way itself is not steered."""
+    ros.robot("r_0", 0, 0)
+    tasks, _ = done(ros.muster(one, *QUICK, "--avoidance", "rvo", "--allocator", "greedy"))
+    assert set(tasks) == {"t_1", "t_2"}
+    _, err = ros.muster(one, *QUICK, "--avoidance", "rvo", "--drive", "goals").communicate(timeout=20)
+    assert err == "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"
+
+
 def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
     pytest.importorskip("visualization_msgs", reason="python3-visualization-msgs is not installed")
     ros.robot("r_0", 0, 0)

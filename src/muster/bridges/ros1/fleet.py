@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from muster.bridges.discovery import NAME, topics_in
+from muster.bridges.discovery import NAME, pose_topics, topics_in
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Ros1Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
@@ -57,6 +57,8 @@ class Ros1Fleet:
         how often velocities are told.
     avoidance
         with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
+    poses
+        topic of a robot's pose, where a motion capture system publishes it: `/vrpn_client_node/{robot}/pose`.
     odometry
         of which frame robots' odometry is: see `static_frames`.
     joins
@@ -82,6 +84,7 @@ class Ros1Fleet:
         arrival_m: float = 0.1,
         rate_hz: float = 20.0,
         avoidance: str = "orca",
+        poses: str = "",
         odometry: Odometry = "map",
         joins: bool = True,
         clock: MissionClock | None = None,
@@ -96,6 +99,7 @@ class Ros1Fleet:
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self.topics = topics_in(namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
+        self._pose_topic = pose_topics(poses)
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=avoidance)
@@ -181,7 +185,7 @@ class Ros1Fleet:
         return {
             name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
             if port.untied
-            else f"nothing on {self.topics(name)}/odom or {self.topics(name)}/pose"
+            else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
             for name, port in self._all().items()
             if port.telemetry() is None
         }
@@ -226,6 +230,7 @@ class Ros1Fleet:
             arrival_m=self._arrival_m,
             lock=self._lock,
             clock=self.clock,
+            pose_topic=self._pose_topic(robot.id),
             on_pass=self._news.set,
             on_pose=self._on_pose,
         )

@@ -16,7 +16,7 @@ from muster.running.worlds import WORLDS
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {**_PLANNING, **_WORLD},
     "physics": {**_PLANNING, **_WORLD},
@@ -28,6 +28,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "rate_hz": float,
         "avoidance": str,
         "odometry": str,
+        "poses": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
@@ -46,6 +47,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "none"),
+    "pose": ("true", "estimate"),
     "law": ("profile", "thesis"),
     "odometry": ("map", "start"),
     "drive": ("cmd_vel", "goals"),
@@ -95,6 +97,10 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
         for kind in noise:
             _require_choice("noise", kind, NOISE)
             _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
+        if settings.get("localise"):
+            from muster.running.localisation import sensors_of
+
+            sensors_of(settings["localise"])
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
 
