@@ -12,6 +12,7 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
+from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
@@ -60,6 +61,7 @@ _IN_THIS_PROCESS = (
     "film_speed",
     "still",
     "foxglove",
+    *IN_THIS_PROCESS,
 )
 _LAWS = ("profile", "thesis")
 
@@ -102,6 +104,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="KIND=AMOUNT",
     help="Noise of motion and telemetry; see docs/simulation.md.",
 )
+@drone_options
 @pose_options
 @record_option
 @drawing_options
@@ -134,6 +137,10 @@ def command(
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
+    wind: str | None,
+    gusts: float | None,
+    rotors: bool,
+    batteries: tuple[str, ...],
     pose: str | None,
     sensors: tuple[str, ...],
     record: Path | None,
@@ -165,6 +172,7 @@ def command(
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise, localise = noise_of(noises), localise_of(sensors)
+    conditions = conditions_of(wind, gusts, batteries, rotors=rotors)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = mission.load(verbose=verbose)
     if localise is not None:
@@ -199,6 +207,7 @@ def command(
             observers=observers,
             film=footage,
             on_look=looks,
+            **conditions,
             **rules,
         )
     if found is not None and looks is not None:

@@ -28,9 +28,10 @@ from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
-from muster.running.state_estimation import EstimatedWorld, with_state_estimation
+from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.worlds import recorded_world
-from muster.simulation import NO_NOISE, Noise, SimulatedWorld
+from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
+from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -64,6 +65,12 @@ class Simulation:
         of motion and telemetry.
     pose, localise
         what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
+    wind
+        in which drones fly, in the physics world.
+    batteries
+        shares of full batteries with which robots begin, by id or for `all`; these report a charge.
+    rotor_level
+        whether all drones of the physics world are simulated rotor by rotor.
     planning
         options of planning anew; see `reallocation_by`.
     ignore
@@ -94,6 +101,9 @@ class Simulation:
         avoidance: str = "orca",
         law: str = "profile",
         noise: Noise = NO_NOISE,
+        wind: Wind = CALM,
+        batteries: Charges = NO_CHARGES,
+        rotor_level: bool = False,
         pose: str | None = None,
         localise: Localise | None = None,
         planning: PlanningOptions | None = None,
@@ -105,11 +115,23 @@ class Simulation:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
         self._world = recorded_world(
-            world, mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world,
+            mission,
+            recorder,
+            law=law,
+            wind=wind,
+            batteries=batteries,
+            rotor_level=rotor_level,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
+        self._robots: RobotsInWorld = with_state_estimation(
+            self._world, mission, pose=pose, localise=localise, seed=seed
+        )
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -131,6 +153,11 @@ class Simulation:
     def world(self) -> SimulatedWorld:
         """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
         return self._world
+
+    @property
+    def robots(self) -> RobotsInWorld:
+        """The robots as execution hears them: by their estimates, where they have some."""
+        return self._robots
 
     @property
     def time_s(self) -> float:

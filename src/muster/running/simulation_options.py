@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
     from muster.running.localisation import Localise
-    from muster.simulation import Noise, SimulatedWorld
+    from muster.simulation import Noise, SimulatedWorld, Wind
 
 
 class WorldOptions(TypedDict, total=False):
@@ -22,6 +22,9 @@ class WorldOptions(TypedDict, total=False):
     avoidance: str
     law: str
     noise: Noise
+    wind: Wind
+    batteries: Mapping[str, float]
+    rotor_level: bool
     pose: str | None
     localise: Localise | None
     ignore: str | Collection[str]

@@ -14,6 +14,7 @@ from muster.mission.model import Robot
 from muster.motion.frames import wrapped
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.dead_reckoning import Odometry
+from muster.simulation.batteries import Battery
 from muster.simulation.noise import Noise
 
 
@@ -25,6 +26,8 @@ class SimulatedPort:
 
     def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
         self.body = robot
+        self.battery: Battery | None = None
+        self._held_before_s = 0.0
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
         self._number = number
         self._crowd = crowd
@@ -52,6 +55,7 @@ class SimulatedPort:
         for point in waypoints:
             _check(point)
         stops = [(*p.position, math.nan if p.heading is None else p.heading, p.hold_s) for p in waypoints]
+        self._held_before_s = self.held_s
         self._orders += 1
         self._sent = {self._orders: tuple(waypoints)}
         labelled = [bool(p.label) for p in waypoints]
@@ -65,6 +69,12 @@ class SimulatedPort:
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
         return self._now() if self._last_word is None else self._last_word
+
+    @property
+    def held_s(self) -> float:
+        """Seconds that it has stayed at way points, as far as they are passed."""
+        *_, order, passed = self._crowd.report(self._number)
+        return self._held_before_s + sum(point.hold_s for point in self._sent.get(order, ())[:passed])
 
     def odometry(self) -> Odometry:
         """What odometry counted in the last step of the world, noise included; also of a muted robot."""
@@ -89,7 +99,8 @@ class SimulatedPort:
         return points[passed - 1].label if 0 < passed <= len(points) else ""
 
     def _now(self) -> Telemetry:
-        said = Telemetry(*self._crowd.report(self._number), self._felt())
+        charge = None if self.battery is None else self.battery.charge
+        said = Telemetry(*self._crowd.report(self._number), self._felt(), charge)
         return self._disturbed(said) if self._noise.of_telemetry else said
 
     def _felt(self) -> Inertial | None:

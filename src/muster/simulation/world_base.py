@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TypedDict
 
@@ -26,6 +26,14 @@ from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.limits import Limits
 from muster.motion.map_world import Body, World, body_of
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.simulation.batteries import (
+    NO_CHARGES,
+    Battery,
+    Charges,
+    capacity_in_usage,
+    charge_at_start,
+    require_charges,
+)
 from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
@@ -81,6 +89,8 @@ class WorldBase(SimulatedWorld, ABC):
         lookahead of avoidance.
     arrival_m
         the distance from a way point at which a robot that cannot get nearer has arrived; undisturbed ones go to 1 mm.
+    batteries
+        shares of full batteries with which robots begin, by id or for `all`; only these report a charge.
     observer, observe_s
         called at the beginning and then at each step, or at most this often; costs time.
 
@@ -108,6 +118,7 @@ class WorldBase(SimulatedWorld, ABC):
         law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
+        batteries: Charges = NO_CHARGES,
         observer: Observer | None = None,
         observe_s: float = 0.0,
     ) -> None:
@@ -139,6 +150,9 @@ class WorldBase(SimulatedWorld, ABC):
             odometry_noise=noise.odometry,
             seed=seed,
         )
+        require_charges(batteries, [robot.id for robot in robots_of(mission)])
+        self._batteries = batteries
+        self._in_time = mission.rules.usage == "time"
         self._walls: dict[Body, int] = {}
         self._faces: dict[Body, Faces] = {}
         self._numbers: dict[str, int] = {}
@@ -198,8 +212,12 @@ class WorldBase(SimulatedWorld, ABC):
         )
         self._numbers[robot.id] = number
         self._robots.append(robot)
-        self._ports[robot.id] = SimulatedPort(robot, number, self._crowd, self._noise, self._seed)
-        return self._ports[robot.id]
+        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed)
+        self._ports[robot.id] = port
+        at_start = charge_at_start(self._batteries, robot.id)
+        if at_start is not None:
+            port.battery = Battery(at_start, self._drained_by(robot, number))
+        return port
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
         self._crowd.fail(self._number(robot))
@@ -281,6 +299,15 @@ class WorldBase(SimulatedWorld, ABC):
     def _go_on(self, until_s: float) -> list[Event]:
         """Step until a time, or until a way point is passed."""
 
+    def _drained_by(self, robot: Robot, number: int) -> Callable[[], float]:
+        """What tells the share of a full battery that a robot has drained: here its usage, of its work capacity.
+
+        A stop costs what it costs where the mission does not say how long it takes: its seconds times the speed.
+        """
+        port, capacity = self._ports[robot.id], capacity_in_usage(robot)
+        per_metre, per_second = (1 / robot.speed_mps, 1.0) if self._in_time else (1.0, robot.speed_mps)
+        return lambda: (per_metre * self._crowd.travelled()[number] + per_second * port.held_s) / capacity
+
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
 
@@ -324,6 +351,12 @@ class WorldBase(SimulatedWorld, ABC):
         if body not in self._faces:
             self._faces[body] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
         return self._faces[body]
+
+
+def robots_of(mission: Mission) -> list[Robot]:
+    """The robots of a mission, and those that will join it."""
+    joining = [event.robot_joins for event in mission.events]
+    return [*mission.robots, *(robot for robot in joining if robot is not None)]
 
 
 def _lowest(mission: Mission) -> float:

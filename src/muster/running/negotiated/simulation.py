@@ -27,7 +27,8 @@ from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.running.worlds import recorded_world
-from muster.simulation import NO_NOISE, Noise
+from muster.simulation import CALM, NO_NOISE, Noise, Wind
+from muster.simulation.batteries import NO_CHARGES, Charges
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +61,9 @@ def negotiate_and_carry_out(
     avoidance: str = "orca",
     law: str = "profile",
     noise: Noise = NO_NOISE,
+    wind: Wind = CALM,
+    batteries: Charges = NO_CHARGES,
+    rotor_level: bool = False,
     pose: str | None = None,
     localise: Localise | None = None,
     speed: float | None = None,
@@ -95,7 +99,17 @@ def negotiate_and_carry_out(
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bodies = recorded_world(
-            world, problem.mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world,
+            problem.mission,
+            recorder,
+            law=law,
+            wind=wind,
+            batteries=batteries,
+            rotor_level=rotor_level,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
         )
         if on_world is not None:
             on_world(bodies)
