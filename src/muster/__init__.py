@@ -23,11 +23,26 @@ from muster.mission.errors import (
     PlanError,
     PluginError,
 )
-from muster.mission.model import Action, Camera, Event, Found, Map, Mission, Origin, Robot, Rules, Tag, Task, Zone
+from muster.mission.model import (
+    Action,
+    Camera,
+    Event,
+    Found,
+    Landmark,
+    Map,
+    Mission,
+    Origin,
+    Robot,
+    Rules,
+    Tag,
+    Task,
+    Zone,
+)
 from muster.mission.plan import Plan, Route, read_plan
 from muster.planning.exporting import export
 from muster.planning.judging import verify
 from muster.planning.loading import load
+from muster.planning.options import PlanningOptions
 from muster.planning.pictures import gantt, plot
 from muster.planning.questions import check, explain
 from muster.planning.solve import solve
@@ -47,6 +62,7 @@ __all__ = [
     "Finding",
     "Found",
     "InputError",
+    "Landmark",
     "Map",
     "MissingExtraError",
     "Mission",
@@ -60,6 +76,7 @@ __all__ = [
     "ParameterError",
     "Plan",
     "PlanError",
+    "PlanningOptions",
     "PluginError",
     "Report",
     "Robot",

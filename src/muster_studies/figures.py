@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Draw = Callable[[Effort], "Axes | Figure"]
+"""Draws a whole figure."""
 ALL = "all"
 """In place of numbers: every figure of a study."""
 
@@ -43,7 +45,7 @@ class StudyFigure:
     number: str
     source: str = ""
     shows: str
-    draw: Callable[[Effort], Axes | Figure]
+    draw: Draw
     tables: tuple[str, ...] = ()
     differs: str = ""
 

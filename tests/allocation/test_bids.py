@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from muster import ParameterError
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
-from muster.allocation.bids import BID_RULES, FIGURES, Standing, battery_penalty, suitability_penalty, weighted
+from muster.allocation.bids import BID_RULES, FIGURES, Standing, battery_penalty, lack_penalty, weighted
 from muster.allocation.winners import WINNER_RULES
 
 
@@ -57,7 +57,7 @@ def test_the_words_of_the_terms_are_the_rules_there_are():
 def test_penalties_are_shares():
     capacities = np.array([60.0, 60.0, np.inf, 0.0])
     assert battery_penalty(np.array([0.0, 30.0, 5.0, 0.0]), capacities).tolist() == [0.0, 0.5, 0.0, 0.0]
-    assert suitability_penalty(np.array([1.0, 0.7])) == pytest.approx([0.0, 0.3])
+    assert lack_penalty(np.array([1.0, 0.7])) == pytest.approx([0.0, 0.3])
     assert weighted(np.array([10.0, -10.0, np.inf]), np.array([0.5, 1.0, 0.0])).tolist() == [15.0, -5.0, np.inf]
 
 

@@ -1,9 +1,11 @@
 """`muster path`: a way over the map of a mission."""
 
+import csv
 import json
 import math
 import re
 
+import numpy as np
 import pytest
 import shapely
 
@@ -173,6 +175,51 @@ def test_check_tells_of_a_robot_in_a_wall_in_both_forms(muster, tmp_path):
     assert (error["line"], error["field"], error["expected"]) == (10, "robots[0].position", expected)
 
 
+def test_a_smooth_path_turns_no_sharper_than_the_robot_can(muster):
+    """rover0 of `floor` drives 0.8 m/s and turns a quarter a second."""
+    ends = ("floor", "--from", "2,2", "--to", "36,20", "--smooth")
+    for planner in ("shortest", "a-star"):
+        found = answer(muster, *ends, "--robot", "rover0", "--planner", planner)
+        assert found["turning_radius_m"] == pytest.approx(0.8 / (math.pi / 2))
+        assert found["max_curvature_per_m"] <= 1.001 / found["turning_radius_m"]
+    wide = answer(muster, *ends, "--turning-radius", "3")
+    assert wide["max_curvature_per_m"] == pytest.approx(1 / 3, rel=1e-3)
+    assert wide["corners"]
+    _, out, _ = muster("path", *ends, "--turning-radius", "3")
+    assert f"no room for that radius at {len(wide['corners'])} of its corners, which stay: (" in out
+
+
+def test_the_trajectory_has_the_speeds_of_the_rims(muster, tmp_path):
+    file = tmp_path / "out.csv"
+    ends = ("floor", "--from", "2,2", "--to", "36,20", "--robot", "rover0", "--smooth")
+    code, _, _ = muster("path", *ends, "--trajectory", str(file))
+    assert code == 0
+    rows = list(csv.DictReader(file.read_text().splitlines()))
+    names = ["t_s", "x_m", "y_m", "heading_rad", "speed_mps", "yaw_rate_radps", "left_rim_mps", "right_rim_mps"]
+    assert list(rows[0]) == names
+    table = np.array([[float(row[name]) for name in names] for row in rows])
+    track = 0.2 * 0.287 / 0.3
+    np.testing.assert_allclose((table[:, 6] + table[:, 7]) / 2, table[:, 4], atol=2e-6)
+    np.testing.assert_allclose((table[:, 7] - table[:, 6]) / track, table[:, 5], atol=2e-5)
+    assert table[:, 4].max() <= 0.8 + 1e-6
+    assert np.abs(table[:, 5]).max() <= math.pi / 2 + 1e-6
+    length = np.linalg.norm(np.diff(table[:, 1:3], axis=0), axis=1).sum()
+    assert length == pytest.approx(answer(muster, *ends)["length_m"], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--smooth", "--turning-radius", "-1"), "--turning-radius: -1; expected a finite number above 0"),
+        (("--trajectory", "out.txt"), "--trajectory: out.txt; expected a file that ends in .csv"),
+    ],
+)
+def test_what_a_smooth_path_cannot_be_asked(muster, walled, options, message):
+    code, _, err = muster("path", walled, "--from", "1,1", "--to", "9,1", *options)
+    assert code == 2
+    assert message in err
+
+
 def test_a_turning_radius_bends_the_way(muster, walled):
     sharp, wide = (
         answer(muster, walled, "--from", "1,1", "--to", "9,1", "--planner", "dubins", "--turning-radius", radius)
@@ -182,7 +229,7 @@ def test_a_turning_radius_bends_the_way(muster, walled):
     assert shortest["length_m"] < sharp["length_m"] < wide["length_m"] < 1.2 * shortest["length_m"]
     code, _, err = muster("path", walled, "--from", "1,1", "--to", "9,1", "--turning-radius", "1")
     assert code == 2
-    assert "--turning-radius: 1; expected --planner dubins or --unknown beside it" in err
+    assert "--turning-radius: 1; expected --smooth, --unknown or --planner dubins beside it" in err
 
 
 @pytest.mark.parametrize("law", ["pure-pursuit", "virtual-target", "synthetic-waypoint"])

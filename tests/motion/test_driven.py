@@ -31,8 +31,11 @@ def driven(space, seed, planner):
         places = np.random.default_rng(seed).uniform((0, 0), (16, 12), (2, 2))
     path = find(space, *places, planner=planner)
     assume(isinstance(path, Path))
-    curve = smoothed(path, clear_by_points(lambda points: free(space, points), SPACING), tolerance_m=TOLERANCE)
-    return timed(curve, LIMITS, faces_its_way=True).sample(0.05)
+    clear = clear_by_points(lambda points: free(space, points), SPACING)
+    radius = LIMITS.turning_radius_m(faces_its_way=True)
+    found = smoothed(path, clear, radii_m=(radius,), tolerance_m=TOLERANCE)
+    assert found.curve.max_curvature <= (1 + 1e-3) / radius
+    return timed(found.curve, LIMITS, faces_its_way=True).sample(0.05)
 
 
 def assert_within_limits(motion):

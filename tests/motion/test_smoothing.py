@@ -55,9 +55,18 @@ class Disc:
         return self.points(starts + np.clip(share, 0, 1)[:, None] * way)
 
 
+def all_kept(path, clear, radius=0.5, **given):
+    return smoothed(path, clear, radii_m=(radius,), keep=range(len(path.points)), **given)
+
+
+def directions(curve, end):
+    """Unit vectors at the beginnings (0) or ends (1) of segments."""
+    return curve.tangents_at(np.arange(len(curve.control)), np.full(len(curve.control), float(end)))
+
+
 @given(path=paths(1), step=st.sampled_from([0.05, 0.7, 100.0]))
-def test_the_curve_passes_through_all_points_of_the_path(path, step):
-    curve = smoothed(path, everywhere)
+def test_the_curve_passes_through_the_points_to_keep(path, step):
+    curve = all_kept(path, everywhere).curve
     sample = curve.sample(step)
     for point in path.points:
         assert np.linalg.norm(sample - point, axis=1).min() < 1e-9
@@ -66,50 +75,99 @@ def test_the_curve_passes_through_all_points_of_the_path(path, step):
     assert curve.length_m >= np.linalg.norm(path.points[-1] - path.points[0]) - 1e-9
 
 
-@given(path=paths(), centre=st.tuples(coordinates, coordinates, coordinates), exact=st.booleans())
-def test_a_smoothed_free_path_is_free(path, centre, exact):
+@given(path=paths(), centre=st.tuples(coordinates, coordinates, coordinates), exact=st.booleans(), kept=st.booleans())
+def test_a_smoothed_free_path_is_free(path, centre, exact, kept):
     disc = Disc(centre[: path.points.shape[1]], 2.0)
     straight = clear_by_segments(disc.segments)
     assume(straight(path.points))
     clear = straight if exact else clear_by_points(disc.points, 0.05)
-    curve = smoothed(path, clear, tolerance_m=1e-3)
-    nearest = disc.distance(curve.sample(0.01)).min()
+    found = smoothed(path, clear, radii_m=(0.6,), keep=range(len(path.points)) if kept else None, tolerance_m=1e-3)
+    nearest = disc.distance(found.curve.sample(0.01)).min()
     assert nearest >= disc.radius - (1e-3 if exact else 1e-3 + 0.025)
+
+
+@given(path=paths(), radii=st.lists(st.floats(0.05, 3), min_size=1, max_size=3), kept=st.booleans(), free=st.booleans())
+def test_no_curve_turns_sharper_than_the_least_radius(path, radii, kept, free):
+    clear = everywhere if free else lambda points: bool((points[:, 0] >= points[0, 0] - 0.5).all())
+    found = smoothed(path, clear, radii_m=radii, keep=range(len(path.points)) if kept else None)
+    assert found.curve.max_curvature <= (1 + 1e-3) / min(radii)
+
+
+@given(path=paths(3), kept=st.booleans(), radius=st.sampled_from([0.05, 0.5, 2.0]))
+def test_the_direction_jumps_at_the_corners_that_are_named_and_nowhere_else(path, kept, radius):
+    found = smoothed(path, everywhere, radii_m=(radius,), keep=range(len(path.points)) if kept else None)
+    curve = found.curve
+    jumps = np.linalg.norm(directions(curve, 0)[1:] - directions(curve, 1)[:-1], axis=1) > 1e-6
+    places = curve.control[1:, 0][jumps]
+    named = found.corners
+    for place in places:
+        assert np.linalg.norm(named - place, axis=1).min(initial=np.inf) < 1e-9
+    for corner in named:
+        assert np.linalg.norm(places - corner, axis=1).min(initial=np.inf) < 1e-9
+    gaps = np.linalg.norm(curve.control[1:, 0] - curve.control[:-1, 3], axis=1)
+    assert gaps.max(initial=0.0) < 1e-8
 
 
 @given(path=paths(3))
 def test_where_nothing_is_free_the_curve_is_the_path(path):
-    curve = smoothed(path, lambda points: False)
-    assert curve.straight.all()
-    assert curve.length_m == pytest.approx(path.length_m, abs=1e-9)
+    found = smoothed(path, lambda points: False, radii_m=(0.3,))
+    assert found.curve.straight.all()
+    assert found.curve.length_m == pytest.approx(path.length_m, abs=1e-9)
 
 
-def test_handles_are_shortened_before_they_are_given_up():
+def test_a_corner_of_an_obstacle_is_passed_on_its_outer_side():
+    """What the path goes around touches it at the corner, so the curve swings out and comes back."""
     path = Path(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]))
-    free = smoothed(path, everywhere)
-    assert free.sample(0.01)[:, 1].min() < -0.1  # it swings out under the first piece
-    kept = smoothed(path, lambda points: points[:, 1].min() >= -0.1)
-    assert -0.1 - 1e-3 <= kept.sample(0.01)[:, 1].min() < 0
-    assert not kept.straight[0]
+    clear = clear_by_points(lambda points: (points[:, 0] >= 4 - 1e-9) | (points[:, 1] <= 1e-9), 0.01)
+    found = smoothed(path, clear, radii_m=(0.5,))
+    sample = found.curve.sample(0.01)
+    assert not len(found.corners)
+    assert np.linalg.norm(sample - [4, 0], axis=1).min() < 1e-9
+    # The middle arc swings out by R (1 - cos 45 degrees), and by as much again until it meets the outer arc.
+    assert -0.2 < sample[:, 1].min() < -0.1
 
 
-@given(path=paths(3))
-def test_the_direction_does_not_jump_at_points_without_reversal(path):
-    points = smoothed(path, everywhere)
-    last, first = points.control[:-1], points.control[1:]
-    arriving, leaving = last[:, 3] - last[:, 2], first[:, 1] - first[:, 0]
-    pieces = np.stack([last[:, 3] - last[:, 0], first[:, 3] - first[:, 0]])
-    units = pieces / np.maximum(np.linalg.norm(pieces, axis=2, keepdims=True), 1e-300)
-    turns = np.linalg.norm(units.sum(axis=0), axis=1) > 1e-3
-    cosine = np.sum(arriving * leaving, axis=1)[turns]
-    np.testing.assert_allclose(
-        cosine, (np.linalg.norm(arriving, axis=1) * np.linalg.norm(leaving, axis=1))[turns], rtol=1e-6
-    )
+def test_where_there_is_room_inside_the_corner_is_cut():
+    path = Path(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]))
+    curve = smoothed(path, clear_by_segments(Disc((0.0, 4.0), 3.5).segments), radii_m=(0.5,)).curve
+    # The arc that touches both pieces replaces two half metres by a quarter of a circle.
+    assert curve.length_m == pytest.approx(8 - 1 + 0.5 * math.pi / 2, rel=1e-6)
+
+
+def test_a_corner_without_room_stays_and_is_named():
+    path = Path(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
+    found = all_kept(path, everywhere, radius=2.0)
+    assert found.corners.tolist() == [[1.0, 0.0]]
+    assert found.curve.straight.all()
+    assert not len(smoothed(path, everywhere, radii_m=(2.0, 0.2), keep=range(3)).corners)
+
+
+def test_near_corners_are_rounded_as_one():
+    """A way around the round end of a wall: its pieces are shorter than any arc of this radius needs."""
+    angles = np.linspace(-math.pi / 2, 0.0, 7)
+    around = np.column_stack([np.cos(angles), np.sin(angles)]) * 0.2
+    path = Path(np.vstack([[-3.0, -0.2], around, [0.2, 3.0]]))
+
+    def free(points):
+        x, y = points.T
+        return ((x >= 0) | (y <= -0.19)) & ((y <= 0) | (x >= 0.19)) & (np.hypot(x, y) >= 0.19)
+
+    clear = clear_by_points(free, 0.005)
+    found = smoothed(path, clear, radii_m=(0.5,))
+    assert not len(found.corners)
+    assert found.curve.max_curvature == pytest.approx(2.0, rel=1e-3)
+    assert free(found.curve.sample(0.005)).all()
+    assert len(all_kept(path, clear).corners) > 0
+
+
+def test_shortcuts_are_taken_where_they_are_free():
+    stairs = Path(np.array([[k // 2 + k % 2, k // 2] for k in range(12)], dtype=float))
+    assert len(smoothed(stairs, everywhere, radii_m=(0.2,)).curve.control) == 1
 
 
 @given(path=paths(), shares=st.lists(st.floats(0, 1), min_size=1, max_size=5))
 def test_arc_length_is_the_parameter(path, shares):
-    curve = smoothed(path, everywhere)
+    curve = all_kept(path, everywhere).curve
     assume(curve.length_m > 0)
     way = np.sort(shares) * curve.length_m
     which, parts = curve.parameters(way)
@@ -142,15 +200,15 @@ def test_equation_4_at_its_parameter():
 
 @pytest.mark.parametrize("points", [[[1.0, 2.0]], [[1.0, 2.0], [1.0, 2.0]]])
 def test_a_path_of_no_length_is_a_point(points):
-    curve = smoothed(Path(np.array(points)), everywhere)
+    curve = all_kept(Path(np.array(points)), everywhere).curve
     assert (curve.length_m, curve.max_curvature) == (0, 0)
     np.testing.assert_array_equal(curve.points([0.0, 3.0]), [[1, 2], [1, 2]])
 
 
-@pytest.mark.parametrize("wrong", [{"handle": 0.0}, {"handle": 1.5}, {"tolerance_m": 0.0}])
+@pytest.mark.parametrize("wrong", [{"radii_m": ()}, {"radii_m": (0.0,)}, {"tolerance_m": 0.0}])
 def test_parameters_out_of_range(wrong):
     with pytest.raises(ParameterError, match=next(iter(wrong))):
-        smoothed(Path(np.zeros((3, 2))), everywhere, **wrong)
+        smoothed(Path(np.zeros((3, 2))), everywhere, **{"radii_m": (1.0,)} | wrong)
 
 
 def test_a_step_of_nothing():

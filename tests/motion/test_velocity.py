@@ -31,7 +31,7 @@ limits_of_robots = st.builds(
 
 def curves_in(*dimensions):
     return st.builds(
-        lambda points, smooth: smoothed(Path(points), lambda _: smooth),
+        lambda points, smooth: smoothed(Path(points), lambda _: smooth, radii_m=(0.5,), keep=range(len(points))).curve,
         st.sampled_from(dimensions).flatmap(
             lambda d: st.lists(st.tuples(*[coordinates] * d), min_size=1, max_size=4).map(np.array)
         ),
@@ -169,7 +169,7 @@ def test_an_arc_is_driven_at_the_greatest_speed_its_limits_allow():
 def test_a_smooth_curve_is_faster_than_its_corners():
     path = Path(np.array([[0.0, 0], [4, 0], [4, 4], [8, 4]]))
     limits = Limits(speed_mps=1, acceleration_mps2=1, yaw_rate_radps=1)
-    smooth, cornered = smoothed(path, lambda _: True), Curve.along(path)
+    smooth, cornered = smoothed(path, lambda _: True, radii_m=(1.0,)).curve, Curve.along(path)
     assert timed(smooth, limits, faces_its_way=True).duration_s < timed(cornered, limits, faces_its_way=True).duration_s
 
 

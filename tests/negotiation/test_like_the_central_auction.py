@@ -62,6 +62,16 @@ def test_with_weights():
     assert_like_central(problem, Parameters(battery_weight=2.0, suitability_weight=1.0))
 
 
+def test_with_the_quality_of_skills():
+    mission = muster.load("depot")
+    robots = tuple(
+        replace(robot, skill_quality=dict.fromkeys(robot.skills, 0.2 + 0.1 * k) or None)
+        for k, robot in enumerate(mission.robots)
+    )
+    problem = Problem.compile(replace(mission, robots=robots)).ready()
+    assert_like_central(problem, Parameters(quality_weight=3.0))
+
+
 @pytest.mark.parametrize("delay_s", [0.001, 0.05, 0.07])
 def test_one_bid_a_robot_a_round_and_no_repairs(delay_s):
     net = network(line_mission(robots=5, tasks=12), delay_s=delay_s)

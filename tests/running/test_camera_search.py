@@ -203,3 +203,13 @@ def test_tags_that_were_seen_too_rarely_are_named():
     report = flown(there)
     assert report.found == ()
     assert report.remarks == ("no point of interest: seen, but too rarely or from too far, tag 4",)
+
+
+@pytest.mark.parametrize("delay_s", [0.2, 0.6])
+def test_images_that_are_late_put_tags_ahead_of_where_they_are(delay_s):
+    """Estimates of a tag are off along the lanes, most of them by the delay times the speed."""
+    late = simulated(mission(found=()), noise=Noise(camera_delay_s=delay_s))
+    raw = late.camera_search.search.raw
+    off = sorted(abs(raw.positions[raw.tags == 4][:, 0] - TAGS[0].position[0]))
+    assert len(off) > 3
+    assert off[len(off) // 2] == pytest.approx(delay_s * DRONE.speed_mps, abs=0.05)

@@ -18,8 +18,8 @@ from muster.perception import ground_fusion
 from muster.perception.pose_tracking import AirTracker, GroundTracker
 from muster.running.simulation import carry_out
 from muster.running.state_estimation import (
-    EstimatedPorts,
     EstimatedWorld,
+    FusedPorts,
     air_errors,
     ground_errors,
     with_state_estimation,
@@ -40,7 +40,7 @@ class Watched(EstimatedWorld):
     def __init__(self, world):
         self.places, self.headings, self.innovations = [], [], {name: [] for name in world.ports}
         self.bodies = world
-        super().__init__(world)
+        super().__init__(world, FusedPorts(world), steered=False)
 
     def _listen(self):
         super()._listen()
@@ -107,7 +107,8 @@ def test_usage_is_what_wheels_count_not_the_way_of_fused_poses():
     mission = muster.load("6T-2R")
     plan = muster.solve(mission, iterations=100)
     exact, err = (
-        carry_out(mission, plan, noise=noise, seed=1) for noise in (Noise(slip=0.05), Noise(slip=0.05, position_m=0.1))
+        carry_out(mission, plan, noise=noise, seed=1, pose="true")
+        for noise in (Noise(slip=0.05), Noise(slip=0.05, position_m=0.1))
     )
     for one, other in zip(exact.robots, err.robots, strict=True):
         assert other.usage_flown == pytest.approx(one.usage_flown, rel=0.005)
@@ -115,9 +116,9 @@ def test_usage_is_what_wheels_count_not_the_way_of_fused_poses():
 
 
 @pytest.mark.parametrize("noise", [Noise(), Noise(slip=0.1, odometry=0.1, gyro_radps=0.1), Noise(attitude_rad=0.1)])
-def test_where_poses_are_exact_nothing_is_filtered(noise):
+def test_where_robots_steer_by_exact_poses_nothing_is_filtered(noise):
     world = KinematicWorld(muster.load("6T-2R"), noise=noise)
-    assert with_state_estimation(world) is world
+    assert with_state_estimation(world, muster.load("6T-2R"), pose="true") is world
 
 
 def test_who_says_where_it_is_says_the_fused_place():
@@ -141,7 +142,7 @@ def test_who_joins_is_fused_too():
     while not simulation.done:
         simulation.advance(1000.0)
     assert "new" in simulation.result().tasks_done
-    assert isinstance(simulation._robots.ports, EstimatedPorts)
+    assert isinstance(simulation._robots.ports, FusedPorts)
     assert isinstance(simulation._robots.ports["late"].tracker, GroundTracker)
     assert math.dist(simulation.positions["late"], simulation._world.positions[2]) < 0.1
 
@@ -149,7 +150,7 @@ def test_who_joins_is_fused_too():
 def test_it_hears_each_step_and_stops_where_something_was_passed():
     mission = muster.Mission(robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=())
     worlds = [KinematicWorld(mission, noise=NOISE, seed=3) for _ in range(2)]
-    fused, plain = with_state_estimation(worlds[0]), worlds[1]
+    fused, plain = with_state_estimation(worlds[0], mission, pose="true"), worlds[1]
     for hearing in (fused, plain):
         hearing.ports["r"].send([Waypoint((1.0, 0.0, 0.0), label="there"), Waypoint((2.0, 0.0, 0.0))])
     for _ in range(4):

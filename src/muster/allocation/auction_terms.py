@@ -15,12 +15,13 @@ _WORDS = {"bid": BIDS, "placement": PLACEMENTS, "winner": WINNERS}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Terms:
-    """Terms of an auction.
+class BidTerms:
+    """What robots bid, and where a task goes in a route.
 
     `bid` None is the rule named as the objective. The weights make bids worse by a factor: 1, plus battery_weight times
     the share of its capacity that a robot has used up, plus suitability_weight times what its suitability for the task
-    lacks to 1. [auction-thesis] leaves both to future work.
+    lacks to 1, plus quality_weight times what the lowest quality among the skills that the task requires lacks to 1.
+    [auction-thesis], section 6.2, leaves all three to future work.
 
     Raises
     ------
@@ -30,15 +31,31 @@ class Terms:
 
     bid: str | None = None
     placement: str = "insert"
-    winner: str = "lowest"
     battery_weight: float = 0.0
     suitability_weight: float = 0.0
+    quality_weight: float = 0.0
 
     def __post_init__(self) -> None:
         for name, words in _WORDS.items():
-            value = getattr(self, name)
+            value = getattr(self, name, words[0])
             if value not in words and not (name == "bid" and value is None):
                 raise ParameterError(f"{name}: {value}; expected {' or '.join(words)}")
-        for name in ("battery_weight", "suitability_weight"):
+        for name in ("battery_weight", "suitability_weight", "quality_weight"):
             if not 0 <= getattr(self, name) <= _MOST_WEIGHT:
                 raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to {_MOST_WEIGHT:g}")
+
+    @property
+    def winner_rule(self) -> str:
+        """Of WINNERS."""
+        return WINNERS[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Terms(BidTerms):
+    """Terms of an auction in rounds: the bid terms, and which bid wins a round."""
+
+    winner: str = "lowest"
+
+    @property
+    def winner_rule(self) -> str:
+        return self.winner

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from copy import copy
 
 import numpy as np
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.auction_terms import Terms
-from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty, suitability_penalty, weighted
+from muster.allocation.auction_terms import BidTerms
+from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty, lack_penalty, weighted
 from muster.allocation.problem import Problem
+from muster.allocation.skill_quality import skill_quality
 from muster.allocation.stop import Stop
 from muster.allocation.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
 
@@ -28,7 +30,7 @@ class Auctioneer:
     def __init__(
         self,
         problem: Problem,
-        terms: Terms,
+        terms: BidTerms,
         routes: Routes | None = None,
         on_round: OnRound | None = None,
     ) -> None:
@@ -36,9 +38,10 @@ class Auctioneer:
         self._terms = terms
         self._rule = BID_RULES[terms.bid or problem.objective]
         self._bidders = core.Bidders(problem.core, insert=terms.placement == "insert", figure=self._rule.figure)
-        by_figure = not terms.suitability_weight  # else the lowest bid need not be that with the lowest figure
-        rule = WINNER_RULES[terms.winner]
-        self._winner_rule: WinnerRule = rule(self) if by_figure or rule is not Lowest else KeptLowest(self)
+        by_task = terms.suitability_weight or terms.quality_weight  # the lowest figure need not make the lowest bid
+        rule = WINNER_RULES[terms.winner_rule]
+        self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
+        self._winner_rule: WinnerRule = KeptLowest(self) if by_task and rule is Lowest else rule(self)
         self._on_round = on_round
         self._robots = range(len(problem.robots))
         self._linked = any(problem.prerequisites)
@@ -83,6 +86,13 @@ class Auctioneer:
         others_too = self._linked or (self._rule.of_team and self._greatest_usage != greatest)
         self._winner_rule.note(self._robots if others_too else (sale.robot,), sale.task)
 
+    def trial(self) -> Auctioneer:
+        """A copy in which awards can be tried, and which this auction does not see."""
+        tried = copy(self)
+        tried._bidders, tried._winner_rule = self._bidders.copy(), Lowest(tried)
+        tried.sales, tried._on_round = {}, None
+        return tried
+
     def relinquish(self, task: int) -> list[int]:
         """Take a task out of its route, and all in routes that waits for it; returns them, to be announced again."""
         returned = self._bidders.relinquish(task)
@@ -123,6 +133,7 @@ class Auctioneer:
             capacity = self._problem.capacity[robots]
             penalty = penalty + terms.battery_weight * battery_penalty(self._usages[robots], capacity)
         if terms.suitability_weight:
-            scores = self._problem.suitability[robots, tasks]
-            penalty = penalty + terms.suitability_weight * suitability_penalty(scores)
+            penalty = penalty + terms.suitability_weight * lack_penalty(self._problem.suitability[robots, tasks])
+        if terms.quality_weight:
+            penalty = penalty + terms.quality_weight * lack_penalty(self._quality[robots, tasks])
         return weighted(bids, penalty)

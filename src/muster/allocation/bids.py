@@ -97,6 +97,6 @@ def battery_penalty(usage: Floats | float, capacity: Floats | float) -> Floats:
     return np.divide(usage, capacity, out=np.zeros(np.shape(usage)), where=np.greater(capacity, 0.0))
 
 
-def suitability_penalty(suitability: Floats) -> Floats:
-    """How far the robot is from perfectly suited: 0 to 1."""
-    return 1.0 - suitability
+def lack_penalty(score: Floats) -> Floats:
+    """What a score, of suitability or of quality, lacks to 1: 0 to 1."""
+    return 1.0 - score

@@ -44,7 +44,13 @@ terms_options = _group(
     click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]"),
     click.option("--placement", type=click.Choice(PLACEMENTS), help="Where a task goes in a route.  [default: insert]"),
     click.option("--winner", type=click.Choice(WINNERS), help="Which bid wins.  [default: lowest]"),
-    click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="battery_weight, suitability_weight."),
+    click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="battery_weight, suitability_weight, quality_weight.",
+    ),
 )
 
 result_options = _group(

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
+    from muster.running.localisation import Localise
     from muster.running.negotiated.simulation import Negotiation
     from muster.simulation import Noise
     from muster.verification import Verdict
@@ -76,6 +77,8 @@ class Backend(Protocol):
         avoidance: str,
         law: str,
         noise: Noise,
+        pose: str | None,
+        localise: Localise | None,
         speed: float | None,
         record: Path | None,
         on_line: OnLine | None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -42,6 +42,13 @@ if TYPE_CHECKING:
 @click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
 @click.option("--offboard", is_flag=True, help="Send way points one by one instead of uploading missions.")
 @click.option(
+    "--local-frame",
+    type=click.Choice(["north", "forward"]),
+    default="north",
+    show_default=True,
+    help="With --offboard and no origin: what a drone calls north is north, or forward at power-up (no compass).",
+)
+@click.option(
     "--height", type=Finite(0.5, 500), metavar="M", help="Height of flight above home, for a mission in the plane."
 )
 @click.option(
@@ -73,6 +80,7 @@ def command(
     endpoints: tuple[str, ...],
     arm: bool,
     offboard: bool,
+    local_frame: Literal["north", "forward"],
     height: float | None,
     low_battery: float,
     wait: float,
@@ -90,7 +98,7 @@ def command(
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)
-    settings = Settings(arm=arm, offboard=offboard, low_battery=low_battery / 100)
+    settings = Settings(arm=arm, offboard=offboard, local_frame=local_frame, low_battery=low_battery / 100)
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
     try:
         plan = given or planned(options, loaded)

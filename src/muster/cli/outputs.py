@@ -8,9 +8,9 @@ from pathlib import Path
 from muster.mission.errors import ParameterError
 
 
-def require_csv(book: Path | None) -> None:
-    if book is not None and book.suffix.lower() != ".csv":
-        raise ParameterError(f"--book: {book}; expected a file that ends in .csv")
+def require_csv(file: Path | None, option: str = "--book") -> None:
+    if file is not None and file.suffix.lower() != ".csv":
+        raise ParameterError(f"{option}: {file}; expected a file that ends in .csv")
 
 
 def require_folder(folder: Path | None, option: str) -> None:

@@ -10,7 +10,8 @@ import click
 
 from muster.cli.exits import DONE
 from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
-from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.outputs import require_csv, require_drawable, require_writable
+from muster.cli.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
@@ -32,7 +33,6 @@ _PLANNERS = (
     "dubins",
 )
 _GUIDANCE = ("pure-pursuit", "virtual-target", "synthetic-waypoint")
-_STEP_M = 0.1
 _FILE = click.Path(path_type=File)
 
 
@@ -44,8 +44,17 @@ _FILE = click.Path(path_type=File)
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")
-@click.option("--smooth", is_flag=True, help="Round the corners where the map leaves room.")
-@click.option("--turning-radius", type=float, metavar="R", help="Of dubins and --unknown, metres.  [default: 0.5, 0.1]")
+@click.option("--smooth", is_flag=True, help="Round the corners by a radius that the robot can drive.")
+@click.option(
+    "--turning-radius",
+    type=float,
+    metavar="R",
+    help="Metres: of --smooth  [default: the robot's at full speed, else 0.1], of the planner dubins  [default: 0.5],"
+    " of --unknown  [default: 0.1]",
+)
+@click.option(
+    "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
+)
 @click.option(
     "--follow", type=click.Choice(_GUIDANCE), help="Drive the path by this law of guidance; show what is driven."
 )
@@ -74,6 +83,7 @@ def command(
     kind: str | None,
     smooth: bool,
     turning_radius: float | None,
+    trajectory: File | None,
     follow: str | None,
     lookahead: float | None,
     unknown: bool,
@@ -92,8 +102,10 @@ def command(
     the reason, and no error. Without a map the path is straight. With --together it finds paths of several robots in
     space and time, on which they do not touch.
     """
-    require_writable(None, (plot,), mission.files, ())
+    require_writable(None, (plot, trajectory), mission.files, ())
     require_drawable(plot)
+    require_csv(trajectory, "--trajectory")
+    require_turning_radius(turning_radius)
     loaded = mission.load(verbose=verbose)
     if together:
         from muster.cli.path_together import run
@@ -106,9 +118,14 @@ def command(
     if unknown:
         found, driven = _by_laser(world, body, ends, turning_radius, seed)
     else:
-        found = _found(world, body, planner, ends, seed, _parameters(planner, turning_radius))
+        found = _found(world, body, planner, ends, seed, _parameters(planner, turning_radius, smooth=smooth))
+    curve = None
+    mover = None if robot is None else _robot(loaded, robot)
     if smooth and isinstance(found, Path):
-        found, driven = _smoothed(world, body, found)
+        rounded = smooth_path(world, body, found, mover, turning_radius)
+        found, driven, curve = rounded.path, rounded.answer(), rounded.curve
+    if trajectory is not None and isinstance(found, Path):
+        write_trajectory(trajectory, curve, found, mover)
     if lookahead is not None and follow is None:
         raise ParameterError(f"--lookahead: {lookahead:g}; expected --follow beside it")
     if follow is not None and isinstance(found, Path):
@@ -128,12 +145,14 @@ def _world(mission: Mission) -> World | None:
     return None if mission.map is None else World.of(mission)
 
 
-def _parameters(planner: str, turning_radius: float | None) -> Any:
+def _parameters(planner: str, turning_radius: float | None, *, smooth: bool) -> Any:
     """Parameters of the planner; None for its own."""
-    if turning_radius is None:
+    if turning_radius is None or (smooth and planner != "dubins"):
         return None
     if planner != "dubins":
-        raise ParameterError(f"--turning-radius: {turning_radius:g}; expected --planner dubins or --unknown beside it")
+        raise ParameterError(
+            f"--turning-radius: {turning_radius:g}; expected --smooth, --unknown or --planner dubins beside it"
+        )
     from muster.motion.paths.dubins import Parameters
 
     return Parameters(turning_radius_m=turning_radius)
@@ -182,15 +201,6 @@ def _by_laser(
     if isinstance(found, NoPath):
         return found, {}
     return found.path, {"scans": found.scans, "edges": len(found.edges)}
-
-
-def _smoothed(world: World | None, body: Body, path: Path) -> tuple[Path, dict[str, Any]]:
-    """The path as a curve, in pieces of at most 0.1 m, and the greatest curvature of it."""
-    from muster.motion.curve import Curve
-    from muster.motion.robot_paths import RobotPaths
-
-    curve = Curve.along(path) if world is None else RobotPaths(world).curve(body, path)
-    return Path(curve.sample(_STEP_M)), {"max_curvature_per_m": curve.max_curvature}
 
 
 def _followed(
@@ -267,6 +277,8 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, dri
         return
     if driven:
         click.echo(f"{mission.name}: {found.length_m:.3f} m, {_driving(driven)}; {_facts(body, planner)}")
+        if driven.get("corners"):
+            click.echo(corners_of(driven))
         return
     turns = found.turns
     legs = np.linalg.norm(np.diff(turns, axis=0), axis=1)
@@ -282,7 +294,7 @@ def _driving(driven: dict[str, Any]) -> str:
     if "scans" in driven:
         return f"{driven['scans']} scans, {driven['edges']} of them with an obstacle in the way; by laser"
     if "law" not in driven:
-        return f"smooth, greatest curvature {driven['max_curvature_per_m']:.3f} per metre"
+        return bends_of(driven)
     end = "" if driven["arrived"] else ", not arrived"
     off = f"off the path {driven['max_cross_track_m']:.3f} m at most, {driven['rms_cross_track_m']:.3f} m rms"
     return f"{driven['duration_s']:.2f} s{end}, {off}; {driven['law']}, {driven['kinematics']}"

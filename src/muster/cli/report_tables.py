@@ -21,8 +21,11 @@ all but the ids."""
 def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     """Print the usage of robots beside the plan, figures, tasks lost, and with `with_tasks` each task done."""
     unit = "s" if mission.rules.usage == "time" else "m"
-    columns = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
-    rows = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
+    columns: tuple[str, ...] = ("robot", f"planned [{unit}]", f"flown [{unit}]", "difference")
+    rows: list[tuple[str, ...]] = [(row["robot"], *_usage(row)) for row in report.get("robots", ())]
+    if any(row.get("charge") is not None for row in report.get("robots", ())):
+        columns = (*columns, "battery")
+        rows = [(*row, _charge(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
     if report.get("reallocations"):
@@ -38,6 +41,10 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     _print_found(report, mission)
     for remark in report.get("remarks", ()):
         click.echo(f"{'remark':<17} {remark}")
+
+
+def _charge(row: Mapping[str, Any]) -> str:
+    return "-" if row.get("charge") is None else f"{100 * row['charge']:.1f} %"
 
 
 def _how(report: Report) -> str:

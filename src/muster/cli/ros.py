@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node_processes import NodeProcesses
-    from muster.execution import Report
+    from muster.execution import Recorder, Report
 
 _LEFT = "the robots were told to stand"
 
@@ -72,6 +72,20 @@ _LEFT = "the robots were told to stand"
     help="Rate at which velocities are sent.",
 )
 @avoidance_option
+@click.option(
+    "--odometry",
+    type=click.Choice(["map", "start"]),
+    default="map",
+    show_default=True,
+    help="Odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission.",
+)
+@click.option(
+    "--poses",
+    default="",
+    metavar="TOPIC",
+    help="Where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose.  [default: <robot>/pose]",
+)
+@click.option("--markers", is_flag=True, help="Publish tasks, routes and robots for RViz, on /muster/markers.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @target_options
@@ -87,6 +101,9 @@ def command(
     arrival: float,
     rate: float,
     avoidance: str,
+    odometry: Literal["map", "start"],
+    poses: str,
+    markers: bool,
     known_only: bool,
     on_start: bool,
     stay: bool,
@@ -98,10 +115,11 @@ def command(
     Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION the command waits for command_interface/load and start.
     Ctrl-C stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
+    from muster.bridges.discovery import pose_topics
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
-    if targets is not None:
+    if markers or targets is not None:
         require_rospy(("sensor_msgs", "visualization_msgs"))
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
@@ -110,6 +128,7 @@ def command(
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
     _require_steering(drive, avoidance)
+    pose_topics(poses)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
@@ -123,14 +142,17 @@ def command(
             arrival_m=arrival,
             rate_hz=rate,
             avoidance=avoidance,
+            odometry=odometry,
+            poses=poses,
             joins=not known_only,
         )
 
     become_node("muster", master)
     try:
         own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
-        node = (sys.executable, "-m", "muster.cli.ros_node", "--namespace", namespace, "--frame", frame, *own)
-        work = _Work(fleet_of, given, wait_s, stay, targets is not None, options)
+        where = ("--namespace", namespace, "--frame", frame, "--poses", poses)
+        node = (sys.executable, "-m", "muster.cli.ros_node", *where, *own)
+        work = _Work(fleet_of, given, wait_s, stay, targets is not None, frame if markers else None, options)
         return _with_nodes(loaded, work, node, master, begins=not on_start)
     finally:
         leave()
@@ -164,6 +186,7 @@ class _Work:
     wait_s: float
     stay: bool
     finds_targets: bool
+    marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
 
 
@@ -250,7 +273,12 @@ def _through(
         if plan is None or controller.halt.is_set():
             return None
         controller.carry_out(fleet)
-        report = carried_out(there, plan, fleet, options, controller.halt, [controller.mission_topics])
+        observers: list[Recorder] = [controller.mission_topics]
+        if work.marked_in is not None:
+            from muster.bridges.ros1.markers import Markers
+
+            observers.append(Markers(there, work.marked_in))
+        report = carried_out(there, plan, fleet, options, controller.halt, observers)
         return report, [] if children.fault else final_states_by_telemetry(fleet, there)
     finally:
         fleet.stop()

@@ -19,6 +19,7 @@ from muster.cli.real_robots import (
     require_outputs,
     ros_options,
 )
+from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 
 _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
@@ -47,6 +48,7 @@ _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
     metavar="M",
     help="Distance to a way point at which it counts as reached.",
 )
+@target_options
 @ros_options
 @real_options
 def command(
@@ -58,6 +60,7 @@ def command(
     wait_s: float,
     arrival: float,
     known_only: bool,
+    targets: TargetOptions | None,
     options: RealRunOptions,
 ) -> int:
     """Carry out a MISSION with robots on ROS 2, in real time; robots that it does not name may join.
@@ -81,6 +84,7 @@ def command(
             give=give,
             namespace=namespace,
             arrival=Arrival(near_m=arrival),
+            targets=None if targets is None else targets.settings(),
             joins=not known_only,
         )
         try:

@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 @click.option("--frame", default="map")
 @click.option("--planning", type=json.loads, default="{}")
 @click.option("--targets", default="")
+@click.option("--poses", default="")
 @click.argument(
     "duty", type=click.Choice(["command_interface", "system_monitor", "mission_planner", "target_localization"])
 )
-def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], targets: str) -> None:
+def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], targets: str, poses: str) -> None:
     """Run a node until standard input ends."""
-    from muster.bridges.discovery import topics_in
+    from muster.bridges.discovery import pose_topics, topics_in
     from muster.bridges.ros1.node_lifetime import live
 
     topics = topics_in(namespace)
@@ -40,7 +41,7 @@ def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], 
     def system_monitor() -> object:
         from muster.bridges.ros1.system_monitor import SystemMonitor
 
-        return SystemMonitor(namespace=namespace, topics=topics, frame=frame)
+        return SystemMonitor(namespace=namespace, topics=topics, frame=frame, poses=pose_topics(poses))
 
     def mission_planner() -> object:
         from muster import load
@@ -57,7 +58,8 @@ def command(duty: str, namespace: str, frame: str, planning: Mapping[str, Any], 
         from muster.bridges.ros1.target_localization import TargetLocalization
         from muster.cli.ros_targets import targets_from
 
-        return TargetLocalization(topics=topics, frame=frame, settings=targets_from(targets).settings())
+        settings = targets_from(targets).settings()
+        return TargetLocalization(topics=topics, frame=frame, settings=settings, poses=pose_topics(poses))
 
     duties: Sequence[Callable[[], object]] = (
         command_interface,

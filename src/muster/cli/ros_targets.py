@@ -1,4 +1,4 @@
-"""The options of `muster ros` for the node target_localization."""
+"""The options of `muster ros` and `ros2` for target_localization: what robots' cameras see."""
 
 from __future__ import annotations
 

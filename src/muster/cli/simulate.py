@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,9 +12,11 @@ from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
+from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
+from muster.cli.localisation_options import localise_of, pose_options
 from muster.cli.options import (
     Finite,
     MissionFile,
@@ -33,6 +36,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text, read_plan
+from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
 
@@ -58,8 +62,8 @@ _IN_THIS_PROCESS = (
     "film_speed",
     "still",
     "foxglove",
+    *IN_THIS_PROCESS,
 )
-_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -85,7 +89,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     help="kinematic, physics, or a world of an installed package.",
 )
 @avoidance_option
-@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
+@click.option("--law", type=click.Choice(LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",
@@ -100,6 +104,8 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="KIND=AMOUNT",
     help="Noise of motion and telemetry; see docs/simulation.md.",
 )
+@drone_options
+@pose_options
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
@@ -131,6 +137,12 @@ def command(
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
+    wind: str | None,
+    gusts: float | None,
+    rotors: bool,
+    batteries: tuple[str, ...],
+    pose: str | None,
+    sensors: tuple[str, ...],
     record: Path | None,
     html: Path | None,
     plot: Path | None,
@@ -159,9 +171,12 @@ def command(
     require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan, start, fixed))
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
-    noise = noise_of(noises)
+    noise, localise = noise_of(noises), localise_of(sensors)
+    conditions = conditions_of(wind, gusts, batteries, rotors=rotors)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = mission.load(verbose=verbose)
+    if localise is not None:
+        _require_possible(localise, loaded)
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
     if negotiate:
@@ -184,12 +199,15 @@ def command(
             avoidance=avoidance,
             law=law,
             noise=noise,
+            pose=pose,
+            localise=localise,
             speed=speed,
             record=file,
             on_line=print_event_line if speed is not None and not quiet else None,
             observers=observers,
             film=footage,
             on_look=looks,
+            **conditions,
             **rules,
         )
     if found is not None and looks is not None:
@@ -214,6 +232,13 @@ def _check_together(negotiate: bool) -> None:
     for name in sorted(wrong):
         option = "--set" if name == "settings" else f"--{name.replace('_', '-')}"
         raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
+
+
+def _require_possible(localise: Mapping[str, Mapping[str, str]], mission: Mission) -> None:
+    """Refuse sensors before anything is planned."""
+    from muster.running.localisation import require_possible, sensors_of
+
+    require_possible(sensors_of(localise), mission)
 
 
 def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> CameraPictures | None:

@@ -1,12 +1,12 @@
-"""The node uav_camera on ROS 1: `python -m muster.cli.uav_camera r_0 --mission yard.yaml`."""
+"""The node uav_camera on ROS 1 and ROS 2: `python -m muster.cli.uav_camera r_0 --mission yard.yaml`."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,6 +15,7 @@ from muster.mission.errors import MusterError, ParameterError
 
 if TYPE_CHECKING:
     from muster.bridges.ros1.uav_camera import Taken
+    from muster.motion.frames import Floats
     from muster.perception.camera import Intrinsics
     from muster.perception.images import Image
 
@@ -30,7 +31,10 @@ _IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm")
 @click.option("--repeat", is_flag=True, help="Begin a folder of images again at its end.")
 @click.option("--namespace", default="", metavar="NAME", help="In which the robot's own is.  [default: the root]")
 @click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
-@click.option("--master", metavar="URI", help="The ROS master.  [default: ROS_MASTER_URI]")
+@click.option("--ros", type=click.Choice(["1", "2"]), default="1", show_default=True, help="Which ROS.")
+@click.option("--master", metavar="URI", help="The ROS master of ROS 1.  [default: ROS_MASTER_URI]")
+@click.option("--domain", type=int, metavar="N", help="Domain of ROS 2.  [default: ROS_DOMAIN_ID, or 0]")
+@click.option("--by", type=click.Choice(["dds", "rclpy"]), help="Middleware of ROS 2, as of `muster ros2`.")
 def command(
     robot: str,
     mission: str | None,
@@ -38,61 +42,86 @@ def command(
     calibration: str | None,
     rate: float | None,
     repeat: bool,
-    namespace: str,
-    frame: str,
-    master: str | None,
+    **where: Any,
 ) -> None:
-    """Publish the images of a ROBOT's camera, and its camera_info, on ROS 1, until Ctrl-C."""
+    """Publish the images of a ROBOT's camera, and its camera_info, until Ctrl-C."""
     if (mission is None) == (source is None):
         raise ParameterError("expected either --mission, for a simulated robot, or --images")
     if mission is not None:
         if calibration is not None:
             raise ParameterError("--calibration given with --mission; expected it together with --images")
-        _run_simulated(robot, mission, rate, namespace, frame, master)
+        _run_simulated(robot, mission, rate, where)
     elif source is not None:
         if calibration is None:
             raise ParameterError("--calibration: missing; expected the camera's calibration file")
-        _run_real(robot, source, calibration, rate or 2.0, repeat, namespace, master)
+        _run_real(robot, source, calibration, rate or 2.0, repeat, where)
 
 
-def _run_simulated(
-    robot: str, mission: str, rate: float | None, namespace: str, frame: str, master: str | None
-) -> None:
+def _run_simulated(robot: str, mission: str, rate: float | None, where: Mapping[str, Any]) -> None:
     """Where the robot says that it is, the physics world's renderer draws what its camera sees."""
     from muster import load
-    from muster.bridges.discovery import topics_in
-    from muster.bridges.ros1.map_frame import MapFrame
-    from muster.bridges.ros1.node import become_node
-    from muster.bridges.ros1.uav_camera import UavCamera, seen_from_poses
     from muster.perception.camera import intrinsics_of_mission, mount_of_mission
     from muster.perception.optional_parts import require_physics
 
     require_physics("rendering images", "mujoco")
     from muster.simulation.physics.placed_camera import PlacedCamera
 
-    loaded, topics = load(mission), topics_in(namespace)(robot)
+    loaded = load(mission)
     camera = next((one.camera for one in loaded.robots if one.id == robot), None)
     if camera is None:
         raise ParameterError(f"robot {robot}: no camera in {loaded.name}; expected a robot of it with `camera`")
     intrinsics, mount = intrinsics_of_mission(camera), mount_of_mission(camera)
     placed = PlacedCamera(loaded, intrinsics)
-    become_node(f"uav_camera{topics.replace('/', '_')}", master)
-    taken = seen_from_poses(topics, MapFrame(frame), lambda body: placed.image(body, mount))
-    UavCamera(topics, intrinsics, rate_hz=rate or camera.rate_hz, mount=mount).run(taken)
+
+    def picture(body: Floats) -> Image:
+        return placed.image(body, mount)
+
+    _publish(robot, intrinsics, rate or camera.rate_hz, where, picture=picture, mount=mount)
 
 
 def _run_real(
-    robot: str, source: str, calibration: str, rate_hz: float, repeat: bool, namespace: str, master: str | None
+    robot: str, source: str, calibration: str, rate_hz: float, repeat: bool, where: Mapping[str, Any]
 ) -> None:
-    from muster.bridges.discovery import topics_in
-    from muster.bridges.ros1.node import become_node
-    from muster.bridges.ros1.uav_camera import UavCamera
     from muster.perception.calibration import read_intrinsics
 
-    intrinsics, topics = read_intrinsics(calibration), topics_in(namespace)(robot)
-    taken = _checked(_images(source, repeat), intrinsics)
-    become_node(f"uav_camera{topics.replace('/', '_')}", master)
-    UavCamera(topics, intrinsics, rate_hz=rate_hz).run(taken)
+    intrinsics = read_intrinsics(calibration)
+    _publish(robot, intrinsics, rate_hz, where, images=_checked(_images(source, repeat), intrinsics))
+
+
+def _publish(
+    robot: str,
+    intrinsics: Intrinsics,
+    rate_hz: float,
+    where: Mapping[str, Any],
+    *,
+    images: Iterator[Taken] | None = None,
+    picture: Callable[[Floats], Image] | None = None,
+    mount: Floats | None = None,
+) -> None:
+    """Publish images, or where there are none what `picture` draws from the robot's poses, on ROS 1 or ROS 2."""
+    from muster.bridges.discovery import topics_in
+
+    topics_of = topics_in(where["namespace"])
+    if where["ros"] == "1":
+        from muster.bridges.ros1.extra import require_rospy
+
+        require_rospy(("sensor_msgs", "visualization_msgs"))
+        from muster.bridges.ros1 import uav_camera as ros1
+        from muster.bridges.ros1.map_frame import MapFrame
+        from muster.bridges.ros1.node import become_node
+
+        topics = topics_of(robot)
+        become_node(f"uav_camera{topics.replace('/', '_')}", where["master"])
+        drawn = None if picture is None else ros1.seen_from_poses(topics, MapFrame(where["frame"]), picture)
+        ros1.UavCamera(topics, intrinsics, rate_hz=rate_hz, mount=mount).run(images or drawn or iter(()))
+        return
+    from muster.bridges.ros2 import uav_camera as ros2
+    from muster.bridges.ros2.names import ros_name
+    from muster.bridges.ros2.open_middleware import open_middleware
+
+    middleware, topics = open_middleware(where["by"], where["domain"]), topics_of(ros_name(robot))
+    seen = None if picture is None else ros2.seen_from_poses(middleware, topics, picture)
+    ros2.Ros2Camera(middleware, topics, intrinsics, rate_hz=rate_hz).run(images or seen or iter(()))
 
 
 def _images(source: str, repeat: bool) -> Iterator[Image]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.solving import Solution
+    from muster.running.localisation import Localise
     from muster.simulation import Noise
     from muster.verification import Verdict
 
@@ -107,6 +108,8 @@ class ServerBackend:
         avoidance: str,
         law: str,
         noise: Noise,
+        pose: str | None,
+        localise: Localise | None,
         speed: float | None,
         record: Path | None,
         on_line: Callable[[float, str], None] | None,
@@ -122,6 +125,10 @@ class ServerBackend:
             settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:
             settings["noise"] = amounts
+        if pose is not None:
+            settings["pose"] = pose
+        if localise is not None:
+            settings["localise"] = localise
         kept = plan if isinstance(plan, ServerPlan) else self._kept_plan(mission, plan)
         with ctrl_c_halts() as halt:  # without an exception, so that every run that is started is known here
             run = self._client.start(kept, world=world, speed=speed, **settings)

@@ -139,6 +139,39 @@ class Population:
 
     def objective(self, member: int) -> float: ...
 
+class Decoder:
+    """
+    Admissible plans from orders of tasks and the robots that tasks are meant for. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem) -> None: ...
+
+    def in_order(self, tasks: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)], robots: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """
+        Plans from `tasks`, (k, n) in the order in which they are put at the ends of routes, and `robots`, (k, n) by task. Returns (k, 4): weight, objective, total and greatest usage. Raises ValueError if an index is wrong.
+        """
+
+    def nearest_next(self, robots: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """The same where each robot goes on to the nearest of its tasks."""
+
+    def routes(self, plan: int) -> list[list[int]]:
+        """Of the last call."""
+
+class Colony:
+    """
+    Ants that build plans by pheromone and distance. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, beta: float, seed: int) -> None: ...
+
+    def build(self, trail: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], plans: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None))]:
+        """
+        So many plans by (2.24); `trail` is tau^alpha, (n + m, n), from each task and each robot's start to each task. Returns (k, 4): weight, objective, total and greatest usage.
+        """
+
+    def routes(self, plan: int) -> list[list[int]]:
+        """Of the last call."""
+
 class Bidders:
     """
     The team while tasks are auctioned: routes so far, and what each robot could do with each open task. One thread at a time may use one.
@@ -148,6 +181,9 @@ class Bidders:
         """
         `insert`: a task goes where it lengthens the route least, else to its end. `figure`, what offers are: `growth` of the route's usage; `arrivals`, what is added to the sum of usages on arrival; `end`, when the robot would be done with all its tasks, in seconds.
         """
+
+    def copy(self) -> Bidders:
+        """The same team once more, in which awards can be tried."""
 
     def set_routes(self, routes: Sequence[Sequence[int]]) -> None:
         """
@@ -523,12 +559,17 @@ class CrowdWorld:
 
     def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
         """
-        Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by (4.12).
+        Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12).
         """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
         Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.
+        """
+
+    def follow(self, robot: int, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], step: float, times: Sequence[float]) -> None:
+        """
+        The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes each way point.
         """
 
     def fail(self, robot: int) -> None: ...
@@ -587,6 +628,14 @@ class CrowdWorld:
     def counted(self, robot: int) -> tuple[float, float, float, float]:
         """
         Metres ahead, to the left and up, and radians, that odometry counted in the last step.
+        """
+
+    def told_pose(self, robot: int) -> tuple[float, float, float, float]:
+        """Where orders take a robot to be: x, y, z, heading."""
+
+    def tracking_errors(self, robot: int) -> tuple[float, float, int]:
+        """
+        Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.
         """
 
     def busy(self, robot: int) -> bool: ...

@@ -92,6 +92,9 @@ void bind_bidders(nb::module_& m) {
            "`insert`: a task goes where it lengthens the route least, else to its end. `figure`, what offers are: "
            "`growth` of the route's usage; `arrivals`, what is added to the sum of usages on arrival; `end`, when the "
            "robot would be done with all its tasks, in seconds.")
+      .def(
+          "copy", [](const Bidding& bidding) { return Bidding(bidding); }, nb::keep_alive<0, 1>(),
+          "The same team once more, in which awards can be tried.")
       .def("set_routes", &Bidding::set_routes, "routes"_a, Unlocked(),
            "Begin anew with these routes; nothing is announced. Raises ValueError if they are not admissible.")
       .def("announce", &Bidding::announce_all, "tasks"_a, Unlocked(),

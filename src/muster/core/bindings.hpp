@@ -9,6 +9,7 @@ void bind_problem(nanobind::module_& m);
 void bind_inspection(nanobind::module_& m);
 void bind_greedy(nanobind::module_& m);
 void bind_population(nanobind::module_& m);
+void bind_decoder(nanobind::module_& m);
 void bind_bidders(nanobind::module_& m);
 void bind_annealing(nanobind::module_& m);
 void bind_search(nanobind::module_& m);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "tracking.hpp"
+
 namespace muster {
 
 namespace {
 
 constexpr double kRounding = 1e-9;  // metres
 constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
+constexpr double kHeldUp = 1.0;     // seconds
 constexpr double kClimbs = 0.5;     // seconds: the constant interval of (4.12)
 
 // The way between two places; over ground alone where the robot climbs by a law of its own.
@@ -99,8 +102,9 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
 
 bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
-  // What stands in its way may stand there because it is not where it takes itself to be.
-  if (robot.turned_aside) tolerances.arrival += kSure * robot.belief.spread;
+  if (!clock_is_at(robot)) return false;
+  // What holds it up may stand there because the robot is not where it takes itself to be.
+  if (robot.turned_aside && robot.patience.stuck > kHeldUp) tolerances.arrival += kSure * robot.belief.spread;
   const double away = norm(point.at - robot.position);
   const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
   if (point.stops() || robot.next + 1 == robot.way.size()) {
@@ -109,11 +113,12 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances
     if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
     return away <= (no_nearer ? tolerances.arrival : robot.exact);
   }
+  const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
+  if (robot.reference.given() && !robot.reference.astray && tracking_error(robot) <= room) return true;
   const double past = corner_speed(robot, before, robot.next, tolerances, dt);
   if (away <= robot.exact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
   if (missed <= tolerances.corner + kRounding && past > 0.0) return true;
-  const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
   return robot.turned_aside && missed <= room;
 }
 

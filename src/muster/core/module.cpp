@@ -8,6 +8,7 @@ NB_MODULE(_core, m) {
   muster::bind_inspection(m);
   muster::bind_greedy(m);
   muster::bind_population(m);
+  muster::bind_decoder(m);
   muster::bind_bidders(m);
   muster::bind_annealing(m);
   muster::bind_search(m);

@@ -161,7 +161,7 @@ class Run:
     Parameters
     ----------
     settings
-        `seed`, `dt_s`, `avoidance`, `law`, `noise` of a simulated world; of a bridge what it needs
+        `seed`, `dt_s`, `avoidance`, `law`, `noise`, `pose`, `localise` of a simulated world; of a bridge what it needs
         (docs/mission-control.md).
     speed
         times real time; null: as fast as possible. Of real robots always 1.

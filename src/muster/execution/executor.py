@@ -322,6 +322,7 @@ class Executor:
             usage_planned=self.usage_planned,
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=len(self.revisions),
+            charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
         )
 
     def lost(self) -> dict[str, str]:

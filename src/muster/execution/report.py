@@ -29,6 +29,8 @@ class Account:
         by robot, in the mission's unit: measured; and by the plan that the mission began with, 0 of who joined.
     mission_time_s, reallocations, done_twice
         as in `Report`.
+    charges
+        by robot the share of its battery that it last reported, of those that do.
     """
 
     objective: str
@@ -40,15 +42,20 @@ class Account:
     mission_time_s: float
     reallocations: int
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    charges: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class RobotReport:
-    """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined."""
+    """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined.
+
+    `charge` is the share of its battery that it last reported; None where it reports none.
+    """
 
     robot: str
     usage_planned: float
     usage_flown: float
+    charge: float | None = None
 
 
 @dataclass(frozen=True)
@@ -199,7 +206,8 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         waiting_s=ledger.waiting_s,
         reallocations=account.reallocations,
         robots=tuple(
-            RobotReport(robot, account.usage_planned.get(robot, 0.0), used) for robot, used in account.used.items()
+            RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
+            for robot, used in account.used.items()
         ),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},

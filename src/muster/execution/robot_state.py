@@ -178,9 +178,12 @@ class RobotState:
     def capacity(self) -> float | None:
         """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
         most = self.robot.work_capacity
-        if most is None or self.telemetry is None or self.telemetry.charge is None:
-            return most
-        return min(most, self.used + self.telemetry.charge * most)
+        return most if most is None or self.charge is None else min(most, self.used + self.charge * most)
+
+    @property
+    def charge(self) -> float | None:
+        """The share of its battery that is left, as it last reported; None if it does not."""
+        return None if self.telemetry is None else self.telemetry.charge
 
     def work_left_s(self, now: float) -> float:
         """Seconds until the work under way ends, if all goes well."""

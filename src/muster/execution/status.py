@@ -78,7 +78,7 @@ def _robot(state: RobotState, ledger: Ledger, *, limited: bool) -> RobotStatus:
         route=tuple(state.route),
         used=state.used,
         usage_left=None if capacity is None else max(0.0, capacity - state.used),
-        charge=None if state.telemetry is None else state.telemetry.charge,
+        charge=state.charge,
         available=state.available,
     )
 

@@ -152,12 +152,18 @@ def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
             yield from _places(("events", k, "new_task"), event.new_task)
         if event.move_task is not None:
             yield ("events", k, "move_task", "position"), event.move_task.position
-    for k, tag in enumerate(mission.tags):
-        yield ("tags", k, "position"), tag.position
+    yield from _marks(mission)
     for k, found in _rules(mission):
         if found.becomes.action is not None:
             for key, point in found.becomes.action.places.items():
                 yield ("found", k, "becomes", "action", key), point
+
+
+def _marks(mission: MissionData) -> Iterator[tuple[Path, Point]]:
+    for k, tag in enumerate(mission.tags):
+        yield ("tags", k, "position"), tag.position
+    for k, landmark in enumerate(mission.landmarks):
+        yield ("landmarks", k, "position"), landmark.position
 
 
 def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:

@@ -91,6 +91,7 @@ def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
             if isinstance(event.get(key), dict):
                 yield from _of_task((*at, key), event[key])
     yield from _items(data, "tags")
+    yield from _items(data, "landmarks")
     for at, found in _items(data, "found"):
         if isinstance(found.get("becomes"), dict):
             yield from _of_task((*at, "becomes"), found["becomes"])

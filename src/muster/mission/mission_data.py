@@ -9,7 +9,7 @@ from muster.mission.events import Event
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.robots import Robot
 from muster.mission.rules import Rules
-from muster.mission.site import Map, Origin, Tag, TravelTable
+from muster.mission.site import Landmark, Map, Origin, Tag, TravelTable
 from muster.mission.source import IN_PYTHON, Source
 from muster.mission.tasks import Found, Task
 from muster.mission.value_types import Choice, Many, Number, Table, Text
@@ -50,6 +50,11 @@ class MissionData(Checked):
     found: tuple[Found, ...] = spec(
         Many(Record(Found, "what becomes of tags")),
         "what becomes of tags that are found: the first that fits",
+        default=(),
+    )
+    landmarks: tuple[Landmark, ...] = spec(
+        Many(Record(Landmark, "a landmark")),
+        "cylinders by which lasers localise robots, in simulated worlds",
         default=(),
     )
     travel_tables: Mapping[str, TravelTable] = field(default_factory=dict)

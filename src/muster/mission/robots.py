@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
-from muster.mission.value_types import Choice, Flag, Many, Number, Position, Text, Whole
+from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 
 
 @record
@@ -32,6 +36,11 @@ class Robot(Checked):
         Number(minimum=0), "most usage; without it unlimited", unit="unit of usage", default=None
     )
     skills: tuple[str, ...] = spec(Many(Text()), "what it can do", default=())
+    skill_quality: Mapping[str, float] | None = spec(
+        Table(Number(above=0, maximum=1), "a mapping from skills to qualities, above 0 to 1"),
+        "how well it can do that, for bids; of skills that are not named 1",
+        default=None,
+    )
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
@@ -47,6 +56,13 @@ class Robot(Checked):
     acceleration_mps2: float | None = spec(Number(above=0), "greatest acceleration", default=None)
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        skills = values.get("skills", ())
+        for name in values.get("skill_quality") or ():
+            if name not in skills:
+                yield Fault(("skill_quality", name), shown(name), f"one of its skills{did_you_mean(name, skills)}")
 
     def place_at_end(self, rules: Rules) -> Point | None:
         """Where the robot's route must end, or None where it may end anywhere."""

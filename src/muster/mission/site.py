@@ -1,4 +1,4 @@
-"""The site of a mission: its origin on Earth, its map and zones, its tags and its travel tables."""
+"""The site of a mission: its origin on Earth, its map and zones, its tags, landmarks and travel tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from muster.mission.place_types import LatLon
 from muster.mission.records import Checked, Record, record, spec
-from muster.mission.value_types import Choice, Fault, Many, Number, Position, Text, Whole, shown
+from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Text, Whole, shown
 
 Point = tuple[float, ...]
 
@@ -72,12 +72,24 @@ class Map(Checked):
 
 @record
 class Tag(Checked):
-    """A tag that lies there to be found: simulated worlds show it to cameras, and nobody else knows of it."""
+    """A tag that lies there to be found: simulated worlds show it to cameras.
+
+    Nobody else knows of it, except robots that localise themselves by tags.
+    """
 
     id: int = spec(Whole(maximum=586), "which tag of the AprilTag family 36h11")
     position: Point = spec(Position(), "where its middle is", instead=IN_DEGREES)
     heading_deg: float = spec(Number(), "where its upper edge is, from east, anticlockwise", default=0.0)
     size_m: float = spec(Number(above=0), "side of its black square", default=0.4)
+
+
+@record
+class Landmark(Checked):
+    """An upright cylinder that lasers see and bodies do not touch."""
+
+    position: Point = spec(Position(), "where it stands", instead=IN_DEGREES)
+    radius_m: float = spec(Number(above=0), "its radius", default=0.025)
+    known: bool = spec(Flag(), "whether robots know its place, and localise themselves by it", default=True)
 
 
 @dataclass(frozen=True)

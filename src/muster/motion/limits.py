@@ -7,6 +7,9 @@ from dataclasses import dataclass, fields
 
 from muster.mission.errors import ParameterError
 
+BENDS_SHARE = math.sqrt(0.5)
+"""Of the acceleration, what a bend may take; so as much is left along the way."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
@@ -47,6 +50,16 @@ class Limits:
     @property
     def climb(self) -> float:
         return self.speed_mps if self.climb_mps is None else self.climb_mps
+
+    def turning_radius_m(self, *, faces_its_way: bool) -> float:
+        """The least radius that is driven at full speed; 0 where nothing limits turns.
+
+        A robot that faces its way turns at most at its yaw rate; others are limited by what a bend may take of their
+        acceleration.
+        """
+        if faces_its_way:
+            return self.speed_mps / self.yaw_rate_radps
+        return self.speed_mps**2 / (BENDS_SHARE * self.acceleration_mps2)
 
     @property
     def spot_yaw_rate(self) -> float:

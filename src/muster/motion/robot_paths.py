@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Mission, Point
-from muster.motion.curve import Curve
 from muster.motion.free_space import PrismSpace, Space
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import PathFinder
-from muster.motion.smoothing import smoothed
+from muster.motion.smoothing import Smoothed, smoothed
 from muster.motion.unreachable_places import checked_world, why_blocked
 
 Floats = npt.NDArray[np.float64]
@@ -68,12 +67,11 @@ class RobotPaths:
             self._legs[leg] = math.inf if isinstance(found, NoPath) else found.length_m
         return self._legs[leg]
 
-    def curve(self, body: Body, path: Path) -> Curve:
-        """A path with its corners rounded where the map leaves room."""
-        finder = self._finder(body)
-        return smoothed(path, finder.clear)
+    def smoothed(self, body: Body, path: Path, radius_m: float) -> Smoothed:
+        """A path with its corners rounded by a radius where the map leaves room."""
+        return smoothed(path, self._finder(body).clear, radii_m=(radius_m,))
 
-    def clear(self, body: Body, points: Sequence[Sequence[float]]) -> bool:
+    def clear(self, body: Body, points: npt.ArrayLike) -> bool:
         """Whether a body can move straight from each point of the map frame, (k, d) metres, to the next."""
         return self._finder(body).clear(np.array(points, dtype=np.float64))
 

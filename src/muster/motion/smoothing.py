@@ -1,14 +1,15 @@
-"""Smoothing: cubic Bezier splines through the points of a path ([market-paper], section 3.2.3, equation (4)).
+"""Smoothing: a path becomes a curve of cubic Bezier segments ([market-paper], section 3.2.3, equation (4)).
 
-Between two points of the path lies one segment. At a point both its segments have the direction that halves the turn,
-so that the curve swings out of a corner and not into what the path goes around. Where a segment would leave the free
-space its handles are halved, and in the end it is the straight piece of the path.
+Straight shortcuts replace points of the path where they are free. Then each corner is rounded by arcs of a radius that
+the robot can drive, where the free space and the length of the pieces allow it. Where they do not, the corner stays: a
+robot that faces its way stops and turns there.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,7 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
 from muster.motion.path import Path
+from muster.motion.rounding import Rounding
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -23,8 +25,24 @@ Bools = npt.NDArray[np.bool_]
 Clear = Callable[[Floats], bool]
 """Whether straight pieces through points (k, d) are free from end to end."""
 
-_HALVINGS = 5
-_REVERSAL = 1e-6  # a turn so near to a half one has no direction that halves it
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A smoothed path.
+
+    Parameters
+    ----------
+    curve
+        its curvature is at most 1 / radius, but for `corners`.
+    corners
+        (c, d) metres: the points at which no radius fitted.
+    before
+        how many segments come before each point of the path; empty where shortcuts were taken.
+    """
+
+    curve: Curve
+    corners: Floats
+    before: tuple[int, ...] = ()
 
 
 def clear_by_points(free: Callable[[Floats], Bools], step_m: float) -> Clear:
@@ -48,61 +66,69 @@ def clear_by_segments(free: Callable[[Floats, Floats], Bools]) -> Clear:
     return lambda points: bool(free(points[:-1], points[1:]).all())
 
 
-def smoothed(path: Path, clear: Clear, *, handle: float = 1 / 3, tolerance_m: float = 1e-3) -> Curve:
-    """A curve through all points of a path that stays where `clear` says.
+def smoothed(
+    path: Path,
+    clear: Clear,
+    *,
+    radii_m: Sequence[float],
+    keep: Collection[int] | None = None,
+    tolerance_m: float = 1e-3,
+) -> Smoothed:
+    """A curve along a path that stays where `clear` says, and turns no sharper than the least radius.
 
     Parameters
     ----------
     path
         free itself: where it is not, it is followed all the same.
-    handle
-        length of a handle, as a share of its segment's; 1/3 draws a straight segment at an even rate.
+    radii_m
+        turning radii in the order in which they are tried at a corner, metres.
+    keep
+        the numbers of points through which the curve passes; it goes near all others. None: it may take shortcuts.
     tolerance_m
         how far the chords that are tested may lie from the curve, in metres.
 
     Raises
     ------
     ParameterError
-        if `handle` is not in (0, 1] or `tolerance_m` not above 0.
+        if there is no radius, one is not a finite number above 0, or `tolerance_m` is not above 0.
     """
-    if not 0 < handle <= 1:
-        raise ParameterError(f"handle: {handle}; expected a share above 0 and at most 1")
+    if not radii_m or not all(0 < radius < math.inf for radius in radii_m):
+        raise ParameterError(f"radii_m: {list(radii_m)}; expected finite metres above 0")
     if not tolerance_m > 0:
         raise ParameterError(f"tolerance_m: {tolerance_m}; expected metres above 0")
-    points = _distinct(np.asarray(path.points, dtype=np.float64))
+    points, numbers = _distinct(np.asarray(path.points, dtype=np.float64))
+    kept = frozenset(int(numbers[k]) for k in keep or ())
+    if keep is None:
+        points, numbers = shortened(Path(points).turns, clear), numbers[:0]
     if len(points) < 3:
-        return Curve.along(Path(points))
-    control = Curve.along(Path(points)).control.copy()
-    leaving, arriving = _tangents(points)
-    for k, chord in enumerate(np.linalg.norm(np.diff(points, axis=0), axis=1)):
-        for halving in range(_HALVINGS + 1):
-            reach = handle * chord * 0.5**halving
-            segment = np.stack(
-                [points[k], points[k] + reach * leaving[k], points[k + 1] - reach * arriving[k], points[k + 1]]
-            )
-            if clear(_chords(segment, tolerance_m)):
-                control[k] = segment
-                break
-    return Curve(control)
+        return Smoothed(Curve.along(Path(points)), points[:0], tuple(numbers.tolist()))
+    rounding = Rounding(points, lambda segments: clear(_chords_of(segments, tolerance_m)), clear, kept)
+    for radius in radii_m:
+        rounding.round(radius)
+    control, before = rounding.control()
+    return Smoothed(Curve(control), points[rounding.sharp], tuple(before[k] for k in numbers))
 
 
-def _distinct(points: Floats) -> Floats:
-    """The points without those that repeat the one before."""
+def shortened(points: Floats, clear: Clear) -> Floats:
+    """From each point straight to the farthest later one that can be reached freely."""
+    kept, last = [0], len(points) - 1
+    while kept[-1] < last:
+        at = kept[-1]
+        sights = (k for k in range(last, at + 1, -1) if clear(points[[at, k]]))
+        kept.append(next(sights, at + 1))
+    return np.asarray(points[kept])
+
+
+def _distinct(points: Floats) -> tuple[Floats, npt.NDArray[np.intp]]:
+    """The points without those that repeat the one before; and the number that each point has then."""
     new = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))
-    return np.asarray(points[new])
+    return np.asarray(points[new]), np.cumsum(new) - 1
 
 
-def _tangents(points: Floats) -> tuple[Floats, Floats]:
-    """Unit vectors (k - 1, d): of each segment where it leaves its first point and where it arrives at its last."""
-    pieces = np.diff(points, axis=0)
-    units = pieces / np.linalg.norm(pieces, axis=1, keepdims=True)
-    halves = units[:-1] + units[1:]
-    length = np.linalg.norm(halves, axis=1, keepdims=True)
-    turns = length > _REVERSAL
-    halves = halves / np.where(turns, length, 1.0)
-    leaving = np.concatenate([units[:1], np.where(turns, halves, units[1:])])
-    arriving = np.concatenate([np.where(turns, halves, units[:-1]), units[-1:]])
-    return leaving, arriving
+def _chords_of(segments: Floats, tolerance_m: float) -> Floats:
+    """The chords of segments, each from where the one before ends."""
+    chords = [_chords(segment, tolerance_m) for segment in segments]
+    return np.concatenate([chords[0], *(chord[1:] for chord in chords[1:])])
 
 
 def _chords(segment: Floats, tolerance_m: float) -> Floats:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
 from muster.motion.frames import wrapped
-from muster.motion.limits import Limits
+from muster.motion.limits import BENDS_SHARE, Limits
 from muster.motion.trajectory import Trajectory, joined
 from muster.motion.wheels import fastest_translation
 
@@ -26,7 +26,6 @@ Indices = npt.NDArray[np.intp]
 _CORNER = 1e-6  # radians; a smaller turn between two segments is rounding
 _TURN_STEP = 0.05  # radians between two moments on a bend
 _LEAST_PIECES = 4  # of a bent segment
-_BENDS_SHARE = math.sqrt(0.5)  # of the acceleration, that a bend may take; so as much is left along the way
 
 
 def timed(
@@ -181,7 +180,7 @@ def _squares(way: Floats, bend: Floats, turning: Floats, limits: Limits) -> Floa
     """Squared speeds at places along a leg: bounded at each, then forward, then backward."""
     most = fastest_translation(limits.speed_mps, turning, limits.track_m) ** 2
     most = np.minimum(most, _ratio(limits.yaw_rate_radps, turning) ** 2)
-    most = np.minimum(most, _ratio(_BENDS_SHARE * limits.acceleration_mps2, bend))
+    most = np.minimum(most, _ratio(BENDS_SHARE * limits.acceleration_mps2, bend))
     steps = np.diff(way)
     winding = np.abs(np.diff(turning)) / np.where(steps > 0, steps, np.inf)
     swing = _ratio(limits.yaw_acceleration_radps2 / 2, winding)

@@ -17,14 +17,18 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 
 
+TRACK_RADII = 0.287 / 0.3
+"""The distance between the wheels in radii of the robot: the Wafflebot's of [tcf-thesis] at its inflated radius."""
+
+
 def wheel_speeds(speed: npt.ArrayLike, yaw_rate: npt.ArrayLike, track_m: float) -> Floats:
     """Rim speeds (..., 2), left and right, in m/s, from m/s ahead (below 0 backwards) and rad/s."""
     forward, rim = np.broadcast_arrays(np.asarray(speed, float), np.asarray(yaw_rate, float) * track_m / 2)
     return np.stack([forward - rim, forward + rim], axis=-1)
 
 
-def body_speeds(wheels: npt.ArrayLike, track_m: float) -> Floats:
-    """The inverse of `wheel_speeds`: (..., 2) of speed in m/s and yaw rate in rad/s."""
+def body_speeds(wheels: npt.ArrayLike, track_m: npt.ArrayLike) -> Floats:
+    """The inverse of `wheel_speeds`: (..., 2) of speed in m/s and yaw rate in rad/s; of ways as of speeds."""
     left, right = np.moveaxis(np.asarray(wheels, dtype=np.float64), -1, 0)
     return np.stack([(left + right) / 2, (right - left) / track_m], axis=-1)
 

@@ -51,18 +51,22 @@ class Bias:
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """Errors by time. All arrays are (t,).
+    """Errors by time. All arrays are (t,), places (t, d).
 
     Parameters
     ----------
     times, travelled
         seconds, and metres of the true way until then.
+    truth, places
+        metres: where it is, and where the estimates take it to be, in the order of the errors.
     odometry, inertial, fixes
         metres from the estimated place to the true one: odometry alone; odometry and inertial unit; both and fixes.
     """
 
     times: Floats
     travelled: Floats
+    truth: Floats
+    places: tuple[Floats, Floats, Floats]
     odometry: Floats
     inertial: Floats
     fixes: Floats
@@ -189,9 +193,10 @@ def _between(readings: Floats) -> Floats:
 def _drift(truth: Floats, dt: float, *estimated: Floats) -> Drift:
     pieces = np.linalg.norm(np.diff(truth, axis=0), axis=1)
     travelled = np.concatenate([[0.0], np.cumsum(pieces)])
-    odometry, inertial, fixes = (np.linalg.norm(places - truth, axis=1) for places in estimated)
+    odometry, inertial, fixes = estimated
+    errors = [np.linalg.norm(places - truth, axis=1) for places in estimated]
     times: Floats = dt * np.arange(len(truth), dtype=np.float64)
-    return Drift(times, travelled, odometry, inertial, fixes)
+    return Drift(times, travelled, truth, (odometry, inertial, fixes), *errors)
 
 
 def _steps(every_s: float, dt: float) -> int:

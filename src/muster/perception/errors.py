@@ -66,6 +66,36 @@ class GroundErrors(_Deviations):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ReckoningErrors(_Deviations):
+    """Errors of dead reckoning, for robots of all kinds: standard deviations of independent errors.
+
+    Parameters
+    ----------
+    way_share
+        of the way that odometry counts in a step, in each direction.
+    turn_share, turn_per_m
+        of the turn that it counts in a step: a share of it, and radians for each metre of way; they add as variances.
+    slip
+        of the share of what odometry counts that is never travelled nor turned, at the beginning.
+    gyro_radps, gyro_bias_radps, gyro_walk
+        as in `GroundErrors`.
+
+    Raises
+    ------
+    ParameterError
+        if one is negative or not finite.
+    """
+
+    way_share: float = 0.01
+    turn_share: float = 0.01
+    turn_per_m: float = 0.02
+    slip: float = 0.02
+    gyro_radps: float = 0.01
+    gyro_bias_radps: float = 0.01
+    gyro_walk: float = 1e-4
+
+
+@dataclass(frozen=True, kw_only=True)
 class AirErrors(_Deviations):
     """Errors of a drone: standard deviations of independent errors, for each coordinate of the map frame.
 

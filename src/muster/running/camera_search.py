@@ -7,8 +7,9 @@ tilted as its inertial unit says, both with the world's noise. What a silent rob
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from muster.execution.report import FoundReport, Report
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.frames import angles
+from muster.motion.grid import Floats
 from muster.motion.port import RobotPort
 from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
 from muster.perception.camera_observer import CameraObserver
@@ -32,12 +34,16 @@ OnLook = Callable[[Look], None]
 
 @dataclass
 class _Eye:
-    """One robot's camera: its number in the world, and when it looks next."""
+    """One robot's camera: its number in the world, when it looks next, and its images that are still on the way.
+
+    `images` are the times at which they arrive, and the true poses (4, 4) from which they were taken.
+    """
 
     number: int
     observer: CameraObserver
     period_s: float
     due_s: float
+    images: deque[tuple[float, Floats]] = field(default_factory=deque)
 
 
 class CameraSearch:
@@ -88,8 +94,10 @@ class CameraSearch:
 
     @property
     def due_s(self) -> float:
-        """When a camera looks next."""
-        return min((eye.due_s for eye in self._eyes.values()), default=math.inf)
+        """When a camera looks next, or an image arrives."""
+        looks = [eye.due_s for eye in self._eyes.values()]
+        arrivals = [arrives_s for eye in self._eyes.values() for arrives_s, _ in eye.images]
+        return min([*looks, *arrivals], default=math.inf)
 
     @property
     def found(self) -> tuple[FoundReport, ...]:
@@ -135,14 +143,17 @@ class CameraSearch:
         """
         frames, positions, axes = self._world.frames, self._world.positions, self._world.axes
         for robot, eye in self._eyes.items():
-            if eye.due_s > now + 1e-9:
+            k = eye.number
+            if eye.due_s <= now + 1e-9:
+                eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
+                eye.images.append((now + self._noise.camera_delay_s, true_body(frames[k], axes[k])))
+            if not eye.images or eye.images[0][0] > now + 1e-9:
                 continue
-            eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
+            _, body = eye.images.popleft()
             said = None if robot in unheard else self._ports[robot].telemetry()
             if said is None or said.time_s < now - self._world.dt_s / 2:
                 continue
-            k = eye.number
-            view = View.from_body(eye.observer.intrinsics, true_body(frames[k], axes[k]), eye.observer.mount)
+            view = View.from_body(eye.observer.intrinsics, body, eye.observer.mount)
             roll, pitch = angles(axes[k])[:2] + self._random.normal(0.0, self._noise.attitude_rad, 2)
             believed = [*(np.array(said.position) + frames[k] - positions[k]), roll, pitch, said.heading]
             look = self._sight.look(eye.observer, view, believed, now)
@@ -197,6 +208,6 @@ def camera_search_for(
 
 def with_found(report: Report, camera_search: CameraSearch | None) -> Report:
     """A report with what cameras found."""
-    return (
-        report if camera_search is None else replace(report, found=camera_search.found, remarks=camera_search.remarks)
-    )
+    if camera_search is None:
+        return report
+    return replace(report, found=camera_search.found, remarks=(*report.remarks, *camera_search.remarks))

@@ -68,7 +68,7 @@ def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
     from muster.bridges.ros1.node import become_node
 
     become_node("muster", settings.get("master"))
-    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz", "avoidance")
+    own = _some(settings, "drive", "namespace", "frame", "arrival_m", "rate_hz", "avoidance", "odometry", "poses")
     fleet = Ros1Fleet(mission, joins=not settings.get("known_only", False), **own)
     return _heard(fleet, settings, halt), _nothing
 
@@ -97,7 +97,7 @@ def open_mavlink(mission: Mission, settings: Mapping[str, Any], _halt: threading
         raise ParameterError("endpoints: missing; expected for each robot how it is reached")
     if not settings.get("arm", False):
         raise ParameterError("arm: missing; expected true: without it nothing flies")
-    own = _some(settings, "offboard", "low_battery") | ({"far_m": _ANYWHERE_M} if again else {})
+    own = _some(settings, "offboard", "local_frame", "low_battery") | ({"far_m": _ANYWHERE_M} if again else {})
     fleet = MavlinkFleet(mission, endpoints, Settings(arm=True, **own), height_m=settings.get("height_m"))
     try:
         fleet.connect(settings.get("wait_s", _WAIT_S))

@@ -26,10 +26,12 @@ from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
-from muster.running.state_estimation import with_state_estimation
-from muster.running.worlds import recorded_world
-from muster.simulation import NO_NOISE, Noise, SimulatedWorld
+from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
+from muster.running.worlds import recorded_world, with_tracking
+from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
+from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -58,9 +60,17 @@ class Simulation:
     avoidance
         how robots pass each other: orca, rvo, hrvo, avo or none.
     law
-        how robots move: profile, or thesis, by the control laws of [tcf-thesis].
+        how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
-        of motion and telemetry. Where robots err about their poses, filters fuse what they say.
+        of motion and telemetry.
+    pose, localise
+        what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
+    wind
+        in which drones fly, in the physics world.
+    batteries
+        shares of full batteries with which robots begin, by id or for `all`; these report a charge.
+    rotor_level
+        whether all drones of the physics world are simulated rotor by rotor.
     planning
         options of planning anew; see `reallocation_by`.
     ignore
@@ -91,6 +101,11 @@ class Simulation:
         avoidance: str = "orca",
         law: str = "profile",
         noise: Noise = NO_NOISE,
+        wind: Wind = CALM,
+        batteries: Charges = NO_CHARGES,
+        rotor_level: bool = False,
+        pose: str | None = None,
+        localise: Localise | None = None,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         recorder: Recorder | None = None,
@@ -100,11 +115,23 @@ class Simulation:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
         self._world = recorded_world(
-            world, mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world,
+            mission,
+            recorder,
+            law=law,
+            wind=wind,
+            batteries=batteries,
+            rotor_level=rotor_level,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world)
+        self._robots: RobotsInWorld = with_state_estimation(
+            self._world, mission, pose=pose, localise=localise, seed=seed
+        )
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -126,6 +153,11 @@ class Simulation:
     def world(self) -> SimulatedWorld:
         """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
         return self._world
+
+    @property
+    def robots(self) -> RobotsInWorld:
+        """The robots as execution hears them: by their estimates, where they have some."""
+        return self._robots
 
     @property
     def time_s(self) -> float:
@@ -197,7 +229,9 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-        return with_found(report, self._camera_search)
+        if isinstance(self._robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, self._robots.remark))
+        return with_tracking(with_found(report, self._camera_search), world)
 
     @property
     def status(self) -> Status:

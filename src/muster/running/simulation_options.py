@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
-    from muster.simulation import Noise, SimulatedWorld
+    from muster.running.localisation import Localise
+    from muster.simulation import Noise, SimulatedWorld, Wind
 
 
 class WorldOptions(TypedDict, total=False):
-    """How the world is: `world`, `dt_s`, `avoidance`, `law`, `noise` and `ignore` as `Simulation` takes them."""
+    """How the world is, and how robots localise themselves; all as `Simulation` takes it."""
 
     world: str
     dt_s: float
     avoidance: str
     law: str
     noise: Noise
+    wind: Wind
+    batteries: Mapping[str, float]
+    rotor_level: bool
+    pose: str | None
+    localise: Localise | None
     ignore: str | Collection[str]
     on_look: OnLook | None
     on_world: Callable[[SimulatedWorld], None] | None

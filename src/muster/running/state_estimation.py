@@ -1,22 +1,40 @@
-"""State estimation in simulated worlds: telemetry as it is, or fused by filters where robots err about their poses.
+"""State estimation in simulated worlds: what robots take for their poses, in telemetry and for steering.
 
-Filters run at the pace of the world, as those on board of a robot run at the pace of its sensors, whenever somebody
-asks. They count with the world's own noise, as one does who knows the data sheets of his sensors.
+Where robots err about their poses they go by what they know: an estimate from their sensors, updated in each step of
+the world. `localisation` makes it of sensors that a user names, `pose_tracking` of noisy poses in telemetry. Filters
+count with the world's own noise, as one does who knows the data sheets of his sensors.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
 
-from muster.mission.model import Robot
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot
+from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
 from muster.motion.kinematics.registry import kinematics_named, limits_of
-from muster.motion.port import RobotPort
+from muster.motion.port import RobotPort, Telemetry, Waypoint
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.pose_tracking import AirTracker, FusedPort, GroundTracker, Tracker
+from muster.running.localisation import (
+    INERTIAL,
+    ODOMETRY,
+    Localisation,
+    Localise,
+    PoseEstimate,
+    require_possible,
+    sensors_of,
+)
 from muster.simulation import Noise, SimulatedWorld, WaypointPassed
 from muster.simulation.port import SimulatedPort
+
+TRUE, ESTIMATE = POSES = ("true", "estimate")
+"""What robots steer by: where they are, or where they take themselves to be."""
 
 LEAST_M, LEAST_RAD, LEAST_RADPS, LEAST_MPS = 0.001, 0.001, 0.001, 0.001
 """What robots err by in a filter's eyes where there is no noise: nothing is exact."""
@@ -38,17 +56,59 @@ class RobotsInWorld(Protocol):
         ...
 
 
-def with_state_estimation(world: SimulatedWorld) -> RobotsInWorld:
-    """Where the world's noise leaves poses exact, the world itself; else with filters between."""
-    return EstimatedWorld(world) if world.noise.of_pose else world
+def with_state_estimation(
+    world: SimulatedWorld,
+    mission: Mission,
+    *,
+    pose: str | None = None,
+    localise: Localise | None = None,
+    seed: int = 0,
+) -> RobotsInWorld:
+    """The world itself where robots steer by their true poses and tell them; else with estimates between.
+
+    Parameters
+    ----------
+    pose
+        `true` or `estimate`; None: `estimate` where sensors are named, or noise makes estimates differ from the truth.
+    localise
+        sensors, as `localisation.sensors_of` takes them; None: noisy poses in telemetry where the noise has any, else
+        odometry, with the gyro where the noise has it.
+
+    Raises
+    ------
+    ParameterError
+        if `pose` is neither, or the sensors are unknown or not possible in this mission.
+    """
+    if pose is not None and pose not in POSES:
+        raise ParameterError(f"pose: {shown(pose)}; expected {', '.join(POSES)}{did_you_mean(str(pose), POSES)}")
+    noise = world.noise
+    steered = pose == ESTIMATE or (pose is None and (noise.of_pose or noise.of_odometry or bool(localise)))
+    if not localise:
+        if not steered and not noise.of_pose:
+            return world
+        if noise.of_pose:
+            return EstimatedWorld(world, FusedPorts(world), steered=steered)
+        localise = (ODOMETRY, INERTIAL) if noise.of_gyro else (ODOMETRY,)
+    sensors = sensors_of(localise)
+    require_possible(sensors, mission)
+    return EstimatedWorld(world, LocalisedPorts(world, Localisation(sensors, mission, seed)), steered=steered)
+
+
+class EstimatingPort(RobotPort, Protocol):
+    """A robot's port with an estimate of its pose."""
+
+    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
+        """The pose that the robot takes for its own now, and a standard deviation in metres; None: it knows none."""
+        ...
 
 
 class EstimatedWorld:
-    """A world whose telemetry passes through `FusedPort`s, which receive every step."""
+    """A world in which robots estimate their poses in every step, and steer by that if they are `steered` by it."""
 
-    def __init__(self, world: SimulatedWorld) -> None:
-        self._world = world
-        self.ports = EstimatedPorts(world)
+    def __init__(self, world: SimulatedWorld, ports: Mapping[str, EstimatingPort], *, steered: bool) -> None:
+        self._world, self._steered = world, steered
+        self.ports = ports
+        self._off: dict[str, list[float]] = {}
         self._listen()
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
@@ -60,22 +120,42 @@ class EstimatedWorld:
                 return passed
         return ()
 
+    @property
+    def remark(self) -> str:
+        """For the report: by how much robots were off where they took themselves to be."""
+        most = {robot: max(off) for robot, off in self._off.items()}
+        worst = max(most, key=lambda robot: most[robot])
+        mean = float(np.mean(np.concatenate(list(self._off.values()))))
+        end = max(off[-1] for off in self._off.values())
+        steering = "steered by their estimated poses" if self._steered else "steered by their true poses"
+        return (
+            f"robots {steering}; estimates were {mean:.4f} m off in the mean, {most[worst]:.4f} m at most ({worst}), "
+            f"{end:.4f} m at most at the end"
+        )
+
     def _listen(self) -> None:
-        for port in self.ports.values():
-            port.telemetry()
+        truth = self._world.positions
+        for number, (robot, port) in enumerate(self.ports.items()):
+            believed = port.believed(self._world.time_s)
+            if believed is None:
+                continue
+            pose, spread_m = believed
+            self._off.setdefault(robot, []).append(math.dist(pose[:3], truth[number]))
+            if self._steered:
+                self._world.believe(robot, np.array(pose), spread_m)
 
 
-class EstimatedPorts(Mapping[str, FusedPort]):
-    """Of all robots that are in the world, made as they come."""
+class FusedPorts(Mapping[str, "FusedEstimate"]):
+    """Of all robots that are in the world, made as they come; noisy poses in telemetry are fused with odometry."""
 
     def __init__(self, world: SimulatedWorld) -> None:
         self._world = world
-        self._fused: dict[str, FusedPort] = {}
+        self._fused: dict[str, FusedEstimate] = {}
 
-    def __getitem__(self, robot: str) -> FusedPort:
+    def __getitem__(self, robot: str) -> FusedEstimate:
         if robot not in self._fused:
             port = self._world.ports[robot]
-            self._fused[robot] = FusedPort(port, tracker_of(port, self._world.noise, self._world.dt_s))
+            self._fused[robot] = FusedEstimate(port, tracker_of(port, self._world.noise, self._world.dt_s))
         return self._fused[robot]
 
     def __iter__(self) -> Iterator[str]:
@@ -83,6 +163,78 @@ class EstimatedPorts(Mapping[str, FusedPort]):
 
     def __len__(self) -> int:
         return len(self._world.ports)
+
+
+class FusedEstimate(FusedPort):
+    """See `EstimatingPort`; a silent robot's filter rests."""
+
+    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
+        """See `EstimatingPort`."""
+        said = self.telemetry()
+        if said is None or said.time_s < now - 1e-6 or self.tracker.estimate is None:
+            return None
+        spread_m = float(np.sqrt(self.tracker.estimate.covariance[[0, 1], [0, 1]].mean()))
+        return (*said.position, said.heading), spread_m
+
+
+class LocalisedPorts(Mapping[str, "LocalisedPort"]):
+    """Of all robots that are in the world, made as they come; each localises itself by its sensors."""
+
+    def __init__(self, world: SimulatedWorld, localisation: Localisation) -> None:
+        self._world, self._localisation = world, localisation
+        self._localised: dict[str, LocalisedPort] = {}
+
+    def __getitem__(self, robot: str) -> LocalisedPort:
+        if robot not in self._localised:
+            estimate = self._localisation.of(self._world, robot)
+            self._localised[robot] = LocalisedPort(self._world.ports[robot], estimate, self._world.time_s)
+        return self._localised[robot]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._world.ports)
+
+    def __len__(self) -> int:
+        return len(self._world.ports)
+
+
+class LocalisedPort:
+    """See `EstimatingPort`; a silent robot goes on estimating, and nobody hears of it."""
+
+    def __init__(self, port: SimulatedPort, estimate: PoseEstimate, now: float) -> None:
+        self._port, self.estimate, self._updated_s = port, estimate, now
+        self._last = self._now()
+
+    @property
+    def robot(self) -> str:
+        """See `RobotPort`."""
+        return self._port.robot
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`."""
+        return self._port.send(waypoints)
+
+    def cancel(self) -> int:
+        """See `RobotPort`."""
+        return self._port.cancel()
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        return self._now()
+
+    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
+        """See `EstimatingPort`."""
+        if now > self._updated_s + 1e-6:
+            self.estimate.update()
+            self._updated_s = now
+        x, y, z, heading = map(float, self.estimate.pose)
+        return (x, y, z, heading), self.estimate.spread_m
+
+    def _now(self) -> Telemetry | None:
+        """A silent robot's telemetry keeps its time."""
+        said = self._port.telemetry()
+        if said is not None and said.time_s >= self._updated_s - 1e-6:
+            self._last = self.estimate.told(said)
+        return self._last
 
 
 def tracker_of(port: SimulatedPort, noise: Noise, dt_s: float) -> Tracker:

@@ -3,6 +3,18 @@
 from muster.simulation.kinematic_world import KinematicWorld
 from muster.simulation.lasers import Laser
 from muster.simulation.noise import NO_NOISE, Noise
+from muster.simulation.wind import CALM, Wind
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
-__all__ = ["NO_NOISE", "Contact", "KinematicWorld", "Laser", "Noise", "Observer", "SimulatedWorld", "WaypointPassed"]
+__all__ = [
+    "CALM",
+    "NO_NOISE",
+    "Contact",
+    "KinematicWorld",
+    "Laser",
+    "Noise",
+    "Observer",
+    "SimulatedWorld",
+    "WaypointPassed",
+    "Wind",
+]

@@ -32,6 +32,8 @@ class Noise:
         standard deviations of the inertial unit's yaw rate in a step, and of its constant bias, drawn for each robot.
     accelerometer_mps2
         standard deviation of each coordinate of the acceleration that the inertial unit gives in a step.
+    camera_delay_s
+        the seconds by which an image is older than the pose that a camera's robot takes it to be from.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class Noise:
     gyro_radps: float = 0.0
     gyro_bias_radps: float = 0.0
     accelerometer_mps2: float = 0.0
+    camera_delay_s: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -68,6 +71,16 @@ class Noise:
     def of_pose(self) -> bool:
         """Whether positions or headings in telemetry have errors."""
         return self.position_m > 0 or self.heading_rad > 0
+
+    @property
+    def of_odometry(self) -> bool:
+        """Whether odometry counts what is not so: dead reckoning leads astray."""
+        return self.slip > 0 or self.odometry > 0
+
+    @property
+    def of_gyro(self) -> bool:
+        """Whether inertial units err about the rate of the heading."""
+        return self.gyro_radps > 0 or self.gyro_bias_radps > 0
 
 
 NO_NOISE = Noise()

@@ -12,18 +12,33 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import wrapped
+from muster.motion.order_trajectory import STEP_S, TrajectoryMaker
 from muster.motion.port import Inertial, Telemetry, Waypoint
+from muster.perception.dead_reckoning import Odometry
+from muster.simulation.batteries import Battery
 from muster.simulation.noise import Noise
 
 
 class SimulatedPort:
     """The port of one robot of a world, a `RobotPort`; `body` is the robot.
 
-    A muted robot's telemetry stays as it last was; the robot goes on, and still receives way points.
+    With `trajectories` orders become trajectories that the robot follows. A muted robot's telemetry stays as it last
+    was; the robot goes on, and still receives way points.
     """
 
-    def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        number: int,
+        crowd: core.CrowdWorld,
+        noise: Noise,
+        seed: int,
+        trajectories: TrajectoryMaker | None = None,
+    ) -> None:
         self.body = robot
+        self._trajectories = trajectories
+        self.battery: Battery | None = None
+        self._held_before_s = 0.0
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
         self._number = number
         self._crowd = crowd
@@ -51,10 +66,14 @@ class SimulatedPort:
         for point in waypoints:
             _check(point)
         stops = [(*p.position, math.nan if p.heading is None else p.heading, p.hold_s) for p in waypoints]
+        self._held_before_s = self.held_s
         self._orders += 1
         self._sent = {self._orders: tuple(waypoints)}
         labelled = [bool(p.label) for p in waypoints]
         self._crowd.send(self._number, np.array(stops, dtype=np.float64).reshape(-1, 5), labelled, self._orders)
+        if self._trajectories is not None and waypoints:
+            made = self._trajectories.trajectory(self._crowd.told_pose(self._number), waypoints)
+            self._crowd.follow(self._number, made.poses, STEP_S, made.times.tolist())
         return self._orders
 
     def cancel(self) -> int:
@@ -64,6 +83,21 @@ class SimulatedPort:
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
         return self._now() if self._last_word is None else self._last_word
+
+    @property
+    def held_s(self) -> float:
+        """Seconds that it has stayed at way points, as far as they are passed."""
+        *_, order, passed = self._crowd.report(self._number)
+        return self._held_before_s + sum(point.hold_s for point in self._sent.get(order, ())[:passed])
+
+    def odometry(self) -> Odometry:
+        """What odometry counted in the last step of the world, noise included; also of a muted robot."""
+        ahead, left, up, turned = self._crowd.counted(self._number)
+        return Odometry(self._crowd.dt, (ahead, left, up), turned)
+
+    def inertial(self) -> Inertial | None:
+        """What the inertial unit gave in the last step, noise included; also of a muted robot."""
+        return self._now().inertial
 
     def mute(self) -> None:
         """Freeze telemetry."""
@@ -79,7 +113,8 @@ class SimulatedPort:
         return points[passed - 1].label if 0 < passed <= len(points) else ""
 
     def _now(self) -> Telemetry:
-        said = Telemetry(*self._crowd.report(self._number), self._felt())
+        charge = None if self.battery is None else self.battery.charge
+        said = Telemetry(*self._crowd.report(self._number), self._felt(), charge)
         return self._disturbed(said) if self._noise.of_telemetry else said
 
     def _felt(self) -> Inertial | None:

@@ -115,6 +115,15 @@ class SimulatedWorld(Protocol):
         """Multiply a robot's top speed by `factor`, above 0 to 1, from now on."""
         ...
 
+    def believe(self, robot: str, pose: Floats, spread_m: float) -> None:
+        """Let a robot take itself to be at a pose (4,) of x, y, z and heading, as of now.
+
+        Its way points lead it to where they are by that. What it senses around it, other robots and walls, it senses
+        from where it truly is. `spread_m` is a standard deviation that the robot counts with: held up for a second
+        on its way to a way point, it has arrived within three of them.
+        """
+        ...
+
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
         """Ranges of a laser on a robot, without errors: (n,) metres, inf where a beam meets nothing within reach.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from muster_studies.auction_5.auctions import Auction, AuctionResult, hold
 from muster_studies.auction_5.paths import Paths, Positions
+from muster_studies.auction_5.pictures import FIGURES
 from muster_studies.auction_5.rounds import Bids, SubmittedBids
 from muster_studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
@@ -63,5 +64,6 @@ AUCTION_5 = Repetition(
     reproductions=_TABLES,
     perform=one_by_one(hold),
     seeds=lambda _: None,
+    figures=FIGURES,
 )
 """Sequential single-item auction of tasks among drones, bid by bid and under each rule."""

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster.mission.plan import Plan, Route
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
-from muster_studies.market_5.searches import PLACES, TRUE, Search, SearchResult, performed, searches
+from muster_studies.market_5.searches import LANDMARKED, PLACES, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
+from muster_studies.market_rescue.scenario import market_case
 from muster_studies.rescue.flights import repetitions
 from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
-from muster_studies.rescue.teams import ARENA, mission_of
+from muster_studies.rescue.teams import ARENA, mission_of, verdict_of
 from muster_studies.rescue.tracking import deviations, legs, track
+from muster_studies.world_pictures import world_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +33,7 @@ _WORLD = WORLDS.shipped[-1]
 def _tracking(effort: Effort) -> Figure:
     first: Search = searches(effort, [_WORLD])[0]
     found = performed(first)
-    tasks = tuple(visit.task for visit in found.flown[TRUE].visits[SHOWN_ROBOT])
+    tasks = tuple(visit.task for visit in found.flown[LANDMARKED].visits[SHOWN_ROBOT])
     reference = legs(ARENA, SHOWN_ROBOT, tasks)
     flights = []
     for place in PLACES:
@@ -60,18 +63,33 @@ def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: 
         label=f"{metric.label}\n{place}",
         means={robot: fmean(each) for robot, each in values.items()},
         spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
-        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", TRUE) else None,
+        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", LANDMARKED) else None,
     )
 
 
+def _world(effort: Effort) -> Figure:
+    """The arena in the physics world, with the robots at their starts."""
+    found = verdict_of(ARENA, market_case(effort).iterations or 0)
+    plan = Plan(routes=tuple(Route(route.robot, route.tasks) for route in found.routes))
+    return world_figure(mission_of(ARENA), plan, "The arena in the physics world")
+
+
 FIGURES = (
+    StudyFigure(
+        number="4",
+        source="market-paper",
+        shows="the arena with its obstacles, survivors and three robots, in V-REP and as a photograph",
+        draw=_world,
+        tables=("Figure 7",),
+        differs="the simulated half alone, in the physics world; places are chosen here",
+    ),
     StudyFigure(
         number="7",
         source="market-paper",
         shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
         draw=_tracking,
         tables=("Figure 7",),
-        differs="its deviation over time beneath, by true places and by estimates",
+        differs="its deviation over time beneath, with landmarks, as believed, and by odometry alone",
     ),
     StudyFigure(
         number="8",
@@ -79,6 +97,6 @@ FIGURES = (
         shows="mean and spread of each robot's errors, distances and times as bars",
         draw=_metrics,
         tables=("Figure 8",),
-        differs="searches in the physics world, by true places and by estimates",
+        differs="searches in the physics world, with landmarks, as believed, and by odometry alone",
     ),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from muster_studies.market_rescue.comparison import Comparison
+from muster_studies.market_rescue.pictures import FIGURES
 from muster_studies.market_rescue.scenario import Allocation, TimeChart
 from muster_studies.repetition import Repetition, Reproduction, over_seeds
 from muster_studies.runs import Case, Sample
@@ -23,5 +24,6 @@ MARKET_RESCUE = Repetition(
     legend=_LEGEND,
     reproductions=_TABLES,
     perform=over_seeds,
+    figures=FIGURES,
 )
 """Market with relinquishing and annealing, in search and rescue."""

@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from muster.motion.grid import Floats
+from muster.motion.kinematics.registry import turning_radius_of
 from muster.motion.map_world import body_of
 from muster.motion.metrics import closest, path_length, risk_factor, trajectory_error
 from muster.motion.path import NoPath
@@ -70,14 +71,15 @@ def _robot_paths(team: str) -> RobotPaths:
 def legs(team: str, robot: str, tasks: tuple[str, ...]) -> tuple[Floats, ...]:
     """The reference to each task in order: (k, 2) metres, evenly along it."""
     mission, robot_paths = mission_of(team), _robot_paths(team)
-    (body,) = (body_of(one) for one in mission.robots if one.id == robot)
+    (mover,) = (one for one in mission.robots if one.id == robot)
+    body, radius_m = body_of(mover), turning_radius_of(mover)
     starts = {one.id: one.position for one in mission.robots}
     places = {task.id: task.position for task in mission.tasks}
     found = []
     for start, goal in pairwise([starts[robot], *(places[task] for task in tasks)]):
         path = robot_paths.path(body, start, goal)
         assert not isinstance(path, NoPath)  # it was planned
-        curve = robot_paths.curve(body, path)
+        curve = robot_paths.smoothed(body, path, radius_m).curve
         found.append(curve.points(np.linspace(0.0, curve.length_m, math.ceil(curve.length_m / SAMPLE_M) + 1)))
     return tuple(found)
 

@@ -56,7 +56,8 @@ class UsageUnderNoise:
             f"{_SLIP} velocity: standard deviation of the share of its velocity that a robot misses in a step; "
             "odometry: standard deviation of the share by which odometry errs in a step.",
             *(_in_truth(plan) for plan in self.plans),
-            "The constant misalignment of Figure 6.15, to which the thesis puts that down, is not simulated.",
+            "Robots steer by their true poses here, as by motion capture without errors. The misaligned markers of "
+            "Figure 6.15, to which the thesis puts that down, are in the table markers.",
         )
         return Table(self.number, "Usage of robots that are disturbed", columns, tuple(rows), notes)
 

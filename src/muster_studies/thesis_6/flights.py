@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -14,6 +14,7 @@ from muster.execution.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
+from muster.motion.laws import PROFILE
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.simulation import NO_NOISE, Noise
@@ -24,6 +25,15 @@ Routes = tuple[tuple[str, tuple[str, ...]], ...]
 """Robots and their tasks in order."""
 
 ALLOCATOR = "search"
+
+
+@dataclass(frozen=True)
+class Marker:
+    """The markers of one robot, misaligned: how far to the left of its origin, and by which angle to the left."""
+
+    robot: str
+    left_m: float
+    turn_deg: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,8 +54,10 @@ class Flight:
         of search, and of the world.
     world
         `kinematic` or `physics`.
-    avoidance, noise
+    avoidance, noise, law
         of the world; without avoidance robots drive through each other.
+    marker
+        robots steer by motion capture, and one has these markers; None: they steer by their true poses.
     """
 
     mission: str
@@ -57,6 +69,8 @@ class Flight:
     world: str = "kinematic"
     avoidance: str = "orca"
     noise: Noise = NO_NOISE
+    law: str = PROFILE
+    marker: Marker | None = None
 
 
 @dataclass(frozen=True)
@@ -123,7 +137,10 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         "seed": flight.seed,
         "avoidance": flight.avoidance,
         "noise": flight.noise,
+        "law": flight.law,
         "ignore": flight.ignored,
+        "pose": "true" if flight.marker is None else "estimate",
+        "localise": None if flight.marker is None else {"motion-capture": asdict(flight.marker)},
     }
     return carry_out(mission, plan, recorder=recorder, **how)
 
@@ -136,7 +153,7 @@ def mission_with(flight: Flight) -> Mission:
 
 def _on_paper(flight: Flight) -> Flight:
     """A flight without what makes no difference to its plan."""
-    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE)
+    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE, marker=None, law=PROFILE)
 
 
 @lru_cache(maxsize=1000)

@@ -32,13 +32,13 @@ class BesidePhysics:
     routes: tuple[str, ...] = ("6.8", "6.9", "6.6")
 
     def jobs(self, effort: Effort) -> Iterator[Flight]:
-        if _lacking() is None:
+        if lacking_physics() is None:
             for _, flight in self._flights(effort):
                 yield from (flight, _in_physics(flight))
 
     def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
         title = "Flown in the physics world, and in the kinematic one"
-        lacking = _lacking()
+        lacking = lacking_physics()
         if lacking is not None:
             return Table(self.number, title, _COLUMNS, (), (lacking,))
         rows = []
@@ -67,7 +67,7 @@ def _in_physics(flight: Flight) -> Flight:
     return replace(flight, world="physics")
 
 
-def _lacking() -> str | None:
+def lacking_physics() -> str | None:
     """The message about a missing extra, if any."""
     try:
         require_physics("the physics world", "mujoco")

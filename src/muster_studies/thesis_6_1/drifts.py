@@ -18,7 +18,7 @@ STEP_S, FIX_EVERY_S = 0.1, 1.0
 BIAS = Bias(scale=0.005, drift_mps=0.001)
 MEASURED_M = "0.15 to 0.5"
 """The thesis' errors, by visual inertial odometry without fixes."""
-_SENSORS = {"odometry": "odometry", "inertial": "and inertial unit", "fixes": "and a fix each second"}
+SENSORS = {"odometry": "odometry", "inertial": "and inertial unit", "fixes": "and a fix each second"}
 
 
 @cache
@@ -40,7 +40,7 @@ class Drifts:
 
     def table(self, effort: Effort, results: Mapping[Flight, FlightResult]) -> Table:
         drifts = [drift(seed) for seed in range(seed_count(effort))]
-        rows = [row(self.columns, {"sensors": name} | _errors(drifts, which)) for which, name in _SENSORS.items()]
+        rows = [row(self.columns, {"sensors": name} | _errors(drifts, which)) for which, name in SENSORS.items()]
         rows.append(row(self.columns, {"sensors": "thesis, in truth", "greatest": MEASURED_M}))
         way = drifts[0].travelled[-1]
         notes = (

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster.mission.plan import Plan, Route
 from muster.report.camera_view import with_sightings
 from muster.report.canvas import frame_of_map, limits, new_figure
 from muster.report.found import plot_found
 from muster.report.styles import FRAME, TEXT
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
+from muster_studies.figures import Draw, StudyFigure
+from muster_studies.runs import mission_named
 from muster_studies.thesis_6_1.clusters import SCATTERED, decoded, errors, k_means, near, seen_rarely
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6_1.published import FLIGHTS, NOISE, truth
+from muster_studies.world_pictures import world_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _MARGIN = 0.06
-
-Draw = Callable[[Effort], "Figure"]
 
 
 def _maps(table: str, effort: Effort) -> Figure:
@@ -60,6 +60,14 @@ def _clusters(effort: Effort) -> Figure:
     return figure
 
 
+def _world(table: str, at_s: float, effort: Effort) -> Figure:
+    """The physics world of a table of tags, with the drones under way."""
+    flight = FLIGHTS[table]()
+    mission = mission_named(flight.mission)
+    plan = Plan(routes=tuple(Route(*route) for route in flight.routes), ignored=flight.ignored)
+    return world_figure(mission, plan, f"{mission.name} in the physics world", flight.ignored, at_s)
+
+
 def _camera(effort: Effort) -> Figure:
     """The picture with the most tags, and what was detected in it."""
     best = fly(FLIGHTS["6.4"]()).best
@@ -85,6 +93,13 @@ FIGURES = (
         "6.4",
     ),
     _figure(
+        "6.1",
+        "the tasks of 16T-3R, thirty AprilTags and three drones at their starts in Gazebo",
+        partial(_world, "6.4", 0.5),
+        "6.4",
+        "the physics world, obliquely from above",
+    ),
+    _figure(
         "6.4",
         "raw and filtered estimates of thirty AprilTags seen by three drones, beside where they are",
         partial(_maps, "6.4"),
@@ -97,6 +112,13 @@ FIGURES = (
         _clusters,
         "clusters",
         "the close-up, for k-means and for clusters by tag; sightings of tag 1 are thinned out, by intent",
+    ),
+    _figure(
+        "6.6",
+        "a drone over six AprilTags, a photograph and Gazebo",
+        partial(_world, "6.5", 20.0),
+        "6.5",
+        "the simulated half alone, in the physics world",
     ),
     _figure(
         "6.7",

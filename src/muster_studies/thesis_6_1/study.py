@@ -5,11 +5,12 @@ from __future__ import annotations
 from muster.perception.optional_parts import require_physics
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
+from muster_studies.thesis_6_1 import drift_pictures, pictures
 from muster_studies.thesis_6_1.clusters import Clusterings
+from muster_studies.thesis_6_1.delays import Delays
 from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
-from muster_studies.thesis_6_1.pictures import FIGURES
 from muster_studies.thesis_6_1.published import points, seed_count
 from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
 
@@ -29,6 +30,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
         thesis={"error_real": "real", "error": "Gazebo"},
     ),
     Clusterings(),
+    Delays(),
     Drifts(),
 )
 
@@ -56,6 +58,6 @@ THESIS_6_1 = Repetition(
     check=_check,
     extras=("physics",),
     seeds=seed_count,
-    figures=FIGURES,
+    figures=(*pictures.FIGURES, *drift_pictures.FIGURES),
 )
 """Collaborative aerial observation in a physics world."""

@@ -9,9 +9,10 @@ import muster
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
+from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.model import Map, Robot, Task, Zone
+from muster.mission.model import Map, Mission, Robot, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
 from muster.running.live import carry_out_live
@@ -99,6 +100,18 @@ def test_without_an_origin_way_points_are_said_one_by_one():
         MavlinkFleet(there, {"r_0": "udpout:127.0.0.1:9"})
     report, _, _, _ = flown(there, offboard=True)
     assert len(report.tasks_done) == 2
+
+
+def test_without_a_compass_the_local_frame_begins_forward():
+    """The drone looks north-west at power-up: 10 m east of its start is 7.07 m behind it, and as far to its right."""
+    robot = Robot(id="r_0", position=(2.0, 3.0, 0.0), kind="air", speed_mps=5.0, heading_deg=135.0)
+    there = Mission(robots=(robot,), tasks=(Task(id="t", position=(12.0, 3.0, 10.0)),))
+    report, fleet, sky, _ = flown(there, offboard=True, local_frame="forward")
+    assert report.tasks_done == ("t",)
+    assert sky.drones["r_0"].flight.place == pytest.approx((-7.071, 7.071, -10.0), abs=0.2)
+    assert fleet.ports["r_0"].telemetry().position == pytest.approx((12.0, 3.0, 10.0), abs=0.3)
+    with pytest.raises(ParameterError, match="origin_wgs84; expected none with the local frame forward"):
+        MavlinkFleet(mission(1), {"r_0": "udpout:127.0.0.1:9"}, Settings(offboard=True, local_frame="forward"))
 
 
 def test_what_does_not_answer_or_is_unknown_or_elsewhere_is_said_in_a_line():

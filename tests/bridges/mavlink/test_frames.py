@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame
+from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster.mission.model import Origin
 
 METRES = st.floats(-3000, 3000)
@@ -31,6 +31,22 @@ def test_the_local_frame_and_back(place, ned, other):
     frame = LocalFrame.matched(place, ned)
     assert frame.to_map(ned) == pytest.approx(place, abs=1e-6)
     assert frame.to_map(frame.to_drone(other)) == pytest.approx(other, abs=1e-6)
+
+
+@given(PLACES, st.floats(-math.pi, math.pi), PLACES, st.floats(-3.0, 3.0))
+def test_without_a_compass_forward_at_power_up_is_north(start, heading, place, aim):
+    """By trigonometry alone: ahead is the local north, to the right the local east."""
+    frame = StartFrame(start, heading)
+    east, north = place[0] - start[0], place[1] - start[1]
+    ahead = math.cos(heading) * east + math.sin(heading) * north
+    right = math.sin(heading) * east - math.cos(heading) * north
+    assert frame.to_drone(place) == pytest.approx((ahead, right, start[2] - place[2]), abs=1e-6)
+    assert frame.to_map(frame.to_drone(place)) == pytest.approx(place, abs=1e-6)
+    turned_right = frame.heading_to_drone(aim)
+    assert math.cos(turned_right) == pytest.approx(math.cos(heading - aim), abs=1e-9)
+    assert math.sin(turned_right) == pytest.approx(math.sin(heading - aim), abs=1e-9)
+    assert math.cos(frame.heading_to_map(turned_right) - aim) == pytest.approx(1.0, abs=1e-9)
+    assert frame.velocity_to_map((1.0, 0.0, 0.0))[:2] == pytest.approx((math.cos(heading), math.sin(heading)), abs=1e-6)
 
 
 @given(ORIGINS)

@@ -1,8 +1,8 @@
 """A robot that knows nothing of Muster: NAME X Y; does as cmd_vel says.
 
 `pose`: it says PoseStamped instead of Odometry. `frame=NAME`: its poses are in that frame, whose origin is at (10, -5)
-of the map, turned by a right angle. `tied`: it tells tf so. `namespace=NAME`: in which its own is. `by_hand=SPEED`: a
-person drives it ahead, m/s, until it is told a velocity.
+of the map, turned by a right angle. `tied`: it tells tf so. `namespace=NAME`: in which its own is. `topic=NAME`: where
+it says its pose, in place of its own. `by_hand=SPEED`: a person drives it ahead, m/s, until it is told a velocity.
 """
 
 import math
@@ -24,9 +24,8 @@ told = [Twist()]
 told[0].linear.x = float(given.get("by_hand", 0))
 rospy.init_node(name)
 rospy.Subscriber(f"{own}/cmd_vel", Twist, lambda twist: told.append(twist))
-poses = rospy.Publisher(
-    own + ("/pose" if "pose" in given else "/odom"), PoseStamped if "pose" in given else Odometry, queue_size=1
-)
+kind = PoseStamped if "pose" in given else Odometry
+poses = rospy.Publisher(given.get("topic", own + ("/pose" if "pose" in given else "/odom")), kind, queue_size=1)
 tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
 while not rospy.is_shutdown():
     time.sleep(0.05)

@@ -8,6 +8,7 @@ from tests.bridges.ros1.conftest import own_words
 
 from muster import load, solve
 from muster.cli.exits import STILL_MOVING
+from muster.motion.frames import quaternion_rotation
 
 ONE = """
 schema: muster/1
@@ -59,6 +60,78 @@ def test_poses_in_a_frame_count_as_tf_ties_it_to_the_map(ros, one):
     said = places(listener.heard(), "/r_0/odom")
     assert nearest(said, (2 * 0 + 5, 10 - 2, 0)) < 0.15  # t_1, seen from its own frame
     assert nearest(said, (2 + 5, 10 - 2, 0)) < 0.15
+
+
+def test_odometry_that_begins_at_the_start_counts_from_there(ros, tmp_path):
+    """(4.2)-(4.4) of [tcf-thesis]: r_0/odom is tied to the map by the start in the mission alone."""
+    (tmp_path / "m.yaml").write_text(
+        ONE.replace("[0, 0]", "[10, -5], heading_deg: 90, camera: {fov_deg: 60, tilt_deg: 30, mount: [0.1, 0, 0.2]}")
+        .replace("[2, 0]", "[12, -5]")
+        .replace("[2, 2]", "[12, -3]"),
+        "utf-8",
+    )
+    ros.start(ros.file("robot.py"), "r_0", 10, -5, "frame=r_0/odom")
+    listener = ros.listener("/r_0/odom=nav_msgs/Odometry", "/tf_static=tf2_msgs/TFMessage")
+    tasks, err = done(ros.muster("m.yaml", *QUICK, "--odometry", "start"))
+    assert set(tasks) == {"t_1", "t_2"}
+    assert "begins at" not in err
+    heard = listener.heard()
+    said = places(heard, "/r_0/odom")
+    assert nearest(said, (0, -2, 0)) < 0.15  # t_1, two metres to the right of the start
+    assert nearest(said, (2, -2, 0)) < 0.15
+    frames = {
+        one["child_frame_id"]: one for topic, data in heard if topic == "/tf_static" for one in data["transforms"]
+    }
+    assert frames["r_0/odom"]["header"]["frame_id"] == "map"
+    assert frames["r_0/odom"]["transform"]["translation"] == {"x": 10.0, "y": -5.0, "z": 0.0}
+    camera = frames["muster/r_0/camera"]
+    assert camera["header"]["frame_id"] == "muster/r_0"
+    assert camera["transform"]["translation"] == {"x": 0.1, "y": 0.0, "z": 0.2}
+    turn = [camera["transform"]["rotation"][axis] for axis in "xyzw"]
+    ahead = quaternion_rotation(turn)[:, 2]  # where the camera looks, in the body: 30 degrees down
+    assert ahead == pytest.approx([math.cos(math.radians(30)), 0.0, -0.5], abs=1e-6)
+
+
+def test_motion_capture_says_where_robots_are(ros, one):
+    """As vrpn_client_ros does: poses on a topic of its own, in its own frame. The monitor hears it too."""
+    topic = "/vrpn_client_node/{robot}/pose"
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "pose", "topic=/vrpn_client_node/r_0/pose", "frame=map")
+    listener = ros.listener("/r_0/status=std_msgs/String")
+    tasks, err = done(ros.muster(one, *QUICK, "--poses", topic))
+    assert set(tasks) == {"t_1", "t_2"}
+    rows = [json.loads(data["data"]) for _, data in listener.heard()]
+    assert max(row["usage_m"] for row in rows) > 2.0
+    _, err = ros.muster(one, *QUICK, "--poses", "/vrpn_client_node/r_0/pose").communicate(timeout=20)
+    assert "expected a topic such as /vrpn_client_node/{robot}/pose" in err
+
+
+def test_robots_are_steered_by_the_method_that_is_asked_for(ros, one):
+    """The thesis' node RVO_planner; who finds the way itself is not steered."""
+    ros.robot("r_0", 0, 0)
+    tasks, _ = done(ros.muster(one, *QUICK, "--avoidance", "rvo", "--allocator", "greedy"))
+    assert set(tasks) == {"t_1", "t_2"}
+    _, err = ros.muster(one, *QUICK, "--avoidance", "rvo", "--drive", "goals").communicate(timeout=20)
+    assert err == "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"
+
+
+def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
+    pytest.importorskip("visualization_msgs", reason="python3-visualization-msgs is not installed")
+    ros.robot("r_0", 0, 0)
+    listener = ros.listener("/muster/markers=visualization_msgs/MarkerArray")
+    tasks, _ = done(ros.muster(one, *QUICK, "--markers"))
+    drawn = [data["markers"] for _, data in listener.heard()]
+    first, last = ([marker for marker in some if marker["action"] == 0] for some in (drawn[1], drawn[-1]))
+    assert all(marker["header"]["frame_id"] == "map" for marker in first)
+    assert [m["text"] for m in first if m["ns"] == "names"] == ["t_1", "t_2", "r_0"]
+    spheres = [marker for marker in first if marker["ns"] == "tasks"]
+    assert [(m["pose"]["position"]["x"], m["pose"]["position"]["y"]) for m in spheres] == [(2.0, 0.0), (2.0, 2.0)]
+    (route,) = [marker for marker in first if marker["ns"] == "routes"]
+    assert [(p["x"], p["y"]) for p in route["points"]][1:] == [(2.0, 0.0), (2.0, 2.0)]
+    (done_first, _), (open_last, done_last) = (
+        [m["color"]["g"] for m in some if m["ns"] == "tasks"] for some in (first, last)
+    )
+    assert open_last == done_last != done_first  # both are done at the end
+    assert len(tasks) == 2
 
 
 def test_a_frame_that_nothing_ties_to_the_map_is_one_line(ros, one):

@@ -14,6 +14,7 @@ from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, Wo
 from muster.running.negotiated.robot_bodies import RobotBodies
 from muster.running.negotiated.simulation import setup_of
 from muster.running.negotiated.team_log import TeamLog
+from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
@@ -69,7 +70,8 @@ def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE):
     mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
     setup = setup_of(Problem.compile(mission), Negotiation(), tmp_path)
     log = TeamLog(setup.problem, NoObserver(), lambda event: None, setup.late)
-    robot_bodies = RobotBodies(mission, KinematicWorld(mission, noise=noise), setup, log)
+    world = KinematicWorld(mission, noise=noise)
+    robot_bodies = RobotBodies(mission, world, with_state_estimation(world, mission), setup, log)
     robot_bodies.team = Processes(robot_bodies.take_report, last_words)
     return robot_bodies, log
 

@@ -17,7 +17,7 @@ from muster.bridges.mavlink.autopilots import AtEnd
 from muster.bridges.mavlink.drone import Drone, final_state_of
 from muster.bridges.mavlink.faults import Fault, Kind
 from muster.bridges.mavlink.fence import fences_of, no_fence
-from muster.bridges.mavlink.frames import GlobalFrame
+from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster.bridges.mavlink.links import Link, links_of
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.settings import Settings
@@ -80,7 +80,7 @@ class MavlinkFleet:
         fences = fences_of(mission)
         self.sessions: dict[str, Session] = {}
         for robot in mission.robots:
-            drone = Drone(robot, _telemetry_of(mission, robot), self._settings, height_m)
+            drone = Drone(robot, _telemetry_of(mission, robot, self._settings), self._settings, height_m)
             self.sessions[robot.id] = Session(drone, fences.get(robot.id, no_fence))
         self._link_of: dict[str, Link] = links_of(endpoints)
         self._links = list({id(link): link for link in self._link_of.values()}.values())
@@ -286,9 +286,13 @@ class Port:
             return self._session.telemetry()
 
 
-def _telemetry_of(mission: Mission, robot: Robot) -> DroneTelemetry:
+def _telemetry_of(mission: Mission, robot: Robot, settings: Settings) -> DroneTelemetry:
     start: Place = (robot.position[0], robot.position[1], robot.position[2] if len(robot.position) > 2 else 0.0)
-    return DroneTelemetry(start, None if mission.origin_wgs84 is None else GlobalFrame(mission.origin_wgs84, start))
+    if mission.origin_wgs84 is not None:
+        return DroneTelemetry(start, GlobalFrame(mission.origin_wgs84, start))
+    forward = settings.local_frame == "forward"
+    local = StartFrame(start, math.radians(robot.heading_deg)) if forward else LocalFrame(start)
+    return DroneTelemetry(start, None, local=local)
 
 
 def _check(mission: Mission, endpoints: Mapping[str, str], settings: Settings, height_m: float | None) -> None:
@@ -305,6 +309,8 @@ def _check(mission: Mission, endpoints: Mapping[str, str], settings: Settings, h
         raise ParameterError(
             f"mission {mission.name}: no origin_wgs84; expected one, or way points said one by one (--offboard)"
         )
+    if mission.origin_wgs84 is not None and settings.local_frame == "forward":
+        raise ParameterError(f"mission {mission.name}: origin_wgs84; expected none with the local frame forward")
     if (mission.dimensions == 2) != (height_m is not None):
         told = "no height" if height_m is None else f"height {height_m:g} m"
         expected = "a height for a mission in the plane" if height_m is None else "none: the mission has heights"

@@ -7,13 +7,14 @@ geoid, tens of metres from the ellipsoid, comes in nowhere. The map is flat and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Origin
-from muster.motion.frames import enu_to_ned
+from muster.motion.frames import FLU_ENU, body_in_global, enu_to_ned, goal_for_autopilot, pose_of, yaw_enu_to_ned
 from muster.motion.port import Place
 
 DEGREES_E7 = 1e7
@@ -82,3 +83,55 @@ class LocalFrame:
         """The inverse of `to_drone`."""
         east, north, up = enu_to_ned(ned).tolist()
         return self.zero[0] + east, self.zero[1] + north, self.zero[2] + up
+
+    def velocity_to_map(self, ned: Sequence[float]) -> Place:
+        """A velocity north, east, down as one of the map."""
+        moved, still = self.to_map(ned), self.to_map((0.0, 0.0, 0.0))
+        return moved[0] - still[0], moved[1] - still[1], moved[2] - still[2]
+
+    def heading_to_drone(self, heading: float) -> float:
+        """From east anticlockwise in the map as from north clockwise in the local frame, radians."""
+        return float(yaw_enu_to_ned(heading))
+
+    def heading_to_map(self, yaw: float) -> float:
+        """The inverse of `heading_to_drone`."""
+        return float(yaw_enu_to_ned(yaw))
+
+
+@dataclass(frozen=True)
+class StartFrame(LocalFrame):
+    """The local frame of a drone without a compass, which calls north what is ahead of it at power-up.
+
+    [tcf-thesis] (5.1)-(5.6) there, and (4.2)-(4.4) back.
+
+    Parameters
+    ----------
+    heading
+        of the drone at power-up in the map, radians from east.
+    """
+
+    heading: float
+
+    def to_drone(self, place: Place) -> Place:
+        """See `LocalFrame`."""
+        north, east, down = enu_to_ned(goal_for_autopilot(self._start, [*place, 0.0])[:3]).tolist()
+        return north, east, down
+
+    def to_map(self, ned: Sequence[float]) -> Place:
+        """See `LocalFrame`."""
+        since_start = FLU_ENU.T @ enu_to_ned(ned)
+        x, y, z = body_in_global(self._start, [*since_start, 0.0, 0.0, 0.0])[:3, 3].tolist()
+        return x, y, z
+
+    def heading_to_drone(self, heading: float) -> float:
+        """See `LocalFrame`."""
+        return float(yaw_enu_to_ned(goal_for_autopilot(self._start, [*self.zero, heading])[3]))
+
+    def heading_to_map(self, yaw: float) -> float:
+        """See `LocalFrame`."""
+        since_start = float(yaw_enu_to_ned(yaw)) - math.pi / 2
+        return float(pose_of(body_in_global(self._start, [0.0, 0.0, 0.0, 0.0, 0.0, since_start]))[5])
+
+    @property
+    def _start(self) -> tuple[float, ...]:
+        return (*self.zero, 0.0, 0.0, self.heading)

@@ -6,7 +6,6 @@ import math
 
 from muster.bridges.mavlink.dialect import Message, mavlink
 from muster.bridges.mavlink.frames import LocalFrame
-from muster.motion.frames import yaw_enu_to_ned
 from muster.motion.port import Waypoint
 
 _IGNORE = mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
@@ -32,7 +31,7 @@ def position_target(aim: Waypoint, target: Message, local: LocalFrame, now: floa
     target
         a message of the drone.
     """
-    yaw = 0.0 if aim.heading is None else float(yaw_enu_to_ned(aim.heading))
+    yaw = 0.0 if aim.heading is None else local.heading_to_drone(aim.heading)
     return mavlink.MAVLink_set_position_target_local_ned_message(
         int(now * 1000) & 0xFFFFFFFF,
         target.get_srcSystem(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Literal
 
 from muster.mission.errors import ParameterError
 
@@ -17,6 +18,9 @@ class Settings:
         whether Muster may arm, and fly. Without it nothing is sent but heartbeats and requests for telemetry.
     offboard
         fly by way points that are said one by one (PX4: offboard, ArduPilot: guided) instead of uploaded missions.
+    local_frame
+        of way points that are said one by one without an origin on Earth: what the drone calls `north` is north, or
+        where it looked `forward` when it was switched on, without a compass.
     lowest_m
         height above home below which no way point is flown; lower ones are flown there.
     accept_m
@@ -31,6 +35,7 @@ class Settings:
 
     arm: bool = False
     offboard: bool = False
+    local_frame: Literal["north", "forward"] = "north"
     lowest_m: float = 2.0
     accept_m: float = 1.0
     low_battery: float = 0.25
@@ -38,7 +43,9 @@ class Settings:
     far_m: float = 20.0
 
     def __post_init__(self) -> None:
-        for field in fields(self)[2:]:
+        if self.local_frame not in ("north", "forward"):
+            raise ParameterError(f"local_frame: {self.local_frame}; expected north or forward")
+        for field in fields(self)[3:]:
             if not getattr(self, field.name) > 0:
                 raise ParameterError(f"{field.name}: {getattr(self, field.name)}; expected a number above 0")
         if self.low_battery >= 1:

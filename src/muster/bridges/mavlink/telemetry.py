@@ -76,7 +76,8 @@ class DroneTelemetry:
         if self.earth is None or (message.lat == 0 and message.lon == 0):  # it does not know where it is
             return
         place = self.earth.to_map(message.lat, message.lon, message.relative_alt / 1000)
-        self._is_at(place, (message.vx / 100, message.vy / 100, message.vz / 100), now)
+        east, north, up = enu_to_ned((message.vx / 100, message.vy / 100, message.vz / 100)).tolist()
+        self._is_at(place, (east, north, up), now)
         if self._ned is not None and (self.local is None or not self.armed):
             self.local = LocalFrame.matched(place, self._ned)
 
@@ -87,11 +88,12 @@ class DroneTelemetry:
         self._ned = ned
         if self.earth is None:
             self.local = self.local or LocalFrame(self.start)
-            self._is_at(self.local.to_map(ned), velocity, now)
+            self._is_at(self.local.to_map(ned), self.local.velocity_to_map(velocity), now)
 
     def _hear_attitude(self, message: Message, now: float) -> None:
         if math.isfinite(message.yaw):
-            self.heading = float(yaw_enu_to_ned(message.yaw))
+            local = self.local if self.earth is None else None
+            self.heading = float(yaw_enu_to_ned(message.yaw)) if local is None else local.heading_to_map(message.yaw)
 
     def _hear_sys_status(self, message: Message, now: float) -> None:
         self._has_left(message.battery_remaining)
@@ -118,9 +120,8 @@ class DroneTelemetry:
         if percent >= 0:  # -1: not known
             self.battery = percent / 100
 
-    def _is_at(self, place: Place, velocity_ned: Place, now: float) -> None:
-        east, north, up = enu_to_ned(velocity_ned).tolist()
-        self.velocity = (east, north, up)
+    def _is_at(self, place: Place, velocity: Place, now: float) -> None:
+        self.velocity = velocity
         if self.place is not None and self.armed and math.hypot(*self.velocity) > _STILL_MPS:
             self.odometry_m += math.dist(self.place, place)
         self.place, self.place_s = place, now

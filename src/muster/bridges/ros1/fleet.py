@@ -13,13 +13,14 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from muster.bridges.discovery import NAME, topics_in
+from muster.bridges.discovery import NAME, pose_topics, topics_in
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Ros1Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster.bridges.ros1.port import Drive, Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
+from muster.bridges.ros1.static_frames import Odometry, static_frames
 from muster.bridges.steering import STILL, Steering
 from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
@@ -56,6 +57,10 @@ class Ros1Fleet:
         how often velocities are told.
     avoidance
         with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
+    poses
+        topic of a robot's pose, where a motion capture system publishes it: `/vrpn_client_node/{robot}/pose`.
+    odometry
+        of which frame robots' odometry is: see `static_frames`.
     joins
         whether robots that the mission does not name may join.
     clock
@@ -79,6 +84,8 @@ class Ros1Fleet:
         arrival_m: float = 0.1,
         rate_hz: float = 20.0,
         avoidance: str = "orca",
+        poses: str = "",
+        odometry: Odometry = "map",
         joins: bool = True,
         clock: MissionClock | None = None,
         on_pose: Callable[[str, Any], None] | None = None,
@@ -92,6 +99,7 @@ class Ros1Fleet:
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self.topics = topics_in(namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
+        self._pose_topic = pose_topics(poses)
         self._flat = mission.dimensions == 2
         self._frame = MapFrame(frame)
         self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=avoidance)
@@ -102,6 +110,9 @@ class Ros1Fleet:
         self._closed = threading.Event()
         self._failure: Exception | None = None  # of the thread that steers
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+        if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=odometry):
+            publish(self._static, TFMessage(frames))
         self._ports: dict[str, Ros1Port] = {}
         self._events: list[Event] = []
         for robot in mission.robots:
@@ -174,7 +185,7 @@ class Ros1Fleet:
         return {
             name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
             if port.untied
-            else f"nothing on {self.topics(name)}/odom or {self.topics(name)}/pose"
+            else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
             for name, port in self._all().items()
             if port.telemetry() is None
         }
@@ -205,6 +216,7 @@ class Ros1Fleet:
         self._newcomers.close()
         self._frame.close()
         self._tf.unregister()
+        self._static.unregister()
 
     def _reached(self, robot: Robot) -> Ros1Port:
         if not NAME.fullmatch(robot.id):
@@ -218,6 +230,7 @@ class Ros1Fleet:
             arrival_m=self._arrival_m,
             lock=self._lock,
             clock=self.clock,
+            pose_topic=self._pose_topic(robot.id),
             on_pass=self._news.set,
             on_pose=self._on_pose,
         )

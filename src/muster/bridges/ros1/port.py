@@ -45,6 +45,8 @@ class Ros1Port:
         held wherever what the port knows is read or changed: ROS calls from threads of its own.
     clock
         the mission's; how long ago something was is told by it too, in pauses as well.
+    pose_topic
+        see `PoseListener`.
     on_pass
         called when a way point is passed.
     on_pose
@@ -62,6 +64,7 @@ class Ros1Port:
         arrival_m: float,
         lock: threading.RLock,
         clock: MissionClock,
+        pose_topic: str | None = None,
         on_pass: Callable[[], None],
         on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
@@ -77,7 +80,7 @@ class Ros1Port:
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
         self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
         self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
-        self._listener = PoseListener(topics, frame, self._hear)
+        self._listener = PoseListener(topics, frame, self._hear, pose_topic=pose_topic)
 
     @property
     def robot(self) -> str:

@@ -32,18 +32,25 @@ class PoseListener:
         the robot's namespace, such as `/r_0`.
     take
         called with each pose that counts.
+    pose_topic
+        where its pose is published, if not on `<robot>/pose`: by a motion capture system.
     read_s
         a pose is read no sooner after the one before on its topic; in between it is only heard that one came.
     """
 
-    def __init__(self, topics: str, frame: MapFrame, take: Take, *, read_s: float = 0.0) -> None:
+    def __init__(
+        self, topics: str, frame: MapFrame, take: Take, *, pose_topic: str | None = None, read_s: float = 0.0
+    ) -> None:
         self._topics, self._frame, self._take, self._wait_s = topics, frame, take, read_s
         self._source = ""  # of the last pose that counted
         self._read_s = 0.0
         self.heard_s: float | None = None  # real time, monotonic: when the last pose came that counts
         self.untied = ""  # a frame in which poses are given that nothing ties to the map
+        where = {shared: f"{topics}/{shared}" for shared in SHARED}
+        if pose_topic is not None:
+            where["pose"] = pose_topic
         self._links = [
-            hear(f"{topics}/{shared}", rospy.AnyMsg, self._hear, callback_args=shared, queue_size=1, tcp_nodelay=True)
+            hear(where[shared], rospy.AnyMsg, self._hear, callback_args=shared, queue_size=1, tcp_nodelay=True)
             for shared in SHARED
         ]
 

@@ -41,10 +41,19 @@ class SystemMonitor:
         the namespace of a robot's topics.
     frame
         of the mission, in tf's words.
+    poses
+        topic of a robot's pose, where others publish it; None: `<robot>/pose`.
     """
 
-    def __init__(self, *, namespace: str, topics: Callable[[str], str], frame: str) -> None:
-        self._namespace, self._topics = namespace, topics
+    def __init__(
+        self,
+        *,
+        namespace: str,
+        topics: Callable[[str], str],
+        frame: str,
+        poses: Callable[[str], str | None] = lambda robot: None,
+    ) -> None:
+        self._namespace, self._topics, self._poses = namespace, topics, poses
         self._frame = MapFrame(frame)
         self._watched: dict[str, WatchedRobot] = {}
         self._doing: dict[str, dict[str, str]] = {}
@@ -68,9 +77,9 @@ class SystemMonitor:
     def _discover(self) -> None:
         """Where the master does not answer, those that are known are watched on."""
         try:
-            for robot in robots_in(rospy.get_published_topics(), self._namespace):
+            for robot in {*robots_in(rospy.get_published_topics(), self._namespace), *self._doing}:
                 if robot not in self._watched:
-                    self._watched[robot] = WatchedRobot(self._topics(robot), self._frame)
+                    self._watched[robot] = WatchedRobot(self._topics(robot), self._frame, self._poses(robot))
         except Exception as error:  # rospy raises whatever the network does; the controller says so, and ends
             rospy.logdebug(f"the ROS master does not answer: {error}")
 
@@ -98,11 +107,11 @@ class SystemMonitor:
 class WatchedRobot:
     """Where one robot is, and how far it has gone since it was discovered."""
 
-    def __init__(self, topics: str, frame: MapFrame) -> None:
+    def __init__(self, topics: str, frame: MapFrame, pose_topic: str | None = None) -> None:
         self.odometer = Odometer(flat=False)
         self.place: Place | None = None
         self.heading: float | None = None
-        self._listener = PoseListener(topics, frame, self._hear, read_s=_READ_S)
+        self._listener = PoseListener(topics, frame, self._hear, pose_topic=pose_topic, read_s=_READ_S)
 
     @property
     def heard_ago_s(self) -> float | None:

@@ -47,6 +47,8 @@ class TargetLocalization:
         the namespace of a robot's topics.
     frame
         of the mission, in tf's words.
+    poses
+        topic of a robot's pose, where others publish it; None: `<robot>/pose`.
 
     Raises
     ------
@@ -54,8 +56,15 @@ class TargetLocalization:
         if the extra `physics`, of which the detector is, is not installed.
     """
 
-    def __init__(self, *, topics: Callable[[str], str], frame: str, settings: SearchSettings) -> None:
-        self._topics, self._settings = topics, settings
+    def __init__(
+        self,
+        *,
+        topics: Callable[[str], str],
+        frame: str,
+        settings: SearchSettings,
+        poses: Callable[[str], str | None] = lambda robot: None,
+    ) -> None:
+        self._topics, self._settings, self._poses = topics, settings, poses
         self._frame, self._detector = MapFrame(frame), TagDetector()
         self._one_at_a_time = threading.Lock()  # images: a detector is not for two threads
         self._search: TargetSearch | None = None
@@ -84,7 +93,12 @@ class TargetLocalization:
 
     def _linked(self, robot: str, search: TargetSearch, mission: Mission) -> list[Any]:
         own = self._topics(robot)
-        poses = PoseListener(own, self._frame, lambda said, pose, _: search.hear_pose(robot, stamp_of(said), pose))
+        poses = PoseListener(
+            own,
+            self._frame,
+            lambda said, pose, _: search.hear_pose(robot, stamp_of(said), pose),
+            pose_topic=self._poses(robot),
+        )
         scans = hear(f"{own}/scan", LaserScan, partial(self._hear_scan, robot, search), queue_size=1)
         if robot not in search.cameras:
             return [poses, scans]

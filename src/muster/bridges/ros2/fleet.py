@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
@@ -23,6 +24,10 @@ from muster.bridges.ros2.port import Arrival, Ros2Port
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
+
+if TYPE_CHECKING:
+    from muster.bridges.ros2.target_localization import Ros2TargetLocalization
+    from muster.bridges.target_search import SearchSettings
 
 Give = Literal["goals", "nav2"]
 _POLL_S = 0.02
@@ -47,6 +52,8 @@ class Ros2Fleet:
         in which the robots' own are; "" for the root.
     arrival
         when a way point is reached.
+    targets
+        how tags that robots' cameras see are found; None: cameras are not heard.
     joins
         whether robots that the mission does not name may join.
 
@@ -64,6 +71,7 @@ class Ros2Fleet:
         give: Give = "goals",
         namespace: str = "",
         arrival: Arrival | None = None,
+        targets: SearchSettings | None = None,
         joins: bool = True,
         clock: Clock | None = None,
     ) -> None:
@@ -78,6 +86,7 @@ class Ros2Fleet:
             names = ros_names(robot.id for robot in mission.robots)
             for robot in mission.robots:
                 self._ports[robot.id] = self._reached(robot, names[robot.id])
+            self._targets = None if targets is None else self._searched(mission, names, targets)
         except BaseException:
             self._middleware.close()
             raise
@@ -98,7 +107,7 @@ class Ros2Fleet:
         while True:
             self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
             passed = [port.hear() for port in self._ports.values()]
-            events = self._joined()
+            events = [*self._joined(), *self._found()]
             if events or any(passed) or self.time_s >= until_s:
                 return events
 
@@ -162,6 +171,17 @@ class Ros2Fleet:
         for port in found:
             self._ports[port.robot] = port
         return [Event(at_s=self.time_s, robot_joins=port.body) for port in found]
+
+    def _found(self) -> list[Event]:
+        """Tasks that robots' cameras have found, or found to lie elsewhere."""
+        found = [] if self._targets is None else self._targets.look()
+        return [replace(event, at_s=self.time_s) for event in found]
+
+    def _searched(self, mission: Mission, names: Mapping[str, str], settings: SearchSettings) -> Ros2TargetLocalization:
+        from muster.bridges.ros2.target_localization import Ros2TargetLocalization
+
+        topics = {robot: self._topics(name) for robot, name in names.items()}
+        return Ros2TargetLocalization(mission, self._middleware, topics, settings)
 
     def _reached(self, robot: Robot, name: str) -> Ros2Port:
         topics = self._topics(name)

@@ -16,7 +16,7 @@ from muster.bridges.ros2.description import ROS1, ROS2, Message, from_foreign, t
 from muster.mission.errors import MissingExtraError, ParameterError
 
 CDR_HEADER = b"\x00\x01\x00\x00"
-_ARRAYS = {"uint8": np.uint8, "float64": np.float64}
+_ARRAYS = {"uint8": np.uint8, "float32": np.float32, "float64": np.float64}
 
 M = TypeVar("M", bound=Message)
 

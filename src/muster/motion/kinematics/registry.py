@@ -36,6 +36,16 @@ def kinematics_named(name: str) -> Kinematics:
     return KINEMATICS[name]
 
 
+FREE_RADIUS_M = 0.1
+"""The turning radius of a robot that nothing limits."""
+
+
+def turning_radius_of(robot: Robot) -> float:
+    """The least radius that a robot can drive at full speed, metres; 0.1 where nothing limits it."""
+    faces = kinematics_named(robot.kinematics).faces_its_way
+    return limits_of(robot).turning_radius_m(faces_its_way=faces) or FREE_RADIUS_M
+
+
 def limits_of(robot: Robot) -> Limits:
     """A robot's limits; what its mission does not say: a quarter turn a second, and any acceleration."""
     return Limits(

@@ -18,7 +18,7 @@ from muster.negotiation.team import Team
 from muster.running.camera_search import CameraSearch
 from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster.running.negotiated.team_log import TeamLog
-from muster.running.state_estimation import with_state_estimation
+from muster.running.state_estimation import RobotsInWorld
 from muster.simulation import SimulatedWorld
 
 _STEP_S = 0.05
@@ -37,9 +37,11 @@ class RobotBodies:
     team: Team
     camera_search: CameraSearch | None = None
 
-    def __init__(self, mission: Mission, world: SimulatedWorld, setup: TeamSetup, log: TeamLog) -> None:
+    def __init__(
+        self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, setup: TeamSetup, log: TeamLog
+    ) -> None:
         self._world, self._setup, self._log = world, setup, log
-        self._telemetry_source = with_state_estimation(world)
+        self._telemetry_source = robots
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
         self._work_reports: dict[str, WorkReport] = {}

@@ -6,7 +6,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +20,15 @@ from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
 from muster.running.camera_search import OnLook, camera_search_for, with_found
+from muster.running.localisation import Localise
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
-from muster.running.worlds import recorded_world
-from muster.simulation import NO_NOISE, Noise
+from muster.running.state_estimation import EstimatedWorld, with_state_estimation
+from muster.running.worlds import recorded_world, with_tracking
+from muster.simulation import CALM, NO_NOISE, Noise, Wind
+from muster.simulation.batteries import NO_CHARGES, Charges
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,6 +61,11 @@ def negotiate_and_carry_out(
     avoidance: str = "orca",
     law: str = "profile",
     noise: Noise = NO_NOISE,
+    wind: Wind = CALM,
+    batteries: Charges = NO_CHARGES,
+    rotor_level: bool = False,
+    pose: str | None = None,
+    localise: Localise | None = None,
     speed: float | None = None,
     recorder: Recorder | None = None,
     on_world: OnWorld | None = None,
@@ -91,13 +99,24 @@ def negotiate_and_carry_out(
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bodies = recorded_world(
-            world, problem.mission, recorder, law=law, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise
+            world,
+            problem.mission,
+            recorder,
+            law=law,
+            wind=wind,
+            batteries=batteries,
+            rotor_level=rotor_level,
+            seed=seed,
+            dt_s=dt_s,
+            avoidance=avoidance,
+            noise=noise,
         )
         if on_world is not None:
             on_world(bodies)
         setup = setup_of(problem, negotiation, memory)
         log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
-        robot_bodies = RobotBodies(problem.mission, bodies, setup, log)
+        robots = with_state_estimation(bodies, problem.mission, pose=pose, localise=localise, seed=seed)
+        robot_bodies = RobotBodies(problem.mission, bodies, robots, setup, log)
         camera_search = camera_search_for(
             problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look
         )
@@ -112,7 +131,9 @@ def negotiate_and_carry_out(
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
-        report = with_found(report, camera_search)
+        if isinstance(robots, EstimatedWorld):
+            report = replace(report, remarks=(*report.remarks, robots.remark))
+        report = with_tracking(with_found(report, camera_search), bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report

@@ -31,7 +31,9 @@ class NewRun(Body):
     world: Name = Field(default="kinematic", description="GET /about says which there are.")
     speed: Speed | None = Field(default=1.0, description="Times real time; null: as fast as it goes.")
     settings: dict[Name, Any] = Field(
-        default={}, max_length=50, description="`seed`, `dt_s`, `avoidance`, `law`, `noise`; of a bridge what it needs."
+        default={},
+        max_length=50,
+        description="`seed`, `dt_s`, `avoidance`, `law`, `noise`, `pose`, `localise`; of a bridge what it needs.",
     )
 
 

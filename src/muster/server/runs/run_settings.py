@@ -11,12 +11,13 @@ from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
-_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict}
+_WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {**_PLANNING, **_WORLD},
     "physics": {**_PLANNING, **_WORLD},
@@ -27,6 +28,8 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "frame": str,
         "rate_hz": float,
         "avoidance": str,
+        "odometry": str,
+        "poses": str,
         **_ROS,
     },
     "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
@@ -35,6 +38,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
+        "local_frame": str,
         "height_m": float,
         "low_battery": float,
         "wait_s": float,
@@ -44,10 +48,13 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": ("orca", "rvo", "hrvo", "avo", "none"),
-    "law": ("profile", "thesis"),
+    "pose": ("true", "estimate"),
+    "law": LAWS,
+    "odometry": ("map", "start"),
     "drive": ("cmd_vel", "goals"),
     "give": ("goals", "nav2"),
     "by": ("dds", "rclpy"),
+    "local_frame": ("north", "forward"),
     "at_end": ("hold", "return", "land"),
 }
 """What settings that are words may be; those who understand them take long to import."""
@@ -62,6 +69,7 @@ NOISE = (
     "gyro_radps",
     "gyro_bias_radps",
     "accelerometer_mps2",
+    "camera_delay_s",
 )
 """The kinds of a simulation's noise."""
 _KINDS = {
@@ -90,6 +98,10 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
         for kind in noise:
             _require_choice("noise", kind, NOISE)
             _require_number(noise, kind, 0.0, 1.0 if kind == "slip" else math.inf)
+        if settings.get("localise"):
+            from muster.running.localisation import sensors_of
+
+            sensors_of(settings["localise"])
     for robot, endpoint in settings.get("endpoints", {}).items():
         _require_kind(f"endpoints.{robot}", endpoint, str)
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.motion.grid import Floats
+from muster.motion.wheels import body_speeds
 from muster.simulation.physics.bodies import SUNK_M, TRACK_M, WHEEL_RADIUS_M, BodyKind
 from muster.simulation.physics.controller import Commands, Controller, lags_of, no_wheels
 from muster.simulation.physics.model import SERVO_S
@@ -53,6 +54,11 @@ class WheelController:
         self.group = simulated.group(BodyKind.WHEELS)
         self._lag_s = SERVO_S - simulated.step_s  # the sum over steps, not the integral
         self._motors, self._angles = simulated.motors(self.group.who), simulated.wheels(self.group.who)
+        self._spins, self._energy_j, self._step_s = (
+            simulated.wheel_speeds(self.group.who),
+            simulated.energy_j,
+            simulated.step_s,
+        )
         self._model, self._gains = simulated.model, simulated.model.actuator_gainprm[self._motors, 0]
         scale = np.array([body.scale for body in self.group.robots])
         self._half_track, self._radius = TRACK_M / 2 * scale, WHEEL_RADIUS_M * scale
@@ -61,6 +67,9 @@ class WheelController:
         return lags_of(motion.velocities[:, 0], motion.velocities[:, 1], 0.0, motion.rates[:, 2], self._lag_s)
 
     def drive(self, commands: Commands, motion: Motion) -> None:
+        data = self.group.data
+        powers = data.actuator_force[self._motors] * data.qvel[self._spins]
+        self._energy_j[self.group.who] += self._step_s * np.abs(powers).sum(axis=1)
         rims = commands.rates[:, 3] * self._half_track
         self.group.data.ctrl[self._motors[:, 0]] = (commands.ahead - rims) / self._radius
         self.group.data.ctrl[self._motors[:, 1]] = (commands.ahead + rims) / self._radius
@@ -70,9 +79,8 @@ class WheelController:
         self._model.actuator_biasprm[self._motors, 2] = -shares * self._gains
 
     def odometers(self) -> Floats:
-        angles, rolling = self.group.data.qpos[self._angles], self._radius - SUNK_M
-        turned = rolling * (angles[:, 1] - angles[:, 0]) / (2 * self._half_track)
-        return np.column_stack([rolling * angles.mean(axis=1), turned])
+        rims = (self._radius - SUNK_M)[:, None] * self.group.data.qpos[self._angles]
+        return body_speeds(rims, 2 * self._half_track)
 
 
 class ForceController:
@@ -85,6 +93,7 @@ class ForceController:
     def __init__(self, simulated: SimulatedModel) -> None:
         self.group = simulated.group(BodyKind.SLIDER)
         self._lag_s = 1 / self.GAIN - simulated.step_s
+        self._energy_j, self._step_s = simulated.energy_j, simulated.step_s
         self._mass = np.array([body.mass_kg for body in self.group.robots])
         self._inertia = np.array([body.inertia_kgm2[2] for body in self.group.robots])
         self.set_force_shares(np.ones((len(self.group.who), 2)))
@@ -95,6 +104,8 @@ class ForceController:
     def drive(self, commands: Commands, motion: Motion) -> None:
         missing = commands.rates[:, :2] - motion.velocities[:, :2]
         forces, bodies = self.group.data.xfrc_applied, self.group.bodies
+        powers = (forces[bodies, :2] * motion.velocities[:, :2]).sum(axis=1)
+        self._energy_j[self.group.who] += self._step_s * np.abs(powers)
         forces[bodies, :2] = self.GAIN * self._pushes[:, None] * missing
         forces[bodies, 5] = self.GAIN * self._turns * (commands.rates[:, 3] - motion.rates[:, 2])
 

@@ -10,6 +10,7 @@ in the plane drones fly at `FLIGHT_M`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -28,15 +29,21 @@ from muster.simulation.physics.buildings import Heights
 from muster.simulation.physics.control import Control
 from muster.simulation.physics.controller import Commands
 from muster.simulation.physics.model import WALL_SETS, PlacedRobot
+from muster.simulation.physics.power_supply import power_supply
 from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.simulated_model import SimulatedModel
-from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
+from muster.simulation.wind import CALM, Wind, WindField
+from muster.simulation.world_base import FLIGHT_M, Event, WorldBase, robots_of
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
 ROTORCRAFT_CLEARANCE_M = 0.03
 """The gap that the right of way leaves where rotorcraft fly: they follow velocities less exactly than others."""
+WIND_CLEARANCE_M, GUST_CLEARANCE_S = 0.05, 0.01
+"""The same in wind: the first, and the second times the speed of gusts."""
+GUSTY_ARRIVAL_M = 0.1
+"""The distance at which one that gusts keep off has arrived."""
 STILL_MPS = 0.002
 """Slower is standing: a drone that hovers is never quite still."""
 
@@ -51,7 +58,10 @@ class PhysicsWorld(WorldBase):
     Parameters
     ----------
     rotor_level
-        whether all drones have motors and rotors that are simulated one by one; else hexacopters alone do.
+        whether all drones have motors and rotors that are simulated one by one; else hexacopters alone do. In wind, and
+        with batteries, all do.
+    wind
+        the wind in which drones fly.
 
     Raises
     ------
@@ -62,16 +72,20 @@ class PhysicsWorld(WorldBase):
     _turned_rad = 0.01
     _clearance_m = 0.003
 
-    def __init__(self, mission: Mission, *, rotor_level: bool = False, **how: Any) -> None:
-        self._rotor_level = rotor_level
-        if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in _robots_of(mission)):
-            self._clearance_m = ROTORCRAFT_CLEARANCE_M
+    def __init__(self, mission: Mission, *, rotor_level: bool = False, wind: Wind = CALM, **how: Any) -> None:
+        self._rotor_level = rotor_level or wind.blows or bool(how.get("batteries"))
+        if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in robots_of(mission)):
+            windy_m = WIND_CLEARANCE_M + GUST_CLEARANCE_S * wind.gusts_mps
+            self._clearance_m = windy_m if wind.blows else ROTORCRAFT_CLEARANCE_M
         self._collide = how.get("avoidance", "orca") != "none"
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
         self._simulated: SimulatedModel | None = None
         self._rays: Rays | None = None
+        if wind.gusts_mps > 0:
+            how.setdefault("arrival_m", GUSTY_ARRIVAL_M)
         super().__init__(mission, **how)
+        self._wind = WindField(wind, self._seed)
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     @property
@@ -114,6 +128,11 @@ class PhysicsWorld(WorldBase):
         met = self._rays.lengths(number, place, beams, scanner.reach_m)
         return np.minimum(met, scanner.ranges((x, y, heading), discs=cylinders))
 
+    def _drained_by(self, robot: Robot, number: int) -> Callable[[], float]:
+        """By energy: that of rotors and wheels, and what robots on the ground draw all the time."""
+        supply, begin_s = power_supply(self._body(robot)), self.time_s
+        return lambda: supply.drained(float(self.simulated.energy_j[number]), self.time_s - begin_s)
+
     def _limits(self, robot: Robot) -> Limits:
         limits = limits_of(robot)
         most = ACCELERATION_MPS2[self._body(robot).kind]
@@ -128,6 +147,9 @@ class PhysicsWorld(WorldBase):
     def _carry_out(self) -> list[Event]:
         """One step of the world."""
         self._update_model()
+        if self._wind.wind.blows:
+            heights = self.frames[:, 2] - self.ground_m
+            self.simulated.rotors.wind[:] = self._wind.step(heights, self.velocities, self._dt_s)
         rows = np.array(self._crowd.command()).reshape(-1, 5)
         rates = rows[:, [0, 1, 2, 4]] * self._carried
         done = self._control.carry_out(Commands(rates, rows[:, 3]), self._count, self._force_shares(len(rows)))
@@ -185,9 +207,3 @@ class PhysicsWorld(WorldBase):
             raise ParameterError(f"robots: more than {WALL_SETS} sets of walls that stop them; expected fewer")
         self._wall_sets.append(faces)
         return len(self._wall_sets) - 1
-
-
-def _robots_of(mission: Mission) -> list[Robot]:
-    """The robots of a mission, and those that will join it."""
-    joining = [event.robot_joins for event in mission.events]
-    return [*mission.robots, *(robot for robot in joining if robot is not None)]

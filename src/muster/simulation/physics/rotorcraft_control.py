@@ -16,16 +16,13 @@ from muster.motion.grid import Floats
 from muster.simulation.physics.airframes import GRAVITY_MPS2
 from muster.simulation.physics.bodies import BodyKind
 from muster.simulation.physics.controller import Commands, no_wheels
+from muster.simulation.physics.disturbance_observer import DisturbanceObserver
 from muster.simulation.physics.geometric_control import UP, GeometricController
 from muster.simulation.physics.rotors import Rotors
 from muster.simulation.physics.simulated_model import Motion, SimulatedModel
-from muster.simulation.physics.vectors import in_body, in_map
+from muster.simulation.physics.vectors import cross, in_body, in_map
 
 MOST_TILT = math.radians(35)
-MOST_DISTURBANCE_MPS2 = 4.0
-"""The greatest acceleration that is taken for a disturbance: less than what `MOST_TILT` can hold against."""
-OBSERVER_S = 0.3
-"""Time constant in which a disturbance is found out."""
 
 
 class RotorcraftController:
@@ -41,11 +38,10 @@ class RotorcraftController:
         self._compensates = compensates
         self.group = simulated.group(BodyKind.ROTORCRAFT)
         airframes = [body.rotorcraft for body in self.group.robots]
+        self._energy_j = simulated.energy_j
         self._step_s, self._state = simulated.step_s, simulated.rotors
         self._rotors, self._law = Rotors(airframes, simulated.step_s), GeometricController(airframes)
-        self._observed = -math.expm1(-simulated.step_s / OBSERVER_S)
-        self._velocities: Floats = self.group.motion().velocities
-        self._expected: Floats | None = None
+        self._observer = DisturbanceObserver(simulated.step_s)
         law, up_s, down_s = self._law, [one.up_s for one in airframes], [one.down_s for one in airframes]
         self._motor_s = (np.array(up_s) + np.array(down_s)) / 2
         self._velocity_gain = law.velocity / law.mass
@@ -69,7 +65,7 @@ class RotorcraftController:
         thrusts = self._rotors.thrusts(self._state.speeds[who])
         known = self._fed_forward(motion)
         steady = GRAVITY_MPS2 * up[:, :2] / up[:, 2:] - known[:, :2]
-        turning = self._rotors.moments(thrusts) / self._law.inertia
+        turning = self._rotors.moments(thrusts) / self._law.inertia + self._state.disturbances[who, 3:]
         spun = self._jerk * (in_body(motion.axes, motion.rates) + self._motor_s[:, None] * turning)
         jerk = in_map(motion.axes, np.column_stack([spun[:, 1], -spun[:, 0], np.zeros(len(who))]))
         level = motion.velocities[:, :2] + self._damped_s * steady + jerk[:, :2]
@@ -86,6 +82,8 @@ class RotorcraftController:
         heading = np.arctan2(motion.axes[:, 1, 0], motion.axes[:, 0, 0])
         rates = in_body(motion.axes, motion.rates)
         moments = law.moments(force, motion.axes, rates, heading, commands.rates[:, 3])
+        if self._compensates:
+            moments -= law.inertia * self._state.disturbances[who, 3:]
         wanted = self._rotors.allocated(moments, law.thrust(force, motion.axes))
         self._state.speeds[who] = self._rotors.followed(self._state.speeds[who], wanted)
         self._apply(motion, rates)
@@ -101,7 +99,7 @@ class RotorcraftController:
         who = self.group.who
         if not self._compensates:
             return np.zeros_like(motion.velocities)
-        return self._calm_drag(motion) - self._state.disturbances[who]
+        return self._calm_drag(motion) - self._state.disturbances[who, :3]
 
     def _calm_drag(self, motion: Motion) -> Floats:
         """(n, 3): the deceleration by the drag of rotors in air that stands."""
@@ -124,20 +122,17 @@ class RotorcraftController:
         forces, bodies = self.group.data.xfrc_applied, self.group.bodies
         forces[bodies, :3] = pushes + in_map(motion.axes, drag)
         forces[bodies, 3:] = in_map(motion.axes, moments)
-        state.energy_j[who] += self._rotors.power(speeds) * self._step_s
-        self._observe(motion, thrusts.sum(axis=1))
+        self._energy_j[who] += self._rotors.power(speeds) * self._step_s
+        self._observe(motion, rates, thrusts)
 
-    def _observe(self, motion: Motion, thrust: Floats) -> None:
-        """Low-pass the difference of the measured acceleration and that of thrust, weight and the drag of calm air."""
-        who, state = self.group.who, self._state
-        calm = self._calm_drag(motion)
-        if self._expected is not None:
-            measured = (motion.velocities - self._velocities) / self._step_s
-            estimate = state.disturbances[who]
-            estimate = estimate + self._observed * (measured - self._expected - estimate)
-            state.disturbances[who] = np.clip(estimate, -MOST_DISTURBANCE_MPS2, MOST_DISTURBANCE_MPS2)
-        self._velocities = motion.velocities
-        self._expected = (thrust / self._law.mass)[:, None] * motion.axes[:, :, 2] - GRAVITY_MPS2 * UP - calm
+    def _observe(self, motion: Motion, rates: Floats, thrusts: Floats) -> None:
+        """Estimate what else than thrust, weight and the drag of calm air accelerates the bodies."""
+        who, inertia, disturbances = self.group.who, self._law.inertia, self._state.disturbances
+        lift = (thrusts.sum(axis=1) / self._law.mass)[:, None] * motion.axes[:, :, 2]
+        turning = (self._rotors.moments(thrusts) - cross(rates, inertia * rates)) / inertia
+        expected = np.hstack([lift - GRAVITY_MPS2 * UP - self._calm_drag(motion), turning])
+        velocities = np.hstack([motion.velocities, rates])
+        disturbances[who] = self._observer.observed(disturbances[who], velocities, expected)
 
 
 def within_tilt(force: Floats, mass: Floats) -> Floats:

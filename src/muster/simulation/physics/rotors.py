@@ -26,17 +26,14 @@ class RotorState:
     speeds
         (n, MOST_ROTORS) rad/s.
     disturbances
-        (n, 3): accelerations by forces that the controller does not know of, as it estimates them; m/s^2.
+        (n, 6): accelerations by what the controller does not know of, as it estimates them; see `DisturbanceObserver`.
     wind
         (n, 3): the velocity of the air around each robot, m/s.
-    energy_j
-        (n,) that rotors have taken so far.
     """
 
     speeds: Floats
     disturbances: Floats
     wind: Floats
-    energy_j: Floats
 
     @classmethod
     def hovering(cls, airframes: Sequence[Airframe | None]) -> RotorState:
@@ -46,13 +43,13 @@ class RotorState:
         for k, airframe in enumerate(airframes):
             if airframe is not None:
                 speeds[k, : len(airframe.rotors)] = airframe.hover_radps
-        return cls(speeds, np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count))
+        return cls(speeds, np.zeros((count, 6)), np.zeros((count, 3)))
 
     def take_over(self, before: RotorState) -> None:
         """Take over the state of an earlier model, whose robots are the first of this one."""
         count = len(before.speeds)
         self.speeds[:count], self.disturbances[:count] = before.speeds, before.disturbances
-        self.wind[:count], self.energy_j[:count] = before.wind, before.energy_j
+        self.wind[:count] = before.wind
 
 
 class Rotors:

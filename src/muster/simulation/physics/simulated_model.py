@@ -97,6 +97,8 @@ class SimulatedModel:
         self.rotors = RotorState.hovering(
             [one.rotorcraft if one.kind is BodyKind.ROTORCRAFT else None for one in bodies]
         )
+        self.energy_j: Floats = np.zeros(len(self.robots))
+        """Work that motors have done so far, by robot, joules."""
         self._set_published_inertias()
         mujoco.mj_step1(self.model, self.data)
 
@@ -114,6 +116,7 @@ class SimulatedModel:
                 self.data.qpos[place] = before.data.qpos[old_place]
                 self.data.qvel[freedom] = before.data.qvel[old_freedom]
         self.rotors.take_over(before.rotors)
+        self.energy_j[: len(before.robots)] = before.energy_j
         self.data.time = before.data.time
         mujoco.mj_step1(self.model, self.data)
 
@@ -137,6 +140,11 @@ class SimulatedModel:
         """Indices (k, 2) in `data.qpos` of the left and right wheel angles of robots on wheels."""
         places = [[place for place, _ in self._wheels[k]] for k in who]
         return np.array(places, dtype=np.intp).reshape(-1, 2)
+
+    def wheel_speeds(self, who: Indices) -> Indices:
+        """The same in `data.qvel` of the speeds at which they turn."""
+        freedoms = [[freedom for _, freedom in self._wheels[k]] for k in who]
+        return np.array(freedoms, dtype=np.intp).reshape(-1, 2)
 
 
 def _wheels(model: Any, robot: int) -> list[tuple[int, int]]:

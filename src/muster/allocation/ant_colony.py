@@ -1,0 +1,86 @@
+"""Ant colony optimization: Ant System.
+
+[tcf-thesis], section 2.3, (2.24) to (2.26); constants of [dorigo1996]. Every robot is an ant: it chooses its next task
+by pheromone and distance among those that it may do, has capacity for, and whose prerequisites are in routes (2.24).
+All ants together build one plan; `population_size` plans are built between two updates of the pheromones.
+
+Where the text leaves room: the robot with least usage moves next, for the objective `total` one drawn by how strongly
+it is attracted (`core.Colony`); a plan's ants leave an increment that is the best objective so far over the plan's
+own, divided by the number of plans, so that the unit of usage does not matter; plans that do less than the best of
+their generation leave none; `elite` plans' worth is left on the best plan so far (elitist Ant System, [dorigo1996]).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from muster import core
+from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.strings import Best, Floats
+from muster.mission.errors import ParameterError
+
+_LEAST_PHEROMONE = 1e-9  # beside 1 at the beginning: no path is lost to rounding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Parameters of the colony; alpha and beta of (2.24), rho (`evaporation`) of (2.25).
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    population_size: int = 20
+    alpha: float = 1.0
+    beta: float = 5.0
+    evaporation: float = 0.5
+    elite: float = 5.0
+
+    def __post_init__(self) -> None:
+        if self.population_size < 1:
+            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 1")
+        for name, most in (("alpha", 20.0), ("beta", 20.0), ("evaporation", 1.0), ("elite", 1e6)):
+            if not 0 <= getattr(self, name) <= most:
+                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to {most:g}")
+
+
+def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
+    """Build plans (2.24), update the pheromones (2.25), (2.26); a start plan is the first best one."""
+    colony = core.Colony(problem.core, params.beta, seed)
+    best = Best(problem, stop, start)
+    n, m = len(problem.tasks), len(problem.robots)
+    pheromone = np.ones((n + m, n))
+    figures = colony.build(pheromone, params.population_size)
+    best.note(figures, colony.routes)
+    for _ in stop.iterations():
+        increment = np.zeros_like(pheromone)
+        for k in np.flatnonzero(figures[:, 0] == figures[:, 0].max()).tolist():
+            leave(increment, colony.routes(k), best.objective / (figures[k, 1] or 1.0) / params.population_size)
+        leave(increment, best.routes, params.elite / params.population_size)
+        pheromone = np.maximum((1.0 - params.evaporation) * pheromone + increment, _LEAST_PHEROMONE)
+        figures = colony.build(pheromone**params.alpha, params.population_size)
+        best.note(figures, colony.routes)
+    return Outcome(best.routes)
+
+
+def leave(increment: Floats, routes: Routes, amount: float) -> None:
+    """Add an amount on every path of routes, from the robots' starts on."""
+    n = increment.shape[1]
+    for i, route in enumerate(routes):
+        if route:
+            increment[[n + i, *route[:-1]], route] += amount
+
+
+ANT_COLONY = Allocator(
+    name="ant-colony",
+    summary="robots as ants that follow pheromones and distances; reviewed in the TCF thesis",
+    anytime=True,
+    parameters=Parameters,
+    algorithm=allocate,
+)

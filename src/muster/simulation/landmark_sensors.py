@@ -1,0 +1,158 @@
+"""Sensors of a simulated robot that see landmarks at known places: tags by its camera, cylinders by its laser.
+
+What they see corrects an estimate of `perception.dead_reckoning`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from muster.mission.model import Camera, Landmark, Robot, Tag
+from muster.motion.frames import angles
+from muster.motion.grid import Floats
+from muster.perception.camera import Intrinsics, View, mount_of_mission
+from muster.perception.dead_reckoning import HEADING, Z, by_landmark, by_range_and_bearing
+from muster.perception.geometric_detection import GroundTag, sightings_of
+from muster.perception.kalman import Estimate, gated
+from muster.perception.laser import Scanner
+from muster.perception.localisation import Uncertainty, ground_covariance, on_ground
+from muster.perception.spikes import SpikeParameters, landmarks
+from muster.perception.tags import tag_pose
+from muster.simulation.cameras import true_body
+from muster.simulation.lasers import Laser
+from muster.simulation.pose_sensors import Readings, SensorParameters
+from muster.simulation.world import SimulatedWorld
+
+_STREAM = 0x7A65
+_FARTHEST_M = 20.0
+"""Of a tag, as of `camera_observer.CameraObserver`: near the horizon a pixel is worth many metres."""
+_SURE = 3.0
+"""Standard deviations of the estimate by which what is seen may be off a landmark and be that landmark."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TagParameters(SensorParameters):
+    """Tags of the mission as landmarks: `corner_px` is the standard deviation of each corner in the picture."""
+
+    corner_px: float = 0.2
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaserParameters(SensorParameters):
+    """Cylinders of the mission's `landmarks`, found in scans by SPIKE.
+
+    Parameters
+    ----------
+    rate_hz
+        scans a second.
+    range_m
+        standard deviation of each range.
+    depth_m
+        by how much more what is behind a landmark is away.
+    near_m
+        how far from a landmark what is taken for it may be seen, beside what the pose may be off.
+    """
+
+    rate_hz: float = 10.0
+    range_m: float = 0.01
+    depth_m: float = 0.07
+    near_m: float = 0.1
+
+
+class TagCamera:
+    """A robot's camera that knows where tags lie: [tcf-thesis] (2.7), solved for the robot."""
+
+    def __init__(
+        self,
+        world: SimulatedWorld,
+        robot: Robot,
+        camera: Camera,
+        tags: Sequence[Tag],
+        how: TagParameters,
+        seed: int,
+    ) -> None:
+        self._world, self._number = world, list(world.ports).index(robot.id)
+        self._tags = [
+            GroundTag(tag.id, tag_pose(tag.position, math.radians(tag.heading_deg)), tag.size_m) for tag in tags
+        ]
+        self._places = [(tag.id, np.array(tag.position[:2])) for tag in tags]
+        fov = math.radians(camera.fov_deg)
+        self._intrinsics = Intrinsics.of_view(camera.width_px, camera.height_px, fov)
+        self._mount, self._corner_px = mount_of_mission(camera), how.corner_px
+        self._random = np.random.default_rng(np.random.SeedSequence((seed, self._number), spawn_key=(_STREAM,)))
+        self._readings = Readings(camera.rate_hz, 0.0, 1.0, self._random)
+        self._uncertainty = Uncertainty(pixel_px=max(how.corner_px, 0.1), angle_rad=world.noise.attitude_rad)
+
+    def corrected(self, estimate: Estimate) -> Estimate:
+        """See `PoseSensor`."""
+        if not self._readings.due(self._world.time_s):
+            return estimate
+        frame, axes = self._world.frames[self._number], self._world.axes[self._number]
+        view = View.from_body(self._intrinsics, true_body(frame, axes), self._mount)
+        seen = sightings_of(self._tags, view, self._random, self._corner_px).all
+        if not seen:
+            return estimate
+        level = self._level_view(estimate, frame, axes)
+        pixels = np.array([sighting.centre for sighting in seen])
+        places = on_ground(level, pixels, self._world.ground_m)
+        near = np.linalg.norm(places - level.position, axis=1) <= _FARTHEST_M  # False where NaN
+        covariances = ground_covariance(level, pixels[near], self._uncertainty, self._world.ground_m)
+        tags = [sighting.tag for sighting, is_near in zip(seen, near, strict=True) if is_near]
+        for tag, place, covariance in zip(tags, places[near, :2], covariances, strict=True):
+            landmark = _nearest(_in_map(estimate, place), [at for name, at in self._places if name == tag])
+            estimate = gated(estimate, by_landmark(estimate, landmark, place, covariance))
+        return estimate
+
+    def _level_view(self, estimate: Estimate, frame: Floats, axes: Floats) -> View:
+        """The camera of a robot at the origin that looks along x, as high and tilted as it takes itself to be."""
+        height = float(estimate.mean[Z] + frame[2] - self._world.positions[self._number, 2])
+        roll, pitch = angles(axes)[:2] + self._random.normal(0.0, self._world.noise.attitude_rad, 2)
+        return View.from_body(self._intrinsics, [0.0, 0.0, height, roll, pitch, 0.0], self._mount)
+
+
+class LaserLandmarks:
+    """A robot's laser that knows where some of the mission's cylinders stand, and sees all of them."""
+
+    def __init__(
+        self, world: SimulatedWorld, robot: str, cylinders: Sequence[Landmark], how: LaserParameters, seed: int
+    ) -> None:
+        self._world = world
+        self._laser = Laser(world, robot, Scanner(range_m=how.range_m), seed=seed)
+        self._places = [np.array(one.position[:2]) for one in cylinders if one.known]
+        self._cylinders = np.array([(*one.position[:2], one.radius_m) for one in cylinders])
+        there = self._cylinders
+        radii = there[:, 2]
+        self._search = SpikeParameters(
+            depth_m=how.depth_m, smallest_m=0.5 * float(radii.min()), largest_m=1.6 * float(radii.max())
+        )
+        self._near_m = how.near_m
+        self._readings = Readings(how.rate_hz, 0.0, 1.0, np.random.default_rng(seed))
+        step = float(self._laser.bearings[1] - self._laser.bearings[0])
+        self._deviations = max(0.5 * how.range_m, 1e-3), step
+
+    def corrected(self, estimate: Estimate) -> Estimate:
+        """See `PoseSensor`."""
+        if not self._readings.due(self._world.time_s):
+            return estimate
+        for mark in landmarks(self._laser.scan(self._cylinders), self._laser.bearings, self._search):
+            place = _in_map(estimate, np.array(mark.position))
+            known = _nearest(place, self._places)
+            spread = float(np.hypot(*estimate.deviations[:2]) + mark.range_m * estimate.deviations[HEADING])
+            if math.dist(place, known) <= self._near_m + _SURE * spread:
+                seen = by_range_and_bearing(estimate, known, mark.range_m, mark.bearing_rad, self._deviations)
+                estimate = gated(estimate, seen)
+        return estimate
+
+
+def _in_map(estimate: Estimate, place: Floats) -> Floats:
+    """A place (2,) of the robot's level axes in the map, by its estimated pose."""
+    c, s = math.cos(estimate.mean[HEADING]), math.sin(estimate.mean[HEADING])
+    return np.asarray(estimate.mean[:2] + np.array([[c, -s], [s, c]]) @ place)
+
+
+def _nearest(place: Floats, known: Sequence[Floats]) -> Floats:
+    return min(known, key=lambda one: math.dist(place, one))

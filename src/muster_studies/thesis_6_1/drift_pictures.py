@@ -1,0 +1,74 @@
+"""Figures A.10 to A.14: a drone's estimates around the setpoints of Table A.21, and how far they are from the truth."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.perception.drift import SETPOINTS
+from muster.report.drifts import plot_drift_from_above, plot_drift_of_coordinate, plot_drift_over_way
+from muster_studies.effort import Effort
+from muster_studies.figures import Draw, StudyFigure
+from muster_studies.thesis_6_1.drifts import SENSORS, drift
+from muster_studies.thesis_6_1.published import seed_count
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_NAMES = tuple(SENSORS.values())
+_DIFFERS = "simulated odometry, inertial unit and fixes with errors chosen here, in place of visual inertial odometry"
+
+
+def _from_above(effort: Effort) -> Figure:
+    return plot_drift_from_above(drift(0), _NAMES, SETPOINTS, "The way around the setpoints, true and estimated")
+
+
+def _coordinate(axis: int, effort: Effort) -> Figure:
+    return plot_drift_of_coordinate(drift(0), _NAMES, axis, f"Coordinate {'xyz'[axis]}, true and estimated")
+
+
+def _over_way(effort: Effort) -> Figure:
+    drifts = [drift(seed) for seed in range(seed_count(effort))]
+    errors = {name: kind for kind, name in SENSORS.items()}
+    title = "Error of the place over the way travelled"
+    return plot_drift_over_way(drifts, errors, _pass_ends_m(), title)
+
+
+def _pass_ends_m() -> list[float]:
+    """The metres at which the drone comes back to the first setpoint, each time."""
+    flown = drift(0)
+    near = np.linalg.norm(flown.truth - np.array(SETPOINTS[0]), axis=1) < 1e-9
+    arrivals = np.flatnonzero(near[1:] & ~near[:-1]) + 1
+    return [float(flown.travelled[arrival]) for arrival in arrivals]
+
+
+def _figure(number: str, shows: str, draw: Draw, differs: str = _DIFFERS) -> StudyFigure:
+    return StudyFigure(
+        number=number,
+        source="tcf-thesis",
+        shows=shows,
+        draw=draw,
+        tables=("A6.1",),
+        differs=differs,
+    )
+
+
+FIGURES = (
+    _figure("A.10", "the RB5 drone's way around five setpoints, estimated and by motion capture", _from_above),
+    *(
+        _figure(
+            f"A.{11 + axis}",
+            f"setpoint, estimate and motion capture of coordinate {'xyz'[axis]} over time, and the estimate's error",
+            partial(_coordinate, axis),
+        )
+        for axis in range(3)
+    ),
+    _figure(
+        "A.14",
+        "the estimate's error in space over the distance travelled: it rises and falls with the passes",
+        _over_way,
+        f"{_DIFFERS}; without fixes it grows from pass to pass",
+    ),
+)
